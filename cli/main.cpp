@@ -1,0 +1,6 @@
+#include <fmt/core.h>
+
+int main() {
+    fmt::print("domelight {}\n", DOMELIGHT_VERSION);
+    return 0;
+}

@@ -1,0 +1,20 @@
+#pragma once
+// All of Domelight's public headers.
+
+#include "domelight/area_resample.h"
+#include "domelight/brdf_table.h"
+#include "domelight/environment.h"
+#include "domelight/image.h"
+#include "domelight/image_io.h"
+#include "domelight/parallel.h"
+#include "domelight/prefilter.h"
+#include "domelight/progress.h"
+#include "domelight/projection.h"
+#include "domelight/reference.h"
+#include "domelight/result.h"
+#include "domelight/row_source.h"
+#include "domelight/sky.h"
+#include "domelight/spherical_harmonics.h"
+#include "domelight/texture.h"
+#include "domelight/vec.h"
+#include "domelight/zonal_kernel.h"

@@ -1,0 +1,18 @@
+#include "domelight/row_source.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace domelight {
+
+Result<void> ImageRowSource::read(ImageView<float> rows) {
+    assert(rows.width == image_.width && rows.channels == 3 && image_.channels == 3);
+    assert(next_row_ + rows.height <= image_.height);
+    for (int y = 0; y < rows.height; ++y) {
+        const float* from = image_.row(next_row_++);
+        std::copy(from, from + std::size_t(rows.width) * 3, rows.row(y));
+    }
+    return {};
+}
+
+}  // namespace domelight
