@@ -1,0 +1,48 @@
+#include "filtering/filter_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace domelight {
+namespace {
+
+/// Degrees beyond this cost seconds; what they would add is stated in docs/math/prefilter.md.
+constexpr int k_most_degrees = 3072;
+constexpr int k_least_degrees = 256;
+
+}  // namespace
+
+int required_band_limit(const ZonalKernel& kernel) {
+    if (kernel.lobe == Lobe::ggx) {
+        // The spectrum falls as b l K_1(b l): at 16 / b to 1e-6 of the peak. At wide lobes the clamp at the horizon leaves a tail, alpha^2 l^-2.5.
+        const double alpha = kernel.width, b = alpha < 1 ? 2 * alpha / std::sqrt(1 - alpha * alpha) : 1e9;
+        const int decay = int(std::ceil(16 / b)) + 2;
+        return std::clamp(decay, alpha > 0.2 ? k_least_degrees : 64, k_most_degrees);
+    }
+    if (kernel.lobe == Lobe::charlie) return 700;
+    // cos^n ~ e^{-n theta^2 / 2}: the spectrum is e^{-l^2 / 2n}.
+    return std::clamp(int(std::ceil(6 * std::sqrt(kernel.width + 1))), k_least_degrees, k_most_degrees);
+}
+
+FilterPlan make_filter_plan(const FilterOptions& options) {
+    struct Need {
+        int level, band_limit;
+    };
+    std::vector<Need> needs;
+    for (int l = 0; l < int(options.specular.size()); ++l)
+        if (!options.specular[l].mirror) needs.push_back({l, required_band_limit(options.specular[l].kernel)});
+    if (options.irradiance_size > 0) needs.push_back({FilterPlan::k_irradiance, required_band_limit(ZonalKernel::cosine())});
+    std::stable_sort(needs.begin(), needs.end(), [](const Need& a, const Need& b) { return a.band_limit > b.band_limit; });
+
+    FilterPlan plan;
+    plan.band_limit = std::max(options.sh_bands - 1, 8);
+    for (const Need& need : needs) {
+        plan.band_limit = std::max(plan.band_limit, need.band_limit);
+        const RingGrid grid = ring_grid_for(need.band_limit);
+        if (plan.groups.empty() || plan.groups.back().grid != grid) plan.groups.push_back({need.band_limit, grid, {}});
+        plan.groups.back().levels.push_back(need.level);
+    }
+    return plan;
+}
+
+}  // namespace domelight

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "domelight/prefilter.h"
+#include "filtering/ring_grid.h"
+
+namespace domelight {
+
+/// How the exact filter goes about its levels: which band limit each one needs, and which are synthesised together.
+struct FilterPlan {
+    /// Levels that share a grid; the walk over the Legendre functions serves them all.
+    struct Group {
+        int band_limit = 0;
+        RingGrid grid;
+        std::vector<int> levels;  ///< indices of FilterOptions::specular; k_irradiance for the irradiance map
+    };
+    static constexpr int k_irradiance = -1;
+
+    int band_limit = 0;  ///< of the analysis
+    std::vector<Group> groups;
+};
+
+FilterPlan make_filter_plan(const FilterOptions& options);
+
+/// Degrees that a lobe needs for the accuracy that docs/math/prefilter.md states.
+int required_band_limit(const ZonalKernel& kernel);
+
+}  // namespace domelight

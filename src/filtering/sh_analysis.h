@@ -1,0 +1,48 @@
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "domelight/image.h"
+#include "filtering/latitude_reduction.h"
+#include "filtering/ring_grid.h"
+#include "filtering/spectrum.h"
+#include "simd/batch_fft.h"
+
+namespace domelight {
+
+/// Spherical-harmonic coefficients of a lat-long image's bilinear reconstruction, from rows handed in from the top down. Along a row the
+/// reconstruction's Fourier coefficients are the texels' times sinc^2(m / W), for every m (beyond W / 2 too: the alias orders that the tent lets
+/// through); across rows LatitudeReduction integrates it.
+///
+/// Holds (band limit) x (rings) coefficients and the few rows in flight, never the image.
+class ShAnalysis {
+  public:
+    ShAnalysis(int width, int height, int band_limit, int threads);
+
+    /// The next rows (3 channels). How many at a time does not change a bit of the result.
+    void add_rows(ImageView<const float> rows);
+    /// Once, after the last row.
+    Spectrum finish();
+
+  private:
+    /// 32 ring rows that are transformed together, while image rows still add to them.
+    struct Batch {
+        AlignedArray<float> rows;
+    };
+    void transform_finished(int next_row);
+    void transform(const Batch& batch, int index, int channel);
+
+    int width_, height_, band_limit_, threads_;
+    RingGrid grid_;
+    LatitudeReduction reduction_;
+    simd::BatchFft fft_;
+    std::vector<std::complex<double>> order_factor_;  ///< 2 pi / W sinc^2(m / W) e^{-i m phi_0}
+    int next_row_ = 0;
+    int next_batch_ = 0;
+    std::map<int, Batch> open_;
+    int ring_stride_;
+    AlignedArray<float> rings_;  ///< [m][channel, re | im][ring + pad]
+};
+
+}  // namespace domelight

@@ -1,0 +1,76 @@
+#include "simd/targets.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simd/row_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "simd/batch_fft.h"
+#include "simd/row_kernels.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace domelight::simd::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::ScalableTag<float>;
+
+template <int vectors>
+HWY_INLINE void add_columns(const float* rows, std::ptrdiff_t stride, const float* weights, int count, float* sum) {
+    const D d;
+    const int lanes = int(hn::Lanes(d));
+    hn::Vec<D> total[vectors];
+    for (int v = 0; v < vectors; ++v) total[v] = hn::LoadU(d, sum + v * lanes);
+    for (int j = 0; j < count; ++j, rows += stride) {
+        const auto w = hn::Set(d, weights[j]);
+        for (int v = 0; v < vectors; ++v) total[v] = hn::MulAdd(w, hn::LoadU(d, rows + v * lanes), total[v]);
+    }
+    for (int v = 0; v < vectors; ++v) hn::StoreU(total[v], d, sum + v * lanes);
+}
+
+void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* weights, int count, float* sum, int n) {
+    constexpr int vectors = 4;
+    const int lanes = int(hn::Lanes(D()));
+    int i = 0;
+    for (; i + vectors * lanes <= n; i += vectors * lanes) add_columns<vectors>(rows + i, stride, weights, count, sum + i);
+    for (; i + lanes <= n; i += lanes) add_columns<1>(rows + i, stride, weights, count, sum + i);
+    // The tail through the same instructions, so that a column's bits do not depend on where it lies.
+    if (i < n) {
+        const hn::CappedTag<float, 1> one;
+        for (; i < n; ++i) {
+            auto total = hn::LoadU(one, sum + i);
+            for (int j = 0; j < count; ++j) total = hn::MulAdd(hn::Set(one, weights[j]), hn::LoadU(one, rows + j * stride + i), total);
+            hn::StoreU(total, one, sum + i);
+        }
+    }
+}
+
+void gather_fft_rows(const float* rows, std::ptrdiff_t stride, int channel, int width, float* out) {
+    constexpr int tile = 16;  // texels: their 32-row block of the output stays in the nearest cache
+    constexpr int row_count = 2 * k_fft_lanes;
+    for (int x0 = 0; x0 < width; x0 += tile) {
+        const int x1 = x0 + tile < width ? x0 + tile : width;
+        for (int i = 0; i < row_count; ++i) {
+            const float* row = rows + i * stride + channel;
+            for (int x = x0; x < x1; ++x) out[x * row_count + i] = row[3 * x];
+        }
+    }
+}
+
+}  // namespace domelight::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace domelight::simd {
+
+HWY_EXPORT(add_weighted_rows);
+HWY_EXPORT(gather_fft_rows);
+
+void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* weights, int count, float* sum, int n) {
+    HWY_DYNAMIC_DISPATCH(add_weighted_rows)(rows, stride, weights, count, sum, n);
+}
+void gather_fft_rows(const float* rows, std::ptrdiff_t stride, int channel, int width, float* out) {
+    HWY_DYNAMIC_DISPATCH(gather_fft_rows)(rows, stride, channel, width, out);
+}
+
+}  // namespace domelight::simd
+#endif

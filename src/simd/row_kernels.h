@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstddef>
+
+namespace domelight::simd {
+
+/// sum[i] += weights[0] rows[i] + weights[1] rows[i + stride] + ..., `count` rows, i < n. In the order of the rows: the same bits however they are
+/// handed over.
+void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* weights, int count, float* sum, int n);
+
+/// Interleaved RGB texels of 32 rows into the layout of BatchFft, one channel: out[x * 32 + i] = rows[i * stride + 3 x + channel].
+void gather_fft_rows(const float* rows, std::ptrdiff_t stride, int channel, int width, float* out);
+
+}  // namespace domelight::simd
