@@ -40,4 +40,8 @@ ImageF cube_layout(const Cubemap& cube, const std::string& layout);
 Result<void> write_file_atomically(const std::filesystem::path& file, const std::function<Result<void>(const std::filesystem::path&)>& write);
 Result<void> write_file_atomically(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
 
+/// For programs, once at the start: SIGINT, SIGTERM and SIGHUP then remove the temporary files of every write_file_atomically under way before
+/// they end the program, and a file-size limit (SIGXFSZ) fails the write instead of killing it.
+void remove_temporaries_on_signals();
+
 }  // namespace domelight

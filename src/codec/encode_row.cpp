@@ -1,0 +1,171 @@
+// Texels to bytes and back, one at a time: the plain form.
+#include "codec/encode_row.h"
+
+#include "codec/half.h"
+#include "codec/r11g11b10f.h"
+#include "codec/rgb9e5.h"
+
+#include <array>
+#include <cstring>
+#include <limits>
+
+namespace domelight {
+
+namespace {
+
+template <typename T>
+void store(std::uint8_t* out, T value) {
+    std::memcpy(out, &value, sizeof value);
+}
+
+template <typename T>
+T load(const std::uint8_t* in) {
+    T value;
+    std::memcpy(&value, in, sizeof value);
+    return value;
+}
+
+float clamp_to(float v, float low, float high) {
+    if (v != v) return 0;
+    return v < low ? low : v > high ? high : v;
+}
+
+/// One coder an encoding: its range per channel, and the conversion of one texel (already inside the range, never NaN)
+/// to bytes and back.
+struct HalfCoder {
+    static constexpr std::array<float, 3> k_min{-k_half_max, -k_half_max, -k_half_max},
+        k_max{k_half_max, k_half_max, k_half_max};
+};
+struct Rgba16f : HalfCoder {
+    static constexpr int k_bytes = 8, k_channels = 3;
+    static void encode(const Vec3f& v, std::uint8_t* out) {
+        store(out,
+              std::array<std::uint16_t, 4>{half_from_float(v.x), half_from_float(v.y), half_from_float(v.z), 0x3c00});
+    }
+    static Vec3f decode(const std::uint8_t* in) {
+        const auto h = load<std::array<std::uint16_t, 4>>(in);
+        return {float_from_half(h[0]), float_from_half(h[1]), float_from_half(h[2])};
+    }
+};
+struct Rg16f : HalfCoder {
+    static constexpr int k_bytes = 4, k_channels = 2;
+    static void encode(const Vec3f& v, std::uint8_t* out) {
+        store(out, std::array<std::uint16_t, 2>{half_from_float(v.x), half_from_float(v.y)});
+    }
+    static Vec3f decode(const std::uint8_t* in) {
+        const auto h = load<std::array<std::uint16_t, 2>>(in);
+        return {float_from_half(h[0]), float_from_half(h[1]), 0};
+    }
+};
+struct FloatCoder {
+    static constexpr float k_top = std::numeric_limits<float>::max();
+    static constexpr std::array<float, 3> k_min{-k_top, -k_top, -k_top}, k_max{k_top, k_top, k_top};
+};
+struct Rgba32f : FloatCoder {
+    static constexpr int k_bytes = 16, k_channels = 3;
+    static void encode(const Vec3f& v, std::uint8_t* out) { store(out, std::array<float, 4>{v.x, v.y, v.z, 1.0f}); }
+    static Vec3f decode(const std::uint8_t* in) {
+        const auto f = load<std::array<float, 4>>(in);
+        return {f[0], f[1], f[2]};
+    }
+};
+struct Rg32f : FloatCoder {
+    static constexpr int k_bytes = 8, k_channels = 2;
+    static void encode(const Vec3f& v, std::uint8_t* out) { store(out, std::array<float, 2>{v.x, v.y}); }
+    static Vec3f decode(const std::uint8_t* in) {
+        const auto f = load<std::array<float, 2>>(in);
+        return {f[0], f[1], 0};
+    }
+};
+struct Rgb9e5 {
+    static constexpr int k_bytes = 4, k_channels = 3;
+    static constexpr std::array<float, 3> k_min{0, 0, 0}, k_max{k_rgb9e5_max, k_rgb9e5_max, k_rgb9e5_max};
+    static void encode(const Vec3f& v, std::uint8_t* out) { store(out, rgb9e5_from_rgb(v)); }
+    static Vec3f decode(const std::uint8_t* in) { return rgb_from_rgb9e5(load<std::uint32_t>(in)); }
+};
+struct R11g11b10f {
+    static constexpr int k_bytes = 4, k_channels = 3;
+    static constexpr std::array<float, 3> k_min{0, 0, 0}, k_max{k_float11_max, k_float11_max, k_float10_max};
+    static void encode(const Vec3f& v, std::uint8_t* out) { store(out, r11g11b10f_from_rgb(v)); }
+    static Vec3f decode(const std::uint8_t* in) { return rgb_from_r11g11b10f(load<std::uint32_t>(in)); }
+};
+
+/// Calls `use` with the coder of `encoding`.
+template <typename Use>
+auto with_coder(Encoding encoding, Use use) {
+    switch (encoding) {
+        case Encoding::rgba16f:
+            return use(Rgba16f{});
+        case Encoding::rgba32f:
+            return use(Rgba32f{});
+        case Encoding::rgb9e5:
+            return use(Rgb9e5{});
+        case Encoding::r11g11b10f:
+            return use(R11g11b10f{});
+        case Encoding::rg16f:
+            return use(Rg16f{});
+        case Encoding::rg32f:
+            break;
+    }
+    return use(Rg32f{});
+}
+
+template <typename Coder>
+Vec3f clamp_to_range(const Vec3f& v) {
+    return {clamp_to(v.x, Coder::k_min[0], Coder::k_max[0]), clamp_to(v.y, Coder::k_min[1], Coder::k_max[1]),
+            clamp_to(v.z, Coder::k_min[2], Coder::k_max[2])};
+}
+
+template <typename Coder>
+EncodeSums encode_row_with(const float* rgb, int count, const float* weight, std::uint8_t* out) {
+    constexpr Vec3d k_luminance{0.2126, 0.7152, 0.0722};
+    EncodeSums sums;
+    for (int i = 0; i < count; ++i, rgb += 3, out += Coder::k_bytes) {
+        const Vec3f v{rgb[0], rgb[1], Coder::k_channels == 3 ? rgb[2] : 0.0f};
+        const Vec3f inside = clamp_to_range<Coder>(v);
+        Coder::encode(inside, out);
+        const double w = weight[i];
+        sums.power += w * dot(k_luminance, Vec3d(v));
+        if (v == inside) {
+            const Vec3d difference = Vec3d(Coder::decode(out)) - Vec3d(v);
+            sums.error += w * dot(difference, difference);
+            sums.norm += w * dot(Vec3d(v), Vec3d(v));
+        } else {
+            ++sums.clipped;
+            const Vec3d above = Vec3d(v) - Vec3d(inside);
+            sums.lost += w * dot(k_luminance, Vec3d{above.x > 0 ? above.x : 0, above.y > 0 ? above.y : 0,
+                                                    above.z > 0 ? above.z : 0});
+        }
+    }
+    return sums;
+}
+
+}  // namespace
+
+EncodeSums encode_row_scalar(Encoding encoding, const float* rgb, int count, const float* weight, std::uint8_t* out) {
+    return with_coder(encoding, [&](auto coder) { return encode_row_with<decltype(coder)>(rgb, count, weight, out); });
+}
+
+void encode_texels(Encoding encoding, const float* texels, int channels, int count, std::uint8_t* out) {
+    with_coder(encoding, [&](auto coder) {
+        using Coder = decltype(coder);
+        for (int i = 0; i < count; ++i, texels += channels, out += Coder::k_bytes) {
+            const Vec3f v{texels[0], channels > 1 ? texels[1] : 0.0f, channels > 2 ? texels[2] : 0.0f};
+            Coder::encode(clamp_to_range<Coder>(v), out);
+        }
+    });
+}
+
+void decode_texels(Encoding encoding, const std::uint8_t* texels, int count, float* out) {
+    with_coder(encoding, [&](auto coder) {
+        using Coder = decltype(coder);
+        for (int i = 0; i < count; ++i, texels += Coder::k_bytes) {
+            const Vec3f v = Coder::decode(texels);
+            *out++ = v.x;
+            *out++ = v.y;
+            if constexpr (Coder::k_channels == 3) *out++ = v.z;
+        }
+    });
+}
+
+}  // namespace domelight

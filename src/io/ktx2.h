@@ -1,0 +1,34 @@
+#pragma once
+// Facts of the KTX 2.0 container that its reader and writer share.
+
+#include "domelight/texture.h"
+
+#include <array>
+#include <cstdint>
+
+namespace domelight {
+
+inline constexpr std::array<std::uint8_t, 12> k_ktx2_identifier{0xab, 'K',  'T',  'X',  ' ',  '2',
+                                                                '0',  0xbb, '\r', '\n', 0x1a, '\n'};
+inline constexpr std::uint64_t k_ktx2_header_bytes = 80, k_ktx2_level_bytes = 24;
+
+/// VkFormat number of an encoding.
+constexpr std::uint32_t vulkan_format(Encoding encoding) {
+    switch (encoding) {
+        case Encoding::rgba16f:
+            return 97;  // VK_FORMAT_R16G16B16A16_SFLOAT
+        case Encoding::rgba32f:
+            return 109;  // VK_FORMAT_R32G32B32A32_SFLOAT
+        case Encoding::rgb9e5:
+            return 123;  // VK_FORMAT_E5B9G9R9_UFLOAT_PACK32
+        case Encoding::r11g11b10f:
+            return 122;  // VK_FORMAT_B10G11R11_UFLOAT_PACK32
+        case Encoding::rg16f:
+            return 83;  // VK_FORMAT_R16G16_SFLOAT
+        case Encoding::rg32f:
+            break;
+    }
+    return 103;  // VK_FORMAT_R32G32_SFLOAT
+}
+
+}  // namespace domelight

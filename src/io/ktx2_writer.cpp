@@ -1,0 +1,199 @@
+// Writes KTX 2.0 (Khronos KTX File Format Specification, version 2.0; section numbers are its).
+#include "domelight/image_io.h"
+#include "domelight/texture.h"
+
+#include "io/byte_buffer.h"
+#include "io/ktx2.h"
+#include "io/output_file.h"
+
+#include <zstd.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace domelight {
+
+namespace {
+
+/// Flags of a sample's channel in the basic descriptor block (Khronos Data Format Specification 1.3, section 5.12).
+enum : unsigned {
+    k_red = 0,
+    k_green = 1,
+    k_blue = 2,
+    k_alpha = 15,
+    k_exponent = 0x20,
+    k_signed = 0x40,
+    k_float = 0x80
+};
+
+struct Sample {
+    unsigned bit_offset, bit_length, channel;
+    std::uint32_t lower, upper;
+};
+
+constexpr std::uint32_t k_one = 0x3f800000, k_minus_one = 0xbf800000;  // as floats
+
+std::vector<Sample> samples_of(Encoding encoding) {
+    const auto signed_floats = [](unsigned bits, std::initializer_list<unsigned> channels) {
+        std::vector<Sample> samples;
+        for (unsigned c : channels)
+            samples.push_back({unsigned(samples.size()) * bits, bits, c | k_float | k_signed, k_minus_one, k_one});
+        return samples;
+    };
+    switch (encoding) {
+        case Encoding::rgba16f:
+            return signed_floats(16, {k_red, k_green, k_blue, k_alpha});
+        case Encoding::rgba32f:
+            return signed_floats(32, {k_red, k_green, k_blue, k_alpha});
+        case Encoding::rg16f:
+            return signed_floats(16, {k_red, k_green});
+        case Encoding::rg32f:
+            return signed_floats(32, {k_red, k_green});
+        case Encoding::r11g11b10f:
+            return {{0, 11, k_red | k_float, 0, k_one},
+                    {11, 11, k_green | k_float, 0, k_one},
+                    {22, 10, k_blue | k_float, 0, k_one}};
+        case Encoding::rgb9e5:
+            break;
+    }
+    // Mantissa and exponent are samples of their own; the five exponent bits are shared by all channels. 8448 is the
+    // mantissa that stands for 1.0 at the exponent's bias, 15 (Data Format Specification 1.3, table of the
+    // shared-exponent example).
+    std::vector<Sample> samples;
+    for (unsigned c : {k_red, k_green, k_blue}) {
+        samples.push_back({9 * c, 9, c, 0, 8448});
+        samples.push_back({27, 5, c | k_exponent, 15, 31});
+    }
+    return samples;
+}
+
+/// The data format descriptor: its total size and one basic block.
+void append_descriptor(ByteBuffer& out, Encoding encoding, Supercompression compression) {
+    const std::vector<Sample> samples = samples_of(encoding);
+    const unsigned block_size = 24 + 16 * unsigned(samples.size());
+    out.u32(4 + block_size);
+    out.u32(0);  // vendor Khronos, type basic
+    out.u16(2);  // version 1.3
+    out.u16(block_size);
+    out.u8(1);   // colour model RGBSDA
+    out.u8(1);   // primaries BT.709
+    out.u8(1);   // transfer function linear
+    out.u8(0);   // straight alpha
+    out.u32(0);  // texel block of 1 x 1 x 1 x 1
+    // Section 3.10.2.1: bytesPlane is 0 ("unsized") where the levels are supercompressed.
+    out.u8(compression == Supercompression::none ? unsigned(encoding_bytes(encoding)) : 0);
+    for (int i = 1; i < 8; ++i) out.u8(0);
+    for (const Sample& s : samples) {
+        out.u16(s.bit_offset);
+        out.u8(s.bit_length - 1);
+        out.u8(s.channel);
+        out.u32(0);  // position
+        out.u32(s.lower);
+        out.u32(s.upper);
+    }
+}
+
+/// Key/value data, sorted by key (std::map's order is that of the bytes), each padded to 4 bytes; values are text with
+/// a terminator.
+void append_key_values(ByteBuffer& out, const std::map<std::string, std::string>& metadata) {
+    for (const auto& [key, value] : metadata) {
+        out.u32(std::uint32_t(key.size() + 1 + value.size() + 1));
+        out.text(key);
+        out.u8(0);
+        out.text(value);
+        out.u8(0);
+        out.align(4);
+    }
+}
+
+std::map<std::string, std::string> complete_metadata(const Texture& texture) {
+    std::map<std::string, std::string> metadata = texture.metadata;
+    metadata.emplace("KTXorientation", "rd");  // rows run down; what cube maps must say
+    metadata.emplace("KTXwriter", "Domelight " DOMELIGHT_VERSION);
+    return metadata;
+}
+
+std::uint64_t align_up(std::uint64_t n, std::uint64_t alignment) {
+    return (n + alignment - 1) / alignment * alignment;
+}
+
+Result<std::vector<std::vector<std::uint8_t>>> compress_levels(const Texture& texture) {
+    std::vector<std::vector<std::uint8_t>> packed;
+    for (const auto& level : texture.levels) {
+        std::vector<std::uint8_t>& out = packed.emplace_back(ZSTD_compressBound(level.size()));
+        const std::size_t n = ZSTD_compress(out.data(), out.size(), level.data(), level.size(), 3);
+        if (ZSTD_isError(n)) return Error{std::string("zstd: ") + ZSTD_getErrorName(n), "", ""};
+        out.resize(n);
+    }
+    return packed;
+}
+
+}  // namespace
+
+Result<void> write_ktx2(const std::filesystem::path& file, const Texture& texture, Supercompression compression) {
+    std::vector<std::vector<std::uint8_t>> packed;
+    if (compression == Supercompression::zstd) {
+        auto compressed = compress_levels(texture);
+        if (!compressed) return compressed.error().at(file.string());
+        packed = *std::move(compressed);
+    }
+    const auto& stored = packed.empty() ? texture.levels : packed;
+    const std::size_t level_count = texture.levels.size();
+
+    ByteBuffer descriptor, key_values;
+    append_descriptor(descriptor, texture.encoding, compression);
+    append_key_values(key_values, complete_metadata(texture));
+    const std::uint64_t descriptor_at = k_ktx2_header_bytes + k_ktx2_level_bytes * level_count,
+                        key_values_at = descriptor_at + descriptor.size();
+
+    // Levels lie from the smallest to the largest, each on a multiple of lcm(texel bytes, 4); packed ones without gaps
+    // (section 3.9.7).
+    const std::uint64_t alignment = packed.empty() ? std::uint64_t(encoding_bytes(texture.encoding)) : 1;
+    std::vector<std::uint64_t> offset(level_count);
+    std::uint64_t end = key_values_at + key_values.size();
+    for (std::size_t l = level_count; l-- > 0;) {
+        offset[l] = align_up(end, alignment);
+        end = offset[l] + stored[l].size();
+    }
+
+    ByteBuffer head;
+    for (std::uint8_t byte : k_ktx2_identifier) head.u8(byte);
+    head.u32(vulkan_format(texture.encoding));
+    head.u32(texture.encoding == Encoding::rgba16f || texture.encoding == Encoding::rg16f
+                 ? 2
+                 : 4);  // bytes of what a swap of ends swaps
+    head.u32(std::uint32_t(texture.width));
+    head.u32(std::uint32_t(texture.height));
+    head.u32(0);  // depth
+    head.u32(0);  // layers
+    head.u32(std::uint32_t(texture.faces));
+    head.u32(std::uint32_t(level_count));
+    head.u32(compression == Supercompression::zstd ? 2 : 0);
+    head.u32(std::uint32_t(descriptor_at));
+    head.u32(std::uint32_t(descriptor.size()));
+    head.u32(std::uint32_t(key_values_at));
+    head.u32(std::uint32_t(key_values.size()));
+    head.u64(0);  // no supercompression global data
+    head.u64(0);
+    for (std::size_t l = 0; l < level_count; ++l) {
+        head.u64(offset[l]);
+        head.u64(stored[l].size());
+        head.u64(texture.levels[l].size());
+    }
+
+    return write_file_atomically(file, [&](const std::filesystem::path& path) {
+        OutputFile out(path);
+        out.write(head.bytes());
+        out.write(descriptor.bytes());
+        out.write(key_values.bytes());
+        const std::vector<std::uint8_t> zeros(alignment, 0);
+        for (std::size_t l = level_count; l-- > 0;) {
+            out.write(std::span(zeros).first(std::size_t(offset[l] - out.position())));
+            out.write(stored[l]);
+        }
+        return out.finish();
+    });
+}
+
+}  // namespace domelight

@@ -1,0 +1,72 @@
+#include "domelight/image_io.h"
+
+#include "io/output_file.h"
+
+#include <png.h>
+
+#include <csetjmp>
+#include <string>
+#include <vector>
+
+namespace domelight {
+
+namespace {
+
+/// What libpng's callbacks share with us.
+struct PngSink {
+    OutputFile* file;
+    std::string message;
+};
+
+// libpng reports errors by a long jump out of these callbacks: nothing between the setjmp and here may own anything.
+[[noreturn]] void on_error(png_structp png, png_const_charp message) {
+    static_cast<PngSink*>(png_get_error_ptr(png))->message = message;
+    std::longjmp(png_jmpbuf(png), 1);
+}
+void on_warning(png_structp, png_const_charp) {}
+void on_write(png_structp png, png_bytep data, png_size_t size) {
+    OutputFile& file = *static_cast<PngSink*>(png_get_io_ptr(png))->file;
+    file.write(std::span<const std::uint8_t>(data, size));
+    if (file.failed()) png_error(png, "write");
+}
+void on_flush(png_structp) {}
+
+/// True once all is written; everything it uses lives in the caller.
+bool write_with(png_structp png, png_infop info, ImageView<const std::uint8_t> pixels, int compression_level) {
+    if (setjmp(png_jmpbuf(png))) return false;
+    const int color = pixels.channels == 1   ? PNG_COLOR_TYPE_GRAY
+                      : pixels.channels == 3 ? PNG_COLOR_TYPE_RGB
+                                             : PNG_COLOR_TYPE_RGB_ALPHA;
+    png_set_IHDR(png, info, png_uint_32(pixels.width), png_uint_32(pixels.height), 8, color, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_set_compression_level(png, compression_level);
+    png_write_info(png, info);
+    for (int y = 0; y < pixels.height; ++y) png_write_row(png, pixels.row(y));
+    png_write_end(png, info);
+    return true;
+}
+
+}  // namespace
+
+Result<void> write_png(const std::filesystem::path& file, ImageView<const std::uint8_t> pixels, int compression_level) {
+    return write_file_atomically(file, [&](const std::filesystem::path& path) -> Result<void> {
+        OutputFile out(path);
+        PngSink sink{&out, {}};
+        png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &sink, on_error, on_warning);
+        png_infop info = png ? png_create_info_struct(png) : nullptr;
+        if (!info) {
+            png_destroy_write_struct(&png, nullptr);
+            return Error{"libpng could not start", "", ""};
+        }
+        png_set_write_fn(png, &sink, on_write, on_flush);
+        const bool complete = write_with(png, info, pixels, compression_level);
+        png_destroy_write_struct(&png, &info);
+        Result<void> finished = out.finish();
+        if (!finished) return finished;
+        if (!complete) return Error{"libpng: " + sink.message, "", ""};
+        return {};
+    });
+}
+
+}  // namespace domelight
