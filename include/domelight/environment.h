@@ -34,6 +34,7 @@ struct EnvironmentOptions {
     std::string up = "+Y";            ///< the world axis (of the file's author) that the image's top shows: +Y, +Z, ...
     double exposure = 0;              ///< stops: radiance is multiplied by 2^exposure
     std::int64_t max_bytes = std::int64_t(1) << 30;  ///< refuses images whose decoding would need more memory than this
+    int threads = 0;                  ///< for decoding; 0: all
 };
 
 /// An environment opened for reading: a lat-long image handed on by rows, or a cube in memory.

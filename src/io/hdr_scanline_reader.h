@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace domelight {
+
+/// One scanline of a Radiance picture, in any of the encodings that may follow one another in a file: new run-length
+/// (each component by itself, 8 <= width < 32768, marked by 2 2), old run-length (a texel 1 1 1 n repeats the one
+/// before; consecutive ones shift n by 8 bits), or flat. "RADIANCE Reference, Picture File Format"; Ward, "Real
+/// Pixels", Graphics Gems II (1991).
+struct ScanlineStep {
+    std::size_t bytes = 0;        ///< how many bytes the scanline takes
+    const char* error = nullptr;  ///< what is wrong with it, or null
+};
+
+/// Where the scanline at the start of `data` ends, without decoding it.
+ScanlineStep skip_hdr_scanline(std::span<const std::uint8_t> data, int width);
+
+/// Decodes it into four planes of `width` bytes (red, green, blue, exponent), each `plane_stride` apart.
+ScanlineStep decode_hdr_scanline(std::span<const std::uint8_t> data, int width, std::uint8_t* planes,
+                                 std::size_t plane_stride);
+
+/// The fewest bytes that a scanline of `width` texels can take: a lying header is found before anything is allocated
+/// for it.
+std::size_t least_hdr_scanline_bytes(int width);
+
+}  // namespace domelight

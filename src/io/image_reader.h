@@ -1,0 +1,70 @@
+#pragma once
+
+#include "domelight/image.h"
+#include "domelight/result.h"
+#include "domelight/vec.h"
+
+#include "io/file_reader.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace domelight {
+
+/// The largest image side any reader accepts: 65536 x 32768 is two gigapixels, more than any environment and small
+/// enough for int arithmetic.
+inline constexpr int k_max_image_side = 65536;
+
+/// What a file says about the image in it.
+struct ImageFacts {
+    enum class Envmap { none, latlong, cube };  ///< OpenEXR's attribute of that name
+
+    std::string format;  ///< "Radiance HDR", ...
+    int width = 0, height = 0;
+    float largest = 0;  ///< the largest finite value the format can hold: what infinity becomes
+    Envmap envmap = Envmap::none;
+    std::optional<Mat3> to_rec709;  ///< the file's primaries to linear Rec. 709, where they differ
+    std::vector<std::string> warnings;
+};
+
+struct ReaderOptions {
+    std::string decode = "auto";  ///< see EnvironmentOptions
+    std::int64_t max_bytes = std::int64_t(1) << 30;
+    int threads = 0;
+};
+
+/// An image file being decoded from the top row down. Pixels are RGB as stored (linear, but in the file's own
+/// primaries, and with its NaNs, infinities and negative values).
+class ImageReader {
+  public:
+    virtual ~ImageReader() = default;
+    const ImageFacts& facts() const { return facts_; }
+    /// The next `rows.height` rows (at most what is left). True: every value is known to lie in [0,
+    /// k_largest_radiance].
+    virtual Result<bool> read(ImageView<float> rows) = 0;
+
+  protected:
+    ImageFacts facts_;
+};
+
+/// Opens the image in `bytes`; the format is recognised by its first bytes. Errors name no file: the caller adds it.
+Result<std::unique_ptr<ImageReader>> open_image_reader(std::shared_ptr<const FileBytes> bytes,
+                                                       const ReaderOptions& options);
+
+/// One by format. Each expects the format's magic number at the start.
+Result<std::unique_ptr<ImageReader>> open_hdr_reader(std::shared_ptr<const FileBytes> bytes,
+                                                     const ReaderOptions& options);
+Result<std::unique_ptr<ImageReader>> open_exr_reader(std::shared_ptr<const FileBytes> bytes,
+                                                     const ReaderOptions& options);
+Result<std::unique_ptr<ImageReader>> open_png_reader(std::shared_ptr<const FileBytes> bytes,
+                                                     const ReaderOptions& options);
+Result<std::unique_ptr<ImageReader>> open_jpeg_reader(std::shared_ptr<const FileBytes> bytes,
+                                                      const ReaderOptions& options);
+
+/// An error unless 1 <= width, height <= k_max_image_side.
+Result<void> check_image_size(std::int64_t width, std::int64_t height);
+
+}  // namespace domelight

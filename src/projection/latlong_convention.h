@@ -1,0 +1,34 @@
+#pragma once
+
+#include "domelight/result.h"
+#include "domelight/vec.h"
+
+#include <string>
+
+namespace domelight {
+
+/// Where a lat-long image puts the world, and where on it the samples lie (docs/conventions.md).
+struct LatlongConvention {
+    /// Where sample (i, j) of a W x H image lies.
+    enum class Grid {
+        centres,        ///< u = (i + 1/2) / W, v = (j + 1/2) / H
+        rows_on_poles,  ///< v = j / (H - 1)
+        both_on_edges,  ///< u = i / (W - 1), v = j / (H - 1)
+    };
+    Vec3d centre{1, 0, 0};  ///< world direction at the image's centre
+    Vec3d right{0, 0, 1};   ///< a quarter turn to the right of it
+    Vec3d up{0, 1, 0};      ///< at the top row
+    Grid grid = Grid::centres;
+
+    /// World direction to the direction at which the default convention would show the same point of the image.
+    /// Orthogonal; mirrors where right = -(centre x up).
+    Mat3 world_to_default() const { return {{centre, up, right}}; }
+};
+
+/// "default", "usd", "mitsuba", "openexr", "materialx", "mod", or "centre=+X,right=+Z[,up=+Y]" of signed axes.
+Result<LatlongConvention> latlong_convention(const std::string& name);
+
+/// "+X", "x", "-z", ...
+Result<Vec3d> signed_axis(const std::string& name);
+
+}  // namespace domelight
