@@ -1,0 +1,225 @@
+#include "domelight/area_resample.h"
+
+#include "domelight/projection.h"
+
+#include "filtering/area_resample_plain.h"
+#include "test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+using namespace domelight;
+
+namespace {
+
+const Mat3 k_identity{};
+const Mat3 k_z_up{{Vec3d{1, 0, 0}, Vec3d{0, 0, 1}, Vec3d{0, -1, 0}}};
+const Mat3 k_mirror{{Vec3d{0, 0, 1}, Vec3d{0, 1, 0}, Vec3d{1, 0, 0}}};
+
+/// Any rotation: about the axis (1, 2, 3) by 0.7.
+Mat3 tilted() {
+    const Vec3d k = normalize(Vec3d{1, 2, 3});
+    const double c = std::cos(0.7), s = std::sin(0.7);
+    const auto row = [&](Vec3d e) { return e * c + cross(e, k) * s + k * (dot(k, e) * (1 - c)); };
+    return {{row({1, 0, 0}), row({0, 1, 0}), row({0, 0, 1})}};
+}
+
+ImageF random_image(int width, int height, unsigned seed = 1) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> uniform(0, 1);
+    ImageF image(width, height, 3);
+    for (float& p : image.pixels()) p = uniform(random) * (uniform(random) < 0.1f ? 100 : 1);
+    return image;
+}
+
+/// The definition of the source: bilinear between texel centres, u wraps, v clamps.
+Vec3d bilinear(ImageView<const float> image, UV uv) {
+    const double x = uv.u * image.width - 0.5, y = uv.v * image.height - 0.5;
+    const int i = int(std::floor(x)), j = int(std::floor(y));
+    const auto texel = [&](int column, int row) {
+        const float* p =
+            image.at(((column % image.width) + image.width) % image.width, std::clamp(row, 0, image.height - 1));
+        return Vec3d(p[0], p[1], p[2]);
+    };
+    const double s = x - i, t = y - j;
+    return (texel(i, j) * (1 - s) + texel(i + 1, j) * s) * (1 - t) +
+           (texel(i, j + 1) * (1 - s) + texel(i + 1, j + 1) * s) * t;
+}
+
+/// int g d omega over the sphere: the integral of each row's tent against sin theta in closed form.
+Vec3d total_light(ImageView<const float> image) {
+    const double h = k_pi / image.height;
+    Vec3d sum;
+    for (int y = 0; y < image.height; ++y) {
+        const bool polar = y == 0 || y + 1 == image.height;
+        const double tent = image.height == 1 ? 2
+                            : polar           ? 1 - (std::sin(1.5 * h) - std::sin(0.5 * h)) / h
+                                              : 4 * std::sin((y + 0.5) * h) * std::pow(std::sin(0.5 * h), 2) / h;
+        for (int x = 0; x < image.width; ++x) {
+            const float* p = image.at(x, y);
+            sum = sum + Vec3d(p[0], p[1], p[2]) * (tent * 2 * k_pi / image.width);
+        }
+    }
+    return sum;
+}
+
+ImageF resample_to_cube(ImageView<const float> image, int size, const Mat3& m, int threads = 1, int chunk = 0) {
+    auto resampler = area_resample_to_cube(image.width, image.height, size, m, threads);
+    if (chunk <= 0) chunk = image.height;
+    for (int y = 0; y < image.height; y += chunk) resampler->add_rows(image.rows(y, std::min(chunk, image.height - y)));
+    return resampler->finish();
+}
+
+ImageF resample_to_latlong(ImageView<const float> image, int height, const Mat3& m, int threads = 1, int chunk = 0) {
+    auto resampler = area_resample_to_latlong(image.width, image.height, height, m, threads);
+    if (chunk <= 0) chunk = image.height;
+    for (int y = 0; y < image.height; y += chunk) resampler->add_rows(image.rows(y, std::min(chunk, image.height - y)));
+    return resampler->finish();
+}
+
+Vec3d cube_light(ImageView<const float> strip) {
+    const int n = strip.width;
+    Vec3d sum;
+    for (int y = 0; y < 6 * n; ++y)
+        for (int x = 0; x < n; ++x) {
+            const float* p = strip.at(x, y);
+            sum = sum + Vec3d(p[0], p[1], p[2]) * cube_solid_angle(x, y % n, n);
+        }
+    return sum;
+}
+
+Vec3d latlong_light(ImageView<const float> image) {
+    Vec3d sum;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const float* p = image.at(x, y);
+            sum = sum + Vec3d(p[0], p[1], p[2]) * latlong_solid_angle(y, image.width, image.height);
+        }
+    return sum;
+}
+
+double relative(const Vec3d& a, const Vec3d& b) {
+    return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)}) /
+           std::max({b.x, b.y, b.z, 1e-300});
+}
+
+/// A texel's average by steps^2 samples, each weighed by its own solid angle.
+Vec3d sampled_cube_texel(ImageView<const float> image, int face, int x, int y, int size, const Mat3& m, int steps) {
+    Vec3d sum;
+    double weight = 0;
+    for (int j = 0; j < steps; ++j)
+        for (int i = 0; i < steps; ++i) {
+            const Vec3d d = cube_direction(face, {(x + (i + 0.5) / steps) / size, (y + (j + 0.5) / steps) / size});
+            const double w = std::pow(dot(d, d), -1.5);
+            sum = sum + bilinear(image, latlong_uv(m * d)) * w;
+            weight += w;
+        }
+    return sum / weight;
+}
+
+Vec3d sampled_latlong_texel(ImageView<const float> image, int x, int y, int height, const Mat3& m, int steps) {
+    Vec3d sum;
+    double weight = 0;
+    for (int j = 0; j < steps; ++j)
+        for (int i = 0; i < steps; ++i) {
+            const UV uv{(x + (i + 0.5) / steps) / (2 * height), (y + (j + 0.5) / steps) / height};
+            const double w = std::sin(k_pi * uv.v);
+            sum = sum + bilinear(image, latlong_uv(m * latlong_direction(uv))) * w;
+            weight += w;
+        }
+    return sum / weight;
+}
+
+struct Shape {
+    int width, height, size;
+};
+
+}  // namespace
+
+TEST_CASE("area_resample: cube texels are the average of the bilinear reconstruction") {
+    std::mt19937 random(7);
+    for (const Shape s : {Shape{1, 1, 2},
+                          {3, 2, 1},
+                          {3, 2, 4},
+                          {5, 3, 3},
+                          {8, 4, 5},
+                          {64, 32, 16},
+                          {64, 32, 4},
+                          {37, 19, 8},
+                          {16, 8, 1}})
+        for (const Mat3& m : {k_identity, rotation_y(0.3), k_z_up, k_mirror, tilted()}) {
+            const ImageF image = random_image(s.width, s.height);
+            const ImageF cube = resample_to_cube(image, s.size, m);
+            double worst = 0;
+            for (int k = 0; k < 6; ++k) {
+                const int x = random() % s.size, y = random() % (6 * s.size);
+                const Vec3d truth =
+                    sampled_cube_texel(image, y / s.size, x, y % s.size, s.size, m, s.width > 8 * s.size ? 700 : 300);
+                const float* p = cube.at(x, y);
+                worst = std::max(worst, relative(Vec3d(p[0], p[1], p[2]), truth));
+            }
+            INFO(s.width, "x", s.height, " to ", s.size);
+            CHECK(worst < 1e-4);  // the samples' own error, O(1/steps^2) at the reconstruction's kinks
+        }
+}
+
+TEST_CASE("area_resample: lat-long texels are the average of the bilinear reconstruction") {
+    std::mt19937 random(8);
+    for (const Shape s : {Shape{1, 1, 1}, {3, 2, 2}, {5, 3, 3}, {64, 32, 16}, {37, 19, 40}, {16, 8, 1}})
+        for (const Mat3& m : {k_identity, rotation_y(0.3), k_z_up, k_mirror, tilted()}) {
+            const ImageF image = random_image(s.width, s.height);
+            const ImageF out = resample_to_latlong(image, s.size, m);
+            double worst = 0;
+            for (int k = 0; k < 6; ++k) {
+                const int x = random() % (2 * s.size), y = random() % s.size;
+                const Vec3d truth = sampled_latlong_texel(image, x, y, s.size, m, s.width > 8 * s.size ? 700 : 300);
+                const float* p = out.at(x, y);
+                worst = std::max(worst, relative(Vec3d(p[0], p[1], p[2]), truth));
+            }
+            INFO(s.width, "x", s.height, " to ", s.size);
+            CHECK(worst < 1e-4);
+        }
+}
+
+TEST_CASE("area_resample: a constant environment stays constant") {
+    for (const Shape s : {Shape{1, 1, 4}, {3, 2, 5}, {5, 3, 1}, {64, 32, 33}, {256, 128, 16}})
+        for (const Mat3& m : {k_identity, rotation_y(1.1), k_z_up, k_mirror, tilted()}) {
+            const ImageF image(s.width, s.height, 3, 0.7f);
+            double worst = 0;
+            for (const ImageF& out : {resample_to_cube(image, s.size, m), resample_to_latlong(image, s.size, m)})
+                for (float p : out.pixels()) worst = std::max(worst, std::abs(p / 0.7 - 1));
+            INFO(s.width, "x", s.height, " to ", s.size);
+            CHECK(worst < 1e-6);
+        }
+}
+
+TEST_CASE("area_resample: the light of a single texel is kept, wherever it is") {
+    for (const Shape s : {Shape{1, 1, 1}, {3, 2, 4}, {5, 3, 2}, {64, 32, 16}, {64, 32, 5}, {31, 17, 12}, {32, 16, 40}})
+        for (const Mat3& m : {k_identity, rotation_y(0.8), k_z_up, k_mirror, tilted()})
+            for (const auto& [x, y] : std::vector<std::pair<int, int>>{{0, 0},
+                                                                       {s.width - 1, s.height - 1},
+                                                                       {0, s.height / 2},
+                                                                       {s.width - 1, s.height / 3},
+                                                                       {s.width / 4, 0},
+                                                                       {s.width / 8, s.height / 4}}) {
+                ImageF image(s.width, s.height, 3);
+                image.at(x, y)[1] = 1e5f;
+                const Vec3d truth = total_light(image);
+                INFO(s.width, "x", s.height, " to ", s.size, ", sun at ", x, ",", y);
+                CHECK(relative(cube_light(resample_to_cube(image, s.size, m)), truth) < 1e-5);
+                CHECK(relative(latlong_light(resample_to_latlong(image, s.size, m)), truth) < 1e-5);
+            }
+}
+
+TEST_CASE("area_resample: the same bytes on any number of threads and in any chunks of rows") {
+    const ImageF image = random_image(64, 32);
+    for (const Mat3& m : {k_identity, rotation_y(0.3), tilted()}) {
+        const ImageF cube = resample_to_cube(image, 13, m), latlong = resample_to_latlong(image, 13, m);
+        for (const auto& [threads, chunk] : std::vector<std::pair<int, int>>{{2, 1}, {3, 7}, {8, 32}}) {
+            CHECK(std::ranges::equal(resample_to_cube(image, 13, m, threads, chunk).pixels(), cube.pixels()));
+            CHECK(std::ranges::equal(resample_to_latlong(image, 13, m, threads, chunk).pixels(), latlong.pixels()));
+        }
+    }
+}
