@@ -1,0 +1,19 @@
+# Debian packages and what needs them. Sourced by scripts/build.sh; nothing else names a package.
+
+# Compiling the library and the program.
+build_packages=(
+    g++ cmake ninja-build pkg-config
+    libopenexr-dev      # .exr; brings zlib
+    libimath-dev        # half floats
+    libpng-dev libjpeg62-turbo-dev
+    libhwy-dev          # SIMD chosen at run time
+    libzstd-dev         # KTX2 supercompression
+    libssl-dev          # SHA-256 (libcrypto only)
+    libfmt-dev nlohmann-json3-dev libcli11-dev
+)
+# ./test: the test framework, the benchmarks, and the scripts that drive the program.
+test_packages=("${build_packages[@]}" doctest-dev libbenchmark-dev python3)
+# ./test --fuzz: libFuzzer comes with clang.
+fuzz_packages=("${test_packages[@]}" clang-19 libclang-rt-19-dev)
+# bench/peers.py: the program that is measured beside ours.
+peer_packages=(libfilament-tools)
