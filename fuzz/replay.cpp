@@ -2,7 +2,7 @@
 // with the sanitizers, this is the part of fuzzing that a test run can afford. The same arguments give the same inputs
 // on every machine.
 //
-//     hdr_fuzz [--mutations N] [--seed N] [--slow SECONDS] FILE-OR-FOLDER...
+//     hdr_fuzz [--runs N] [--seed N] [--slow SECONDS] FILE-OR-FOLDER...
 //
 // A crash leaves the input that caused it as ./crash-NAME, and no closing line.
 
@@ -136,15 +136,15 @@ std::vector<std::filesystem::path> files_under(const std::vector<std::string>& p
 
 int main(int argc, char** argv) {
     g_target = std::filesystem::path(argv[0]).filename().string();
-    int mutations = 0;
+    std::size_t runs = 0;
     std::uint64_t seed = 1;
     double slow = 2;
     std::vector<std::string> places;
     for (int i = 1; i < argc; ++i) {
         const std::string argument = argv[i];
         const char* value = i + 1 < argc ? argv[i + 1] : "";
-        if (argument == "--mutations")
-            mutations = std::atoi(value), ++i;
+        if (argument == "--runs")
+            runs = std::strtoul(value, nullptr, 10), ++i;
         else if (argument == "--seed")
             seed = std::strtoull(value, nullptr, 10), ++i;
         else if (argument == "--slow")
@@ -166,6 +166,8 @@ int main(int argc, char** argv) {
         names.push_back(file.filename().string());
     }
 
+    // About `runs` in all, however many files there are.
+    const int mutations = int(runs / inputs.size());
     long ran = 0, too_slow = 0;
     double slowest = 0;
     const auto run = [&](Bytes input, const std::string& name, int mutation) {

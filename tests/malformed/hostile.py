@@ -1,0 +1,140 @@
+"""Made-up hostile files: headers that lie about sizes, cut-off data, and things that are no image at all. All small; all must be refused."""
+
+import struct
+import zlib
+
+HUGE = 100_000
+
+
+def radiance(resolution, data=b"", header=b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n"):
+    return header + resolution.encode() + b"\n" + data
+
+
+def run_length_row(width, byte=128):
+    """A new-style row of `width` equal texels."""
+    row = b"\x02\x02" + struct.pack(">H", width)
+    for _ in range(4):
+        left = width
+        while left:
+            count = min(left, 127)
+            row += bytes([128 + count, byte])
+            left -= count
+    return row
+
+
+def exr(x_max, y_max, x_min=0, y_min=0, data=b"", version=2, channels=b"BGR", compression=0):
+    def attribute(name, kind, value):
+        return name + b"\0" + kind + b"\0" + struct.pack("<i", len(value)) + value
+
+    box = struct.pack("<4i", x_min, y_min, x_max, y_max)
+    channel_list = b"".join(bytes([c]) + b"\0" + struct.pack("<iB3xii", 1, 0, 1, 1) for c in channels) + b"\0"
+    return (struct.pack("<II", 20000630, version)
+            + attribute(b"channels", b"chlist", channel_list)
+            + attribute(b"compression", b"compression", bytes([compression]))
+            + attribute(b"dataWindow", b"box2i", box)
+            + attribute(b"displayWindow", b"box2i", box)
+            + attribute(b"lineOrder", b"lineOrder", b"\0")
+            + attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1))
+            + attribute(b"screenWindowCenter", b"v2f", struct.pack("<2f", 0, 0))
+            + attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1))
+            + b"\0" + data)
+
+
+def png(width, height, data=b"", bits=8, colour=2):
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, bits, colour, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(data)) + chunk(b"IEND", b""))
+
+
+def jpeg(width, height):
+    return (b"\xff\xd8\xff\xe0\x00\x10JFIF\0\x01\x01\0\0\x01\0\x01\0\0"
+            + b"\xff\xc0\x00\x11\x08" + struct.pack(">HH", height, width) + b"\x03\x01\x22\0\x02\x11\1\x03\x11\1" + b"\xff\xd9")
+
+
+def ktx2(width, height, faces=6, levels=1, vk_format=97, supercompression=0, level=(80 + 24, 8, 8), extra=b""):
+    return (b"\xabKTX 20\xbb\r\n\x1a\n" + struct.pack("<9I", vk_format, 2, width, height, 0, 0, faces, levels, supercompression)
+            + struct.pack("<4I2Q", 0, 0, 0, 0, 0, 0) + struct.pack("<3Q", *level) + extra)
+
+
+def ktx1(width, height, faces=6, levels=1, key_values=0, image_size=0):
+    return (b"\xabKTX 11\xbb\r\n\x1a\n"
+            + struct.pack("<13I", 0x04030201, 0x140B, 2, 0x1908, 0x881A, 0x1908, width, height, 0, 0, faces, levels, key_values)
+            + struct.pack("<I", image_size))
+
+
+def dds(width, height, levels=1, dxgi=10, misc=4, array=1):
+    head = struct.pack("<4s7I44x", b"DDS ", 124, 0x2100F, height, width, 0, 0, levels)
+    pixel_format = struct.pack("<2I4s5I", 32, 4, b"DX10", 0, 0, 0, 0, 0)
+    return head + pixel_format + struct.pack("<5I", 0x401008, 0xFE00, 0, 0, 0) + struct.pack("<5I", dxgi, 3, misc, array, 0)
+
+
+def hostile_files():
+    """(name, bytes) of each."""
+    whole = radiance("-Y 4 +X 8", run_length_row(8) * 4)
+    files = {
+        "empty.hdr": b"", "empty.exr": b"", "empty.png": b"", "empty.jpg": b"", "empty.ktx2": b"",
+        "text.hdr": b"this is no image\n" * 10, "zeros.exr": bytes(4096), "noise.bin": bytes((i * 197 + 13) % 251 for i in range(5000)),
+
+        "hdr-0x0.hdr": radiance("-Y 0 +X 0"),
+        "hdr-0-wide.hdr": radiance("-Y 8 +X 0"),
+        "hdr-huge.hdr": radiance(f"-Y {HUGE} +X {HUGE}"),
+        "hdr-huge-2to1.hdr": radiance(f"-Y {HUGE} +X {2 * HUGE}"),
+        "hdr-huge-flat.hdr": radiance("-Y 1 +X 2000000000"),
+        "hdr-negative.hdr": radiance("-Y -8 +X 16"),
+        "hdr-overflow.hdr": radiance("-Y 4294967298 +X 4294967300"),
+        "hdr-overflow64.hdr": radiance("-Y 18446744073709551617 +X 18446744073709551618"),
+        "hdr-words.hdr": radiance("-Y eight +X sixteen"),
+        "hdr-no-resolution.hdr": b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n",
+        "hdr-no-end-of-header.hdr": b"#?RADIANCE\n" + b"COMMENT=x\n" * 3000,
+        "hdr-endless-line.hdr": b"#?RADIANCE\n" + b"x" * 3_000_000,
+        "hdr-no-data.hdr": radiance("-Y 4 +X 8"),
+        "hdr-cut.hdr": whole[:-7],
+        "hdr-cut-in-a-run.hdr": radiance("-Y 4 +X 8", run_length_row(8)[:5]),
+        "hdr-run-over-the-row.hdr": radiance("-Y 4 +X 8", b"\x02\x02\x00\x08" + b"\xff\x01" * 16),
+        "hdr-run-of-nothing.hdr": radiance("-Y 4 +X 8", b"\x02\x02\x00\x08" + b"\x00" * 64),
+        "hdr-other-width-in-row.hdr": radiance("-Y 4 +X 8", run_length_row(16) * 4),
+        "hdr-old-run-first.hdr": radiance("-Y 2 +X 4", b"\x01\x01\x01\xff" * 8),
+        "hdr-old-run-of-billions.hdr": radiance("-Y 2 +X 4", b"\x05\x05\x05\x80" + b"\x01\x01\x01\xff" * 5),
+        "hdr-format-unknown.hdr": radiance("-Y 4 +X 8", run_length_row(8) * 4, b"#?RADIANCE\nFORMAT=64-bit_float\n\n"),
+
+        "exr-magic-only.exr": struct.pack("<I", 20000630),
+        "exr-huge.exr": exr(2 * HUGE - 1, HUGE - 1),
+        "exr-huge-zip.exr": exr(HUGE - 1, HUGE - 1, compression=3),
+        "exr-huge-tall.exr": exr(0, 2_000_000_000),
+        "exr-window-inside-out.exr": exr(-5, -5),
+        "exr-window-overflow.exr": exr(2147483647, 2147483647, -2147483648, -2147483648),
+        "exr-no-data.exr": exr(15, 7),
+        "exr-offsets-beyond.exr": exr(15, 7, data=struct.pack("<8Q", *[1 << 40] * 8)),
+        "exr-offsets-zero.exr": exr(15, 7, data=bytes(64)),
+        "exr-no-colours.exr": exr(15, 7, channels=b"Q", data=bytes(64)),
+        "exr-version-255.exr": exr(15, 7, version=255),
+        "exr-cut-in-header.exr": exr(15, 7)[:60],
+        "exr-attribute-of-gigabytes.exr": struct.pack("<II", 20000630, 2) + b"channels\0chlist\0" + struct.pack("<i", 0x7FFFFFF0),
+
+        "png-0x0.png": png(0, 0),
+        "png-huge.png": png(2 * HUGE, HUGE, bits=16),
+        "png-bomb.png": png(30000, 15000, bytes(3_000_000)),
+        "png-no-data.png": png(16, 8),
+        "png-cut.png": png(16, 8, bytes((1 + 48) * 8))[:60],
+        "jpg-0x0.jpg": jpeg(0, 0),
+        "jpg-huge.jpg": jpeg(65500, 65500),
+        "jpg-no-data.jpg": jpeg(16, 8),
+
+        "ktx2-0x0.ktx2": ktx2(0, 0),
+        "ktx2-huge.ktx2": ktx2(HUGE, HUGE),
+        "ktx2-255-levels.ktx2": ktx2(8, 8, levels=255),
+        "ktx2-level-beyond.ktx2": ktx2(8, 8, level=(1 << 62, 1 << 62, 1 << 62)),
+        "ktx2-zstd-bomb.ktx2": ktx2(16384, 16384, supercompression=2, level=(104, 9, 1 << 40), extra=b"\x28\xb5\x2f\xfd" + bytes(5)),
+        "ktx2-cut.ktx2": ktx2(8, 8)[:50],
+        "ktx1-huge.ktx": ktx1(HUGE, HUGE),
+        "ktx1-key-values-beyond.ktx": ktx1(8, 8, key_values=0xFFFFFFFC),
+        "ktx1-image-size-beyond.ktx": ktx1(8, 8, image_size=0xFFFFFFF0),
+        "dds-0x0.dds": dds(0, 0),
+        "dds-huge.dds": dds(HUGE, HUGE),
+        "dds-levels.dds": dds(8, 8, levels=0xFFFFFFFF),
+        "dds-array.dds": dds(8, 8, array=0xFFFFFFFF),
+        "dds-cut.dds": dds(8, 8)[:100],
+    }
+    return sorted(files.items())
