@@ -43,6 +43,25 @@ inline void cross_plane(const Arc& arc, const Vec3d& normal, double distance, st
     solve_circle(arc, dot(normal, arc.e1), dot(normal, arc.e2), distance - dot(normal, arc.centre), out);
 }
 
+/// Appends the parameters strictly inside the arc at which dot(p, a) / dot(p, b) has a turning point (a great circle
+/// has none).
+inline void turning_points(const Arc& arc, const Vec3d& a, const Vec3d& b, std::vector<double>& out) {
+    // (p'.a)(p.b) - (p.a)(p'.b) is of first order in cos s and sin s.
+    const auto turn = [&](const Vec3d& p, const Vec3d& q) { return dot(q, a) * dot(p, b) - dot(p, a) * dot(q, b); };
+    solve_circle(arc, turn(arc.centre, arc.e2), -turn(arc.centre, arc.e1), -turn(arc.e1, arc.e2), out);
+}
+
+/// Gauss-Legendre rules on [-1, 1]: three nodes for short pieces, five for long ones.
+struct GaussRule {
+    int count;
+    double node[5], weight[5];
+};
+inline constexpr GaussRule k_gauss3{3, {-0.7745966692414834, 0, 0.7745966692414834}, {5.0 / 9, 8.0 / 9, 5.0 / 9}};
+inline constexpr GaussRule k_gauss5{
+    5,
+    {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640},
+    {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665, 0.2369268850561891}};
+
 /// The border of texel (x, y) of a cube face of size^2 texels as four great arcs, in the source's frame.
 std::vector<Arc> cube_texel_border(int face, int x, int y, int size, const Mat3& world_to_source);
 

@@ -24,13 +24,6 @@ Moments sine_moments(double a, double b) {
     return {zeroth, s * with_cos + c * with_sin};
 }
 
-constexpr double k_gauss5_node[5] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831,
-                                     0.9061798459386640};
-constexpr double k_gauss5_weight[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
-                                       0.2369268850561891};
-constexpr double k_gauss3_node[3] = {-0.7745966692414834, 0, 0.7745966692414834};
-constexpr double k_gauss3_weight[3] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
-
 }  // namespace
 
 LatlongIntegrator::LatlongIntegrator(ImageView<const float> image)
@@ -108,7 +101,7 @@ void LatlongIntegrator::cuts(const Arc& arc, std::vector<double>& out) const {
     // Columns: phi is monotone between the places where x dz - z dx = 0 (a great circle has none).
     places.assign({arc.s0, arc.s1});
     const auto turn = [](const Vec3d& a, const Vec3d& b) { return a.x * b.z - a.z * b.x; };
-    solve_circle(arc, turn(arc.centre, arc.e2), -turn(arc.centre, arc.e1), -turn(arc.e1, arc.e2), places);
+    turning_points(arc, {0, 0, 1}, {1, 0, 0}, places);
     std::sort(places.begin(), places.end());
     for (std::size_t k = 0; k + 1 < places.size(); ++k) {
         // A hair inside, in case the end is a pole.
@@ -141,15 +134,14 @@ void LatlongIntegrator::add_piece(const Arc& arc, double a, double b, Cell cell,
         add_piece(arc, middle, b, cell, reference, sum);
         return;
     }
-    const bool small = size < 0.02 * near;
-    const int nodes = small ? 3 : 5;
+    const GaussRule& rule = size < 0.02 * near ? k_gauss3 : k_gauss5;
     const double column_phi = (cell.column + 0.5) * column_angle_ - k_pi;
-    for (int k = 0; k < nodes; ++k) {
-        const double s = middle + half * (small ? k_gauss3_node[k] : k_gauss5_node[k]);
+    for (int k = 0; k < rule.count; ++k) {
+        const double s = middle + half * rule.node[k];
         const Vec3d p = arc.at(s), d = arc.derivative(s);
         const double rho2 = p.x * p.x + p.z * p.z;
         if (!(rho2 > 0)) continue;  // F is 0 at a pole
-        const double dphi = half * (small ? k_gauss3_weight[k] : k_gauss5_weight[k]) * (p.x * d.z - p.z * d.x) / rho2;
+        const double dphi = half * rule.weight[k] * (p.x * d.z - p.z * d.x) / rho2;
         const double u = std::remainder(std::atan2(p.z, p.x) - column_phi, 2 * k_pi) / column_angle_;
         const Flux f = meridian(std::atan2(std::sqrt(rho2), p.y), std::clamp(u, 0.0, 1.0), cell, reference);
         sum.add(dphi, f.light);
