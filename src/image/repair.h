@@ -17,9 +17,9 @@ inline constexpr float k_largest_radiance = 0x1p100f;
 /// How to turn stored texels into radiance: finite, in [0, k_largest_radiance], linear Rec. 709.
 struct RepairOptions {
     float largest = k_largest_radiance;  ///< the format's largest finite value: what infinity becomes, before `scale`
-    std::optional<Mat3> to_rec709;       ///< the file's primaries to Rec. 709
-    float scale = 1;                     ///< exposure
-    bool wraps = true;                   ///< the row's ends are neighbours (lat-long)
+    std::optional<Mat3> to_rec709 = std::nullopt;  ///< the file's primaries to Rec. 709
+    float scale = 1;                               ///< exposure
+    bool wraps = true;                             ///< the row's ends are neighbours (lat-long)
 };
 
 /// Mends one row of RGB texels in place and counts in `report`. In this order: a texel with a NaN becomes the mean of

@@ -1,5 +1,6 @@
 #include "domelight/environment.h"
 
+#include "io/cube_input.h"
 #include "io/image_reader.h"
 #include "io/radiance_reader.h"
 #include "projection/latlong_convention.h"
@@ -73,42 +74,135 @@ bool has_latlong_shape(int width, int height) {
     return std::abs(std::int64_t(width) - 2 * std::int64_t(height)) <= 1;
 }
 
-Error shape_error(const ImageFacts& facts) {
-    return {
-        fmt::format("image is {} x {}, but a lat-long map must be twice as wide as high", facts.width, facts.height),
-        "", "If this is a cube cross, pass --projection cube-cross."};
+/// The layout to read a picture in, or none for lat-long. `projection` is one of the accepted names.
+Result<std::optional<CubeLayout>> choose_layout(const ImageFacts& facts, const std::string& projection) {
+    const std::string is = fmt::format("image is {} x {}", facts.width, facts.height);
+    std::optional<CubeLayout> layout = cube_layout_of_shape(facts.width, facts.height);
+    const bool strip = layout == CubeLayout::horizontal_strip || layout == CubeLayout::vertical_strip;
+    if (layout == CubeLayout::vertical_strip && facts.envmap == ImageFacts::Envmap::cube)
+        layout = CubeLayout::openexr_strip;
+    if (projection == "cube-cross" && (!layout || strip))
+        return Error{is + ", but a cube cross must be 4:3 (horizontal) or 3:4 (vertical)", "", ""};
+    if (projection == "cube-strip" && !strip)
+        return Error{is + ", but a strip of cube faces must be 6:1 or 1:6", "", ""};
+    if (projection == "cube-faces") return Error{"six files are needed for the faces of a cube", "", ""};
+    if (projection == "latlong" || (projection == "auto" && !layout)) {
+        if (!has_latlong_shape(facts.width, facts.height))
+            return Error{is + ", but a lat-long map must be twice as wide as high", "",
+                         facts.width == facts.height ? "If this is one face of a cube, give all six."
+                                                     : "If this is a cube cross, pass --projection cube-cross."};
+        return std::optional<CubeLayout>();
+    }
+    return layout;
 }
 
-Result<Environment> open_latlong(Environment environment, std::unique_ptr<ImageReader> image, const Request& request) {
-    const ImageFacts& facts = image->facts();
-    if (!has_latlong_shape(facts.width, facts.height)) return shape_error(facts);
-    std::string name = request.options.latlong;
-    if (name.empty()) name = facts.envmap == ImageFacts::Envmap::latlong ? "openexr" : "default";
-    const Result<LatlongConvention> convention = latlong_convention(name);
-    if (!convention) return convention.error();
-    environment.projection = "latlong";
-    environment.world_to_source = convention->world_to_default() * request.turn;
-    environment.latlong =
-        regrid_latlong(std::make_unique<RadianceReader>(environment.file, std::move(image), request.scale, true,
-                                                        request.options.threads, environment.report),
-                       convention->grid);
-    return environment;
-}
-
-Result<Environment> open_image(const std::filesystem::path& file, const Request& request) {
-    const EnvironmentOptions& options = request.options;
-    auto bytes = FileBytes::open(file, options.max_bytes);
-    if (!bytes) return bytes.error();
-    auto image = open_image_reader(std::move(*bytes), {options.decode, options.max_bytes, options.threads});
-    if (!image) return image.error();
-    const ImageFacts& facts = (*image)->facts();
+/// What concerns the file as a whole.
+Environment begin_environment(const std::filesystem::path& file, const ImageFacts& facts) {
     Environment environment;
     environment.file = file;
     environment.format = facts.format;
     environment.width = facts.width;
     environment.height = facts.height;
     environment.report = std::make_shared<RepairReport>();
-    return open_latlong(std::move(environment), std::move(*image), request);
+    return environment;
+}
+
+Result<std::unique_ptr<ImageReader>> open_file(const std::filesystem::path& file, const EnvironmentOptions& options) {
+    auto bytes = FileBytes::open(file, options.max_bytes);
+    if (!bytes) return bytes.error();
+    auto image = open_image_reader(std::move(*bytes), {options.decode, options.max_bytes, options.threads});
+    if (!image) return image.error().at(file.string());
+    return image;
+}
+
+std::unique_ptr<RowSource> radiance_of(const Environment& environment, const std::filesystem::path& file,
+                                       std::unique_ptr<ImageReader> image, const Request& request, bool wraps) {
+    return std::make_unique<RadianceReader>(file, std::move(image), request.scale, wraps, request.options.threads,
+                                            environment.report);
+}
+
+Result<Environment> open_latlong(Environment environment, std::unique_ptr<ImageReader> image, const Request& request) {
+    std::string name = request.options.latlong;
+    if (name.empty()) name = image->facts().envmap == ImageFacts::Envmap::latlong ? "openexr" : "default";
+    const Result<LatlongConvention> convention = latlong_convention(name);
+    if (!convention) return convention.error();
+    environment.projection = "latlong";
+    environment.world_to_source = convention->world_to_default() * request.turn;
+    environment.latlong =
+        regrid_latlong(radiance_of(environment, environment.file, std::move(image), request, true), convention->grid);
+    return environment;
+}
+
+Result<void> check_cube_memory(std::int64_t size, std::int64_t max_bytes) {
+    const std::int64_t bytes = 6 * size * size * 3 * std::int64_t(sizeof(float));
+    if (bytes <= max_bytes) return {};
+    return Error{
+        fmt::format("a cube of {} x {} faces needs {} bytes, more than the limit of {}", size, size, bytes, max_bytes),
+        "", ""};
+}
+
+/// A cube has no lat-long convention, only the turn.
+Environment finish_cube(Environment environment, Cubemap cube, const Request& request) {
+    if (!request.options.latlong.empty())
+        environment.report->warnings.push_back("a lat-long convention means nothing for a cube: ignored");
+    environment.projection = "cube";
+    environment.world_to_source = request.turn;
+    environment.cube = std::move(cube);
+    return environment;
+}
+
+Result<Environment> open_picture(const std::filesystem::path& file, const Request& request) {
+    auto image = open_file(file, request.options);
+    if (!image) return image.error();
+    const ImageFacts& facts = (*image)->facts();
+    const auto layout = choose_layout(facts, request.options.projection);
+    if (!layout) return layout.error();
+    Environment environment = begin_environment(file, facts);
+    if (!*layout) return open_latlong(std::move(environment), std::move(*image), request);
+
+    const bool strip = **layout != CubeLayout::horizontal_cross && **layout != CubeLayout::vertical_cross;
+    const int size = strip ? std::min(facts.width, facts.height) : std::max(facts.width, facts.height) / 4;
+    if (const auto fits = check_cube_memory(size, request.options.max_bytes); !fits) return fits.error();
+    const auto rows = radiance_of(environment, file, std::move(*image), request, false);
+    Result<Cubemap> cube = read_cube_picture(*rows, **layout);
+    if (!cube) return cube.error();
+    return finish_cube(std::move(environment), std::move(*cube), request);
+}
+
+Result<Environment> open_faces(const std::vector<std::filesystem::path>& files, const Request& request) {
+    if (const std::string& projection = request.options.projection; projection != "auto" && projection != "cube-faces")
+        return Error{"six files are the faces of a cube, not " + projection, "--projection", ""};
+    const auto faces = cube_faces_by_name(files);
+    if (!faces) return faces.error();
+    Environment environment;
+    Cubemap cube;
+    for (int f = 0; f < 6; ++f) {
+        const std::filesystem::path& file = (*faces)[std::size_t(f)];
+        auto image = open_file(file, request.options);
+        if (!image) return image.error();
+        const ImageFacts& facts = (*image)->facts();
+        if (facts.width != facts.height)
+            return Error{
+                fmt::format("image is {} x {}, but a face of a cube must be square", facts.width, facts.height),
+                file.string(), ""};
+        if (f == 0) {
+            if (const auto fits = check_cube_memory(facts.width, request.options.max_bytes); !fits) return fits.error();
+            environment = begin_environment(file, facts);
+            cube = Cubemap(facts.width);
+        } else if (facts.width != cube.size()) {
+            return Error{fmt::format("image is {} x {}, but {} is {} x {}", facts.width, facts.height,
+                                     (*faces)[0].filename().string(), cube.size(), cube.size()),
+                         file.string(), "The faces of a cube must have one size."};
+        }
+        if (const auto read = radiance_of(environment, file, std::move(*image), request, false)->read(cube.face(f));
+            !read)
+            return read.error();
+    }
+    // Six files of a kind say the same things.
+    std::vector<std::string>& warnings = environment.report->warnings;
+    std::sort(warnings.begin(), warnings.end());
+    warnings.erase(std::unique(warnings.begin(), warnings.end()), warnings.end());
+    return finish_cube(std::move(environment), std::move(cube), request);
 }
 
 }  // namespace
@@ -117,8 +211,18 @@ Result<Environment> open_environment(const std::vector<std::filesystem::path>& f
                                      const EnvironmentOptions& options) {
     const Result<Request> request = check_options(options);
     if (!request) return request.error();
-    if (files.size() != 1) return Error{"an environment is one image or the six faces of a cube", "", ""};
-    Result<Environment> environment = open_image(files[0], *request);
+    if (files.size() == 6) return open_faces(files, *request);
+    if (files.size() != 1)
+        return Error{fmt::format("{} files: an environment is one image or the six faces of a cube", files.size()), "",
+                     ""};
+    if (std::error_code ignored; std::filesystem::is_directory(files[0], ignored)) {
+        const auto faces = cube_faces_in_folder(files[0]);
+        if (faces.size() != 6)
+            return Error{fmt::format("is a folder with {} files named as faces of a cube, not 6", faces.size()),
+                         files[0].string(), ""};
+        return open_faces(faces, *request);
+    }
+    Result<Environment> environment = open_picture(files[0], *request);
     if (!environment) return environment.error().at(files[0].string());
     return environment;
 }

@@ -65,6 +65,8 @@ void apply_primaries(HdrHeader& header, const std::vector<double>& n) {
         header.warnings.push_back("the PRIMARIES line does not hold 8 numbers: ignored");
         return;
     }
+    // Common tools write eight zeros where they know nothing.
+    if (std::all_of(n.begin(), n.end(), [](double v) { return v == 0; })) return;
     header.primaries = ColourPrimaries{{n[0], n[1]}, {n[2], n[3]}, {n[4], n[5]}, {n[6], n[7]}};
 }
 

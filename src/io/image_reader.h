@@ -26,7 +26,7 @@ struct ImageFacts {
     int width = 0, height = 0;
     float largest = 0;  ///< the largest finite value the format can hold: what infinity becomes
     Envmap envmap = Envmap::none;
-    std::optional<Mat3> to_rec709;  ///< the file's primaries to linear Rec. 709, where they differ
+    std::optional<Mat3> to_rec709 = std::nullopt;  ///< the file's primaries to linear Rec. 709, where they differ
     std::vector<std::string> warnings;
 };
 
