@@ -7,7 +7,7 @@
 
 namespace domelight {
 
-/// Sizes of the built-in font: 13 px, and 21 px bold.
+/// Sizes of the built-in font: 15 px, and 24 px bold.
 enum class FontSize { small, large };
 
 /// The glyph of a code point; a question mark's where the font has none.

@@ -1,0 +1,374 @@
+#include "domelight/parallel.h"
+#include "domelight/preview.h"
+#include "domelight/projection.h"
+
+#include "image/draw.h"
+#include "preview/preview_map.h"
+#include "preview/preview_sh.h"
+#include "preview/tonemap.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+
+namespace domelight {
+namespace {
+
+constexpr Colour8 k_background{24, 25, 28}, k_bright{232, 234, 238}, k_text{205, 208, 214}, k_quiet{139, 144, 153},
+    k_edge{52, 54, 60};
+constexpr int k_margin = 32, k_gap = 16, k_line = 20;  // pixels; k_line: from one line of small text to the next
+constexpr double k_key = 0.18;
+
+/// A picture on the sheet, drawn row by row (`row` counts from the top of `where`), so that threads can share it.
+struct Panel {
+    Rect where;
+    std::function<void(ImageView<std::uint8_t>, int row)> draw;
+};
+
+struct Text {
+    int x, baseline;
+    std::string text;
+    FontSize size;
+    Colour8 colour;
+    Align align = Align::left;
+};
+
+/// How pixels get their colour.
+struct Look {
+    float exposure = 1;
+    Vec3f linear(const Vec3f& radiance) const { return tonemap(radiance * exposure, Tonemap::neutral); }
+    void put(std::uint8_t* pixel, const Vec3f& radiance) const {
+        const auto c = display_rgb8(radiance, exposure, Tonemap::neutral);
+        std::copy(c.begin(), c.end(), pixel);
+    }
+};
+
+std::string number(double v) {
+    return fmt::format("{:.3g}", v);
+}
+
+/// Lays the sheet out from the top down, collecting panels and texts, and draws them at the end.
+class Sheet {
+  public:
+    explicit Sheet(const PreviewInput& input);
+    Image<std::uint8_t> draw() const;
+
+  private:
+    void header();
+    void environment_row();
+    void level_grid();
+    void footer();
+
+    // Each draws a picture with its top left corner at (x, y).
+    void latlong_panel(int x, int y, int width, const PreviewMap& map);
+    void cross_panel(int x, int y, int width, const PreviewMap& map);
+    void ball_panel(int x, int y, int size, const PreviewMap& map, bool chrome, int samples);
+    void brdf_panel(int x, int y, int size);
+    void axis_names(int x, int y, int width);
+    void text(int x, int baseline, std::string s, Colour8 colour = k_text, Align align = Align::left,
+              FontSize size = FontSize::small) {
+        texts_.push_back({x, baseline, std::move(s), size, colour, align});
+    }
+    /// Two lines below a picture: what it is, and of what kind.
+    void caption(int x, int y, int width, const std::string& name, const std::string& detail);
+    double sh_difference() const;
+
+    const PreviewInput& in_;
+    int width_, y_ = 0;
+    double log_average_ = 0;
+    Look look_;
+    PreviewMap environment_, irradiance_, sh_;
+    std::vector<PreviewMap> levels_;
+    std::vector<Panel> panels_;
+    std::vector<Text> texts_;
+};
+
+int map_size(const FilteredMap& map) {
+    return map.cube.empty() ? map.latlong.height() : map.cube.size();
+}
+
+std::string size_text(const FilteredMap& map) {
+    return map.cube.empty() ? fmt::format("{} × {}", map.latlong.width(), map.latlong.height())
+                            : fmt::format("{}²", map.cube.size());
+}
+
+Sheet::Sheet(const PreviewInput& input) : in_(input), width_(std::max(input.width, 800)) {
+    levels_.resize(in_.specular.size());
+    const int s = (width_ - 2 * k_margin - 60) / 5;
+    // What the panels look up, made small first; each on its own.
+    parallel_for(int(levels_.size()) + 3, in_.threads, [&](int i) {
+        if (i == 0) {
+            if (in_.environment.data) environment_ = PreviewMap(in_.environment, (3 * s + 20) / 4, in_.world_to_source);
+        } else if (i == 1) {
+            if (in_.irradiance_over_pi) irradiance_ = PreviewMap(*in_.irradiance_over_pi, 64);
+        } else if (i == 2) {
+            if (in_.sh.empty()) return;
+            const int rows = in_.sh.size() > 25 ? 96 : 48;
+            FilteredMap picture;
+            picture.latlong = ImageF(2 * rows, rows, 3);
+            const auto values = sh_irradiance_picture(in_.sh, rows);
+            for (std::size_t k = 0; k < values.size(); ++k) {
+                const double v[3] = {values[k].x, values[k].y, values[k].z};
+                std::copy(v, v + 3, picture.latlong.pixels().begin() + std::ptrdiff_t(3 * k));
+            }
+            sh_ = PreviewMap(picture, 128);
+        } else {
+            levels_[i - 3] = PreviewMap(*in_.specular[i - 3].map, 128);
+        }
+    });
+    // The exposure: from the source, else from its mirror-sharp level.
+    if (in_.environment.data) {
+        log_average_ = log_average_luminance(in_.environment);
+    } else if (!levels_.empty()) {
+        ImageF picture(256, 128, 3);
+        for (int y = 0; y < 128; ++y)
+            for (int x = 0; x < 256; ++x) {
+                const Vec3f v = levels_[0].sample(Vec3f(latlong_direction({(x + 0.5) / 256, (y + 0.5) / 128})));
+                const float rgb[3] = {v.x, v.y, v.z};
+                std::copy(rgb, rgb + 3, picture.at(x, y));
+            }
+        log_average_ = log_average_luminance(picture.view());
+    }
+    const double automatic = log_average_ > 0 ? std::log2(k_key / log_average_) : 0;
+    look_.exposure = float(std::exp2(std::clamp(in_.exposure_ev.value_or(automatic), -60.0, 60.0)));
+    header();
+    environment_row();
+    level_grid();
+    footer();
+}
+
+void Sheet::header() {
+    const int right = width_ - k_margin;
+    y_ = k_margin;
+    const std::string exposure = fmt::format("exposure {:+.2f} EV", std::log2(look_.exposure));
+    const std::string reason = in_.exposure_ev ? std::string("as asked for")
+                               : log_average_ > 0
+                                   ? fmt::format("log-average luminance {} to {}", number(log_average_), k_key)
+                                   : std::string("black environment");
+    text(right, y_ + 20, exposure + " (" + reason + ")", k_text, Align::right);
+    text(right, y_ + 46, "tone map Khronos PBR Neutral, sRGB", k_quiet, Align::right);
+    const int room =
+        width_ - 2 * k_margin - k_gap - std::max(text_width(exposure + " (" + reason + ")", FontSize::small), 280);
+    text(k_margin, y_ + 20, fit_text(in_.title.empty() ? "environment" : in_.title, FontSize::large, room), k_bright,
+         Align::left, FontSize::large);
+    text(k_margin, y_ + 46, fit_text(in_.subtitle, FontSize::small, room), k_quiet);
+    y_ += 68;
+}
+
+void Sheet::caption(int x, int y, int width, const std::string& name, const std::string& detail) {
+    text(x, y + 18, fit_text(name, FontSize::small, width), k_text);
+    text(x, y + 18 + k_line, fit_text(detail, FontSize::small, width), k_quiet);
+}
+
+/// RMS over the sphere of the harmonics' difference from the exact irradiance, over the irradiance's RMS.
+double Sheet::sh_difference() const {
+    double error = 0, truth = 0;
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 96; ++x) {
+            const UV uv{(x + 0.5) / 96, (y + 0.5) / 48};
+            const Vec3f d(latlong_direction(uv)), a = irradiance_.sample(d), b = sh_.sample(d);
+            const double w = std::sin(uv.v * k_pi);
+            error += w * dot(a - b, a - b);
+            truth += w * dot(a, a);
+        }
+    return truth > 0 ? std::sqrt(error / truth) : 0;
+}
+
+// Widths follow from: environment 3 s + 20 by half of that, then two columns of balls of size s above lat-longs of half
+// the height.
+void Sheet::environment_row() {
+    const int s = (width_ - 2 * k_margin - 60) / 5, width = (3 * s + 20) / 4 * 4, height = width / 2;
+    const PreviewMap& sky = !environment_.empty() || levels_.empty() ? environment_ : levels_[0];
+    if (!sky.empty()) {
+        latlong_panel(k_margin, y_, width, sky);
+        axis_names(k_margin, y_, width);
+        caption(k_margin, y_ + height, width,
+                environment_.empty() ? "environment, from the first level" : "environment",
+                "lat-long, +X at the centre, +Z to its right");
+    }
+    int x = width_ - k_margin - 2 * s - k_gap;
+    if (!irradiance_.empty()) {
+        ball_panel(x, y_, s, irradiance_, false, 1);
+        latlong_panel(x, y_ + s + 10, s, irradiance_);
+        caption(x, y_ + height, s, "irradiance / π", size_text(*in_.irradiance_over_pi));
+    }
+    x += s + k_gap;
+    if (!sh_.empty()) {
+        ball_panel(x, y_, s, sh_, false, 1);
+        latlong_panel(x, y_ + s + 10, s, sh_);
+        const int bands = int(std::lround(std::sqrt(double(in_.sh.size()))));
+        caption(x, y_ + height, s, fmt::format("irradiance / π of {} harmonics ({} bands)", in_.sh.size(), bands),
+                irradiance_.empty() ? "" : fmt::format("differs by {:.2f} % RMS", 100 * sh_difference()));
+    }
+    y_ += height + 2 * k_line + 34;
+}
+
+void Sheet::level_grid() {
+    const bool table = in_.brdf.data != nullptr;
+    const int cells = int(levels_.size()) + table;
+    if (cells == 0) return;
+    const int rows = (cells + 7) / 8, columns = (cells + rows - 1) / rows;
+    const int content = width_ - 2 * k_margin, cell = std::min((content - (columns - 1) * k_gap) / columns, 300);
+    const bool cube = levels_.empty() || levels_[0].is_cube();
+    const int unfolded = cube ? cell * 3 / 4 : cell / 2, height = cell + 10 + unfolded + 3 * k_line + 8;
+    for (int i = 0; i < cells; ++i) {
+        const int x = k_margin + i % columns * (cell + k_gap), y = y_ + i / columns * (height + 24);
+        if (i == int(levels_.size())) {
+            brdf_panel(x, y, cell);
+            const int below = y + cell + 10;
+            text(x, below + 14,
+                 fit_text(fmt::format("BRDF table, {} × {}", in_.brdf.width, in_.brdf.height), FontSize::small, cell));
+            text(x, below + 14 + k_line, fit_text("right: N·V 0 to 1", FontSize::small, cell), k_quiet);
+            text(x, below + 14 + 2 * k_line, fit_text("down: roughness 0 to 1", FontSize::small, cell), k_quiet);
+            text(x, below + 14 + 3 * k_line, fit_text("red: scale, green: bias", FontSize::small, cell), k_quiet);
+            continue;
+        }
+        const PreviewLevel& level = in_.specular[i];
+        ball_panel(x, y, cell, levels_[i], true, map_size(*level.map) > 64 ? 2 : 1);
+        if (levels_[i].is_cube())
+            cross_panel(x, y + cell + 10, cell, levels_[i]);
+        else
+            latlong_panel(x, y + cell + 10, cell / 2 * 2, levels_[i]);
+        const int below = y + cell + 10 + unfolded;
+        text(x, below + 20, fit_text(fmt::format("level {} · {}", i, size_text(*level.map)), FontSize::small, cell));
+        if (level.detail.empty()) {
+            text(x, below + 20 + k_line, "roughness " + number(level.roughness), k_quiet);
+            text(x, below + 20 + 2 * k_line, "α " + number(level.alpha), k_quiet);
+        } else {
+            text(x, below + 20 + k_line, fit_text(level.detail, FontSize::small, cell), k_quiet);
+        }
+    }
+    y_ += rows * (height + 24);
+}
+
+void Sheet::footer() {
+    y_ += 2;
+    text(k_margin, y_ + 14,
+         fit_text("Balls are seen along −Z with +X to the right and +Y up: a chrome ball has +Z at its middle and −Z "
+                  "around its rim.",
+                  FontSize::small, width_ - 2 * k_margin - 120),
+         k_quiet);
+    text(width_ - k_margin, y_ + 14, "domelight", k_quiet, Align::right);
+    y_ += 14 + k_margin - 4;
+}
+
+void Sheet::latlong_panel(int x, int y, int width, const PreviewMap& map) {
+    const int height = width / 2;
+    panels_.push_back(
+        {{x, y, width, height}, [this, x, y, width, height, &map](ImageView<std::uint8_t> image, int row) {
+             for (int i = 0; i < width; ++i)
+                 look_.put(image.at(x + i, y + row),
+                           map.sample_latlong(float((i + 0.5) / width), float((row + 0.5) / height)));
+         }});
+}
+
+/// A horizontal cross: +Y above and -Y below +Z, with -X, +Z, +X, -Z in a row, so that edges which touch belong
+/// together.
+void Sheet::cross_panel(int x, int y, int width, const PreviewMap& map) {
+    const int n = width / 4;
+    panels_.push_back(
+        {{x, y, 4 * n, 3 * n}, [this, x, y, n, &map](ImageView<std::uint8_t> image, int row) {
+             static constexpr int faces[3][4] = {{-1, 2, -1, -1}, {1, 4, 0, 5}, {-1, 3, -1, -1}};
+             for (int column = 0; column < 4; ++column) {
+                 const int face = faces[row / n][column];
+                 if (face < 0) continue;
+                 for (int i = 0; i < n; ++i)
+                     look_.put(image.at(x + column * n + i, y + row),
+                               map.sample_face(face, (float(i) + 0.5f) / float(n), (float(row % n) + 0.5f) / float(n)));
+             }
+         }});
+}
+
+/// A ball of diameter `size` under an orthographic view along -Z. `chrome`: looked up in the mirror direction of the
+/// view, else by the normal.
+void Sheet::ball_panel(int x, int y, int size, const PreviewMap& map, bool chrome, int samples) {
+    panels_.push_back(
+        {{x, y, size, size}, [this, x, y, size, chrome, samples, &map](ImageView<std::uint8_t> image, int row) {
+             const float radius = 0.5f * float(size) - 0.5f, centre = 0.5f * float(size);
+             for (int i = 0; i < size; ++i) {
+                 const float distance = std::hypot(float(i) + 0.5f - centre, float(row) + 0.5f - centre);
+                 const float opacity = std::clamp(radius - distance + 0.5f, 0.0f, 1.0f);
+                 if (opacity == 0) continue;
+                 Vec3f sum;  // of display values: a sun's edge stays smooth
+                 for (int k = 0; k < samples * samples; ++k) {
+                     const float dx = (float(k % samples) + 0.5f) / float(samples),
+                                 dy = (float(k / samples) + 0.5f) / float(samples);
+                     Vec3f n{(float(i) + dx - centre) / radius, (centre - float(row) - dy) / radius, 0};
+                     const float r2 = n.x * n.x + n.y * n.y;
+                     if (r2 > 0.9999f) n = n * (0.99995f / std::sqrt(r2));
+                     n.z = std::sqrt(std::max(0.0f, 1 - n.x * n.x - n.y * n.y));
+                     // Towards the viewer is +Z: r = 2 (n.z) n - z.
+                     const Vec3f d = chrome ? Vec3f{2 * n.z * n.x, 2 * n.z * n.y, 2 * n.z * n.z - 1} : n;
+                     sum = sum + look_.linear(map.sample(d));
+                 }
+                 sum = sum / float(samples * samples);
+                 blend(image, x + i, y + row, {srgb8(sum.x), srgb8(sum.y), srgb8(sum.z)}, opacity);
+             }
+         }});
+}
+
+void Sheet::brdf_panel(int x, int y, int size) {
+    panels_.push_back({{x, y, size, size}, [this, x, y, size](ImageView<std::uint8_t> image, int row) {
+                           const auto& t = in_.brdf;
+                           const auto place = [size](int i, int n) {
+                               return std::clamp((float(i) + 0.5f) / float(size) * float(n) - 0.5f, 0.0f, float(n - 1));
+                           };
+                           const float fy = place(row, t.height);
+                           const int j = std::min(int(fy), std::max(t.height - 2, 0)),
+                                     j1 = std::min(j + 1, t.height - 1);
+                           for (int i = 0; i < size; ++i) {
+                               const float fx = place(i, t.width);
+                               const int k = std::min(int(fx), std::max(t.width - 2, 0)),
+                                         k1 = std::min(k + 1, t.width - 1);
+                               const auto value = [&](int c) {
+                                   if (c >= t.channels) return 0.0f;
+                                   const float a = t.at(k, j)[c] * (1 - (fx - k)) + t.at(k1, j)[c] * (fx - k);
+                                   const float b = t.at(k, j1)[c] * (1 - (fx - k)) + t.at(k1, j1)[c] * (fx - k);
+                                   return a * (1 - (fy - j)) + b * (fy - j);
+                               };
+                               std::uint8_t* p = image.at(x + i, y + row);
+                               p[0] = srgb8(value(0));
+                               p[1] = srgb8(value(1));
+                               p[2] = 0;
+                           }
+                       }});
+}
+
+/// The names of the four directions around the horizon, along the bottom of a lat-long picture.
+void Sheet::axis_names(int x, int y, int width) {
+    static constexpr const char* names[] = {"−Z", "+X", "+Z"};
+    for (int i = 0; i < 3; ++i) {
+        const int at = x + width * (i + 1) / 4, baseline = y + width / 2 - 8;
+        text(at + 1, baseline + 1, names[i], {0, 0, 0}, Align::centre);
+        text(at, baseline, names[i], {255, 255, 255}, Align::centre);
+    }
+}
+
+Image<std::uint8_t> Sheet::draw() const {
+    Image<std::uint8_t> image(width_, y_, 3);
+    fill(image.view(), {0, 0, width_, y_}, k_background);
+    struct Stripe {
+        const Panel* panel;
+        int first, last;
+    };
+    std::vector<Stripe> stripes;
+    for (const Panel& panel : panels_)
+        for (int row = 0; row < panel.where.height; row += 32)
+            stripes.push_back({&panel, row, std::min(row + 32, panel.where.height)});
+    parallel_for(int(stripes.size()), in_.threads, [&](int i) {
+        for (int row = stripes[i].first; row < stripes[i].last; ++row) stripes[i].panel->draw(image.view(), row);
+    });
+    for (const Text& t : texts_) draw_text(image.view(), t.x, t.baseline, t.text, t.size, t.colour, t.align);
+    return image;
+}
+
+}  // namespace
+
+Image<std::uint8_t> contact_sheet(const PreviewInput& input) {
+    return Sheet(input).draw();
+}
+
+}  // namespace domelight

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "domelight/image.h"
+#include "domelight/vec.h"
+
+#include <array>
+#include <cstdint>
+
+namespace domelight {
+
+/// How radiance becomes a colour that a display can show.
+enum class Tonemap {
+    none,     ///< clipped
+    neutral,  ///< Khronos PBR Neutral (2024): colours below 0.8 as they are, highlights rolled off without a change of
+              ///< hue
+    agx,      ///< AgX (Sobotka 2022), by Wrensch's polynomial: a film's contrast, bright colours towards white
+};
+
+/// Tone maps linear Rec. 709 (already exposed); the result is display-linear Rec. 709 in 0..1. NaN gives 0.
+Vec3f tonemap(const Vec3f& rgb, Tonemap method);
+
+/// The sRGB transfer function (IEC 61966-2-1), 0..1 to 0..255; the nearest of 256.
+std::uint8_t srgb8(float linear);
+
+/// Tone map and transfer function in one, by table where that is exact to a 255th.
+std::array<std::uint8_t, 3> display_rgb8(const Vec3f& radiance, float exposure, Tonemap method);
+
+inline float luminance(const Vec3f& v) {
+    return 0.2126f * v.x + 0.7152f * v.y + 0.0722f * v.z;
+}
+
+/// Log-average luminance of a lat-long image (3 channels) over solid angle (Reinhard et al. 2002, eq. 1), each
+/// luminance counted as no less than a thousandth of the mean so that black surroundings do not decide. 0 for a black
+/// image. At most about 512 x 256 of the texels are read.
+double log_average_luminance(ImageView<const float> latlong);
+
+}  // namespace domelight
