@@ -13,15 +13,25 @@ constexpr int k_least_degrees = 256;
 }  // namespace
 
 int required_band_limit(const ZonalKernel& kernel) {
-    if (kernel.lobe == Lobe::ggx) {
-        // The spectrum falls as b l K_1(b l): at 16 / b to 1e-6 of the peak. At wide lobes the clamp at the horizon leaves a tail, alpha^2 l^-2.5.
-        const double alpha = kernel.width, b = alpha < 1 ? 2 * alpha / std::sqrt(1 - alpha * alpha) : 1e9;
-        const int decay = int(std::ceil(16 / b)) + 2;
-        return std::clamp(decay, alpha > 0.2 ? k_least_degrees : 64, k_most_degrees);
+    switch (kernel.lobe) {
+        case Lobe::ggx: {
+            // The spectrum falls as b l K_1(b l). The clamp at the horizon adds a tail, alpha^2 l^-2.5.
+            const double alpha = kernel.width, b = alpha < 1 ? 2 * alpha / std::sqrt(1 - alpha * alpha) : 1e9;
+            return std::clamp(int(std::ceil(17 / b)), alpha > 0.05 ? k_least_degrees : 64, k_most_degrees);
+        }
+        case Lobe::charlie: return 2 * k_least_degrees;
+        default:
+            // cos^n ~ e^{-n theta^2 / 2}: the spectrum is e^{-l^2 / 2n}.
+            return std::clamp(int(std::ceil(6 * std::sqrt(kernel.width + 1))), k_least_degrees, k_most_degrees);
     }
-    if (kernel.lobe == Lobe::charlie) return 700;
-    // cos^n ~ e^{-n theta^2 / 2}: the spectrum is e^{-l^2 / 2n}.
-    return std::clamp(int(std::ceil(6 * std::sqrt(kernel.width + 1))), k_least_degrees, k_most_degrees);
+}
+
+bool leaves_residual(const ZonalKernel& kernel) {
+    switch (kernel.lobe) {
+        case Lobe::ggx: return kernel.width > 0.1;
+        case Lobe::charlie: return true;
+        default: return kernel.width < 4;
+    }
 }
 
 FilterPlan make_filter_plan(const FilterOptions& options) {

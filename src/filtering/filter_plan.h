@@ -26,4 +26,7 @@ FilterPlan make_filter_plan(const FilterOptions& options);
 /// Degrees that a lobe needs for the accuracy that docs/math/prefilter.md states.
 int required_band_limit(const ZonalKernel& kernel);
 
+/// Whether the clamp at the horizon leaves a tail that a strong sun shows: what is left out is then summed over the brightest texels.
+bool leaves_residual(const ZonalKernel& kernel);
+
 }  // namespace domelight

@@ -4,7 +4,9 @@
 #include <memory>
 
 #include "domelight/area_resample.h"
+#include "filtering/bright_texels.h"
 #include "filtering/filter_plan.h"
+#include "filtering/residual_kernel.h"
 #include "filtering/sh_analysis.h"
 #include "filtering/sh_synthesis.h"
 #include "filtering/spectrum_evaluate.h"
@@ -16,12 +18,6 @@ namespace {
 constexpr int k_chunk_rows = 64;
 
 const Error k_cancelled{"cancelled", "", ""};
-
-/// Tells how far the work is, from weights of its stages.
-struct Steps {
-    const Progress& progress;
-    bool at(const char* stage, double done) const { return !progress || progress(stage, done); }
-};
 
 std::vector<std::unique_ptr<AreaResampler>> make_mirrors(const FilterOptions& options, int width, int height) {
     std::vector<std::unique_ptr<AreaResampler>> mirrors(options.specular.size());
@@ -46,45 +42,78 @@ FilteredMap as_map(Layout layout, ImageF image) {
     return map;
 }
 
-/// Synthesises every level from the spectrum.
-Result<void> synthesise(const Spectrum& spectrum, const FilterPlan& plan, const FilterOptions& options, FilterResult& result) {
-    const Steps steps{options.progress};
-    int done = 0;
-    for (const FilterPlan::Group& group : plan.groups) {
-        // A few at a time: a grid of many degrees is hundreds of megabytes.
-        const int at_once = group.band_limit > 1200 ? 1 : 4;
-        for (std::size_t from = 0; from < group.levels.size(); from += at_once) {
-            const std::size_t count = std::min<std::size_t>(at_once, group.levels.size() - from);
-            std::vector<std::vector<double>> factors;
-            for (std::size_t i = from; i < from + count; ++i) {
-                const int l = group.levels[i];
-                factors.push_back((l == FilterPlan::k_irradiance ? ZonalKernel::cosine() : options.specular[l].kernel).coefficients(group.band_limit));
-            }
-            const auto grids = sh_synthesis(spectrum, factors, group.grid, options.threads);
-            const double band = double(group.band_limit) / group.grid.rings;
-            for (std::size_t i = 0; i < count; ++i) {
-                const int l = group.levels[from + i];
-                const int size = l == FilterPlan::k_irradiance ? options.irradiance_size : options.specular[l].size;
-                FilteredMap& map = l == FilterPlan::k_irradiance ? result.irradiance_over_pi : result.specular[l];
-                if (options.layout == Layout::cube)
-                    map.cube = grid_to_cube(grids[i], band, size, options.world_to_source, options.threads, result.clamped);
-                else
-                    map.latlong = grid_to_latlong(grids[i], band, size, options.world_to_source, options.threads, result.clamped);
-                ++done;
-                if (!steps.at("filter", double(done) / (options.specular.size() + 1))) return k_cancelled;
+Vec3d mean_radiance(const Spectrum& spectrum) {
+    const double y00 = 1 / std::sqrt(4 * k_pi);
+    return Vec3d{spectrum.coefficient(0, 0, 0).real(), spectrum.coefficient(0, 0, 1).real(), spectrum.coefficient(0, 0, 2).real()} * y00;
+}
+
+/// Makes the levels of a plan, group by group.
+class Synthesis {
+  public:
+    Synthesis(const Spectrum& spectrum, const BrightTexels& bright, const FilterOptions& options, FilterResult& result)
+        : spectrum_(spectrum), bright_(bright), options_(options), result_(result) {}
+
+    Result<void> run(const FilterPlan& plan) {
+        for (const FilterPlan::Group& group : plan.groups) {
+            // A few at a time: a grid of many degrees is hundreds of megabytes.
+            const std::size_t at_once = group.band_limit > 1200 ? 1 : 4;
+            for (std::size_t from = 0; from < group.levels.size(); from += at_once) {
+                const std::span levels(group.levels.data() + from, std::min(at_once, group.levels.size() - from));
+                synthesise(group, levels);
+                done_ += levels.size();
+                if (options_.progress && !options_.progress("filter", double(done_) / (options_.specular.size() + 1))) return k_cancelled;
             }
         }
+        return {};
     }
-    return {};
-}
+
+  private:
+    ZonalKernel kernel(int level) const { return level == FilterPlan::k_irradiance ? ZonalKernel::cosine() : options_.specular[level].kernel; }
+
+    void synthesise(const FilterPlan::Group& group, std::span<const int> levels) {
+        std::vector<ZonalKernel> kernels;
+        std::vector<std::vector<double>> factors;
+        bool residual = false;
+        for (const int level : levels) {
+            kernels.push_back(kernel(level));
+            factors.push_back(kernels.back().coefficients(group.band_limit));
+            residual |= leaves_residual(kernels.back());
+        }
+        const auto grids = sh_synthesis(spectrum_, factors, group.grid, options_.threads);
+        BrightPoints points;
+        std::unique_ptr<ResidualKernels> tables;
+        if (residual) {
+            points = bright_.points(result_.mean, k_least_share, group.band_limit);
+            if (points.count() > 0) tables = std::make_unique<ResidualKernels>(kernels, factors);
+        }
+        for (std::size_t i = 0; i < levels.size(); ++i) {
+            LookupOptions lookup{double(group.band_limit) / group.grid.rings, options_.world_to_source, options_.threads, nullptr, {}};
+            if (tables && leaves_residual(kernels[i])) lookup.bright = &points, lookup.residual = tables->table(int(i));
+            const bool irradiance = levels[i] == FilterPlan::k_irradiance;
+            const int size = irradiance ? options_.irradiance_size : options_.specular[levels[i]].size;
+            FilteredMap& map = irradiance ? result_.irradiance_over_pi : result_.specular[levels[i]];
+            if (options_.layout == Layout::cube) map.cube = grid_to_cube(grids[i], size, lookup, result_.clamped);
+            else map.latlong = grid_to_latlong(grids[i], size, lookup, result_.clamped);
+        }
+    }
+
+    /// A texel with less than this part of all power leaves nothing that can be seen.
+    static constexpr double k_least_share = 2e-5;
+
+    const Spectrum& spectrum_;
+    const BrightTexels& bright_;
+    const FilterOptions& options_;
+    FilterResult& result_;
+    std::size_t done_ = 0;
+};
 
 }  // namespace
 
 Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) {
     const int width = source.width(), height = source.height();
     const FilterPlan plan = make_filter_plan(options);
-    const Steps steps{options.progress};
     ShAnalysis analysis(width, height, plan.band_limit, options.threads);
+    BrightTexels bright(width, height);
     auto mirrors = make_mirrors(options, width, height);
 
     ImageF rows(width, std::min(k_chunk_rows, height), 3);
@@ -92,9 +121,10 @@ Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) 
         const auto chunk = rows.view().rows(0, std::min(k_chunk_rows, height - y));
         if (auto read = source.read(chunk); !read) return read.error();
         analysis.add_rows(chunk);
+        bright.add_rows(chunk);
         for (auto& mirror : mirrors)
             if (mirror) mirror->add_rows(chunk);
-        if (!steps.at("read", double(y + chunk.height) / height)) return k_cancelled;
+        if (options.progress && !options.progress("read", double(y + chunk.height) / height)) return k_cancelled;
     }
     rows = {};
 
@@ -107,9 +137,9 @@ Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) 
         mirrors[l].reset();
     }
     const Spectrum spectrum = analysis.finish();
-    if (auto done = synthesise(spectrum, plan, options, result); !done) return done.error();
+    result.mean = mean_radiance(spectrum);
+    if (auto done = Synthesis(spectrum, bright, options, result).run(plan); !done) return done.error();
     if (options.sh_bands > 0) result.sh = spectrum_to_sh(spectrum, options.sh_bands, options.world_to_source);
-    for (int c = 0; c < 3; ++c) (c == 0 ? result.mean.x : c == 1 ? result.mean.y : result.mean.z) = spectrum.coefficient(0, 0, c).real() / std::sqrt(4 * k_pi);
     return result;
 }
 

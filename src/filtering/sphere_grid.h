@@ -1,10 +1,11 @@
 #pragma once
 
-#include <vector>
+#include <cstdint>
 
 #include "core/aligned.h"
 #include "domelight/image.h"
 #include "domelight/vec.h"
+#include "filtering/bright_texels.h"
 #include "filtering/ring_grid.h"
 #include "simd/grid_lookup.h"
 
@@ -30,9 +31,19 @@ class SphereGrid {
     AlignedArray<float> data_;  ///< RGBX
 };
 
-/// The grid's function at the texel centres of a cube or lat-long image. `band`: band limit over the number of rings. Negative values are set to 0
-/// and their number added to `clamped`.
-Cubemap grid_to_cube(const SphereGrid& grid, double band, int size, const Mat3& world_to_source, int threads, std::int64_t& clamped);
-ImageF grid_to_latlong(const SphereGrid& grid, double band, int height, const Mat3& world_to_source, int threads, std::int64_t& clamped);
+/// What else a lookup does to each texel.
+struct LookupOptions {
+    double band = 0.7;  ///< band limit over the number of rings
+    Mat3 world_to_source;
+    int threads = 0;
+    /// What the truncated expansion is short of: a residual kernel summed over the brightest texels. None: null.
+    const BrightPoints* bright = nullptr;
+    simd::ZonalTable residual{};
+};
+
+/// The grid's function at the texel centres of a cube or lat-long image. Negative values, which only truncation makes, become 0; the number of
+/// texels that had one is added to `clamped`.
+Cubemap grid_to_cube(const SphereGrid& grid, int size, const LookupOptions& options, std::int64_t& clamped);
+ImageF grid_to_latlong(const SphereGrid& grid, int height, const LookupOptions& options, std::int64_t& clamped);
 
 }  // namespace domelight

@@ -82,9 +82,8 @@ HWY_INLINE void lookup_one(const GridView& grid, const TapTable& table, double c
     }
 }
 
-int lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out) {
+void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out) {
     double column[k_block], row[k_block], bx[k_block], by[k_block], bz[k_block];
-    int negative = 0;
     for (int i = 0; i < count; i += k_block) {
         const int n = std::min(k_block, count - i);
         const double *px = x + i, *py = y + i, *pz = z + i;
@@ -97,16 +96,8 @@ int lookup_directions(const GridView& grid, const TapTable& table, const double*
             px = bx, py = by, pz = bz;
         }
         grid_coordinates(grid, px, py, pz, k_block, column, row);
-        for (int k = 0; k < n; ++k) {
-            float* rgb = out + 3 * std::size_t(i + k);
-            lookup_one(grid, table, column[k], row[k], rgb);
-            if (rgb[0] < 0 || rgb[1] < 0 || rgb[2] < 0) {
-                ++negative;
-                for (int c = 0; c < 3; ++c) rgb[c] = std::max(rgb[c], 0.f);
-            }
-        }
+        for (int k = 0; k < n; ++k) lookup_one(grid, table, column[k], row[k], out + 3 * std::size_t(i + k));
     }
-    return negative;
 }
 
 }  // namespace domelight::simd::HWY_NAMESPACE
@@ -128,8 +119,8 @@ TapTable::TapTable(const InterpolationTaps& taps) : across((k_steps + 1) * 32), 
     }
 }
 
-int lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out) {
-    return HWY_DYNAMIC_DISPATCH(lookup_directions)(grid, table, x, y, z, count, out);
+void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out) {
+    HWY_DYNAMIC_DISPATCH(lookup_directions)(grid, table, x, y, z, count, out);
 }
 
 }  // namespace domelight::simd

@@ -22,8 +22,7 @@ struct GridView {
     int rings, width;
 };
 
-/// Values at `count` directions (need not be of unit length): 8 x 8 taps in colatitude and azimuth from +X towards +Z. out: RGB. Negative values,
-/// which only truncation makes, become 0; returns how many texels had one.
-int lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out);
+/// Values at `count` directions (need not be of unit length): 8 x 8 taps in colatitude and azimuth from +X towards +Z. out: RGB.
+void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out);
 
 }  // namespace domelight::simd

@@ -56,6 +56,33 @@ void gather_fft_rows(const float* rows, std::ptrdiff_t stride, int channel, int 
     }
 }
 
+float largest(const float* values, int n) {
+    const D d;
+    const int lanes = int(hn::Lanes(d));
+    auto most = hn::Zero(d);
+    int i = 0;
+    for (; i + lanes <= n; i += lanes) most = hn::Max(most, hn::LoadU(d, values + i));
+    float result = hn::GetLane(hn::MaxOfLanes(d, most));
+    for (; i < n; ++i) result = values[i] > result ? values[i] : result;
+    return result;
+}
+
+bool clamp_negative(float* values, int n) {
+    const D d;
+    const int lanes = int(hn::Lanes(d));
+    auto least = hn::Zero(d);
+    int i = 0;
+    for (; i + lanes <= n; i += lanes) {
+        const auto v = hn::LoadU(d, values + i);
+        least = hn::Min(least, v);
+        hn::StoreU(hn::Max(v, hn::Zero(d)), d, values + i);
+    }
+    bool found = hn::GetLane(hn::MinOfLanes(d, least)) < 0;
+    for (; i < n; ++i)
+        if (values[i] < 0) values[i] = 0, found = true;
+    return found;
+}
+
 }  // namespace domelight::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -64,6 +91,8 @@ namespace domelight::simd {
 
 HWY_EXPORT(add_weighted_rows);
 HWY_EXPORT(gather_fft_rows);
+HWY_EXPORT(largest);
+HWY_EXPORT(clamp_negative);
 
 void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* weights, int count, float* sum, int n) {
     HWY_DYNAMIC_DISPATCH(add_weighted_rows)(rows, stride, weights, count, sum, n);
@@ -71,6 +100,8 @@ void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* we
 void gather_fft_rows(const float* rows, std::ptrdiff_t stride, int channel, int width, float* out) {
     HWY_DYNAMIC_DISPATCH(gather_fft_rows)(rows, stride, channel, width, out);
 }
+float largest(const float* values, int n) { return HWY_DYNAMIC_DISPATCH(largest)(values, n); }
+bool clamp_negative(float* values, int n) { return HWY_DYNAMIC_DISPATCH(clamp_negative)(values, n); }
 
 }  // namespace domelight::simd
 #endif

@@ -11,4 +11,10 @@ void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* we
 /// Interleaved RGB texels of 32 rows into the layout of BatchFft, one channel: out[x * 32 + i] = rows[i * stride + 3 x + channel].
 void gather_fft_rows(const float* rows, std::ptrdiff_t stride, int channel, int width, float* out);
 
+/// The largest of n values (at least 0).
+float largest(const float* values, int n);
+
+/// Sets negative values of n to 0; returns whether there was one.
+bool clamp_negative(float* values, int n);
+
 }  // namespace domelight::simd

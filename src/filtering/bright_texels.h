@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "domelight/image.h"
+#include "domelight/vec.h"
+#include "simd/zonal_sum.h"
+
+namespace domelight {
+
+/// Point lights that stand for an environment's few brightest texels, in the source's frame.
+struct BrightPoints {
+    std::vector<float> x, y, z, r, g, b;
+    int count() const { return int(x.size()); }
+    simd::PointSet view() const { return {x.data(), y.data(), z.data(), r.data(), g.data(), b.data(), count()}; }
+};
+
+/// Finds the texels that carry the most power (radiance times solid angle) as the rows of a lat-long image pass by.
+///
+/// A sun is the worst case of a truncated spectrum: its coefficients do not fall off. What the truncation leaves out of a kernel, summed over these
+/// texels exactly, is what the expansion is still short of (ResidualKernel).
+class BrightTexels {
+  public:
+    BrightTexels(int width, int height, int most = 256);
+
+    void add_rows(ImageView<const float> rows);
+    /// The texels with more than `least_share` of the power of all, each as the nodes of a Gauss-Legendre rule over its tent, fine enough for
+    /// degrees around `band_limit`. `mean`: mean radiance.
+    BrightPoints points(const Vec3d& mean, double least_share, int band_limit) const;
+
+  private:
+    struct Texel {
+        double power;  ///< of the strongest channel
+        int x, y;
+        float rgb[3];
+    };
+    /// Order of the heap: weakest first; ties by place, so that the result does not depend on how rows were handed over.
+    static bool stronger(const Texel& a, const Texel& b) {
+        return a.power != b.power ? a.power > b.power : a.y != b.y ? a.y < b.y : a.x < b.x;
+    }
+
+    int width_, height_, most_, next_row_ = 0;
+    std::vector<Texel> heap_;
+};
+
+}  // namespace domelight

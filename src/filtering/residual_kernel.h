@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "domelight/zonal_kernel.h"
+#include "simd/zonal_sum.h"
+
+namespace domelight {
+
+/// What truncation at a band limit L leaves out of kernels: K(theta) - sum_{l <= L} (2l + 1) / 4 pi k_l P_l(cos theta), as tables over theta.
+class ResidualKernels {
+  public:
+    /// factors[i]: coefficients k_0..k_L of kernels[i].
+    ResidualKernels(std::span<const ZonalKernel> kernels, std::span<const std::vector<double>> factors);
+    simd::ZonalTable table(int i) const { return {values_.data() + std::size_t(i) * (steps_ + 2), steps_}; }
+
+  private:
+    int steps_;
+    std::vector<float> values_;
+};
+
+}  // namespace domelight
