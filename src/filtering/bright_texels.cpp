@@ -54,12 +54,7 @@ BrightPoints BrightTexels::points(const Vec3d& mean, double least_share, int ban
                         const double phi = step_phi * (t.x + 0.5) - k_pi + right * b * step_phi;
                         const double tent = (cap ? 1 : 1 - a) * (1 - b);
                         const double weight = tent * std::sin(theta) * 0.25 * rule.w[i] * rule.w[j] * length * step_phi;
-                        points.x.push_back(float(std::sin(theta) * std::cos(phi)));
-                        points.y.push_back(float(std::cos(theta)));
-                        points.z.push_back(float(std::sin(theta) * std::sin(phi)));
-                        points.r.push_back(float(weight * t.rgb[0]));
-                        points.g.push_back(float(weight * t.rgb[1]));
-                        points.b.push_back(float(weight * t.rgb[2]));
+                        points.add({std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)}, weight, t.rgb);
                     }
             }
     }

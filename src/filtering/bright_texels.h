@@ -12,6 +12,11 @@ namespace domelight {
 struct BrightPoints {
     std::vector<float> x, y, z, r, g, b;
     int count() const { return int(x.size()); }
+    /// A light of radiance `rgb` over `solid_angle` in a unit direction.
+    void add(const Vec3d& direction, double solid_angle, const float* rgb) {
+        x.push_back(float(direction.x)), y.push_back(float(direction.y)), z.push_back(float(direction.z));
+        r.push_back(float(solid_angle * rgb[0])), g.push_back(float(solid_angle * rgb[1])), b.push_back(float(solid_angle * rgb[2]));
+    }
     simd::PointSet view() const { return {x.data(), y.data(), z.data(), r.data(), g.data(), b.data(), count()}; }
 };
 

@@ -5,6 +5,7 @@
 
 #include "domelight/area_resample.h"
 #include "filtering/bright_texels.h"
+#include "filtering/cube_analysis.h"
 #include "filtering/filter_plan.h"
 #include "filtering/residual_kernel.h"
 #include "filtering/sh_analysis.h"
@@ -18,6 +19,9 @@ namespace {
 constexpr int k_chunk_rows = 64;
 
 const Error k_cancelled{"cancelled", "", ""};
+
+/// A texel with less than this part of all power leaves nothing that can be seen.
+constexpr double k_least_share = 2e-5;
 
 std::vector<std::unique_ptr<AreaResampler>> make_mirrors(const FilterOptions& options, int width, int height) {
     std::vector<std::unique_ptr<AreaResampler>> mirrors(options.specular.size());
@@ -50,8 +54,11 @@ Vec3d mean_radiance(const Spectrum& spectrum) {
 /// Makes the levels of a plan, group by group.
 class Synthesis {
   public:
-    Synthesis(const Spectrum& spectrum, const BrightTexels& bright, const FilterOptions& options, FilterResult& result)
-        : spectrum_(spectrum), bright_(bright), options_(options), result_(result) {}
+    /// The environment's brightest texels as point lights, fine enough for a band limit.
+    using Bright = std::function<BrightPoints(int band_limit)>;
+
+    Synthesis(const Spectrum& spectrum, Bright bright, const FilterOptions& options, FilterResult& result)
+        : spectrum_(spectrum), bright_(std::move(bright)), options_(options), result_(result) {}
 
     Result<void> run(const FilterPlan& plan) {
         for (const FilterPlan::Group& group : plan.groups) {
@@ -83,7 +90,7 @@ class Synthesis {
         BrightPoints points;
         std::unique_ptr<ResidualKernels> tables;
         if (residual) {
-            points = bright_.points(result_.mean, k_least_share, group.band_limit);
+            points = bright_(group.band_limit);
             if (points.count() > 0) tables = std::make_unique<ResidualKernels>(kernels, factors);
         }
         for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -97,15 +104,21 @@ class Synthesis {
         }
     }
 
-    /// A texel with less than this part of all power leaves nothing that can be seen.
-    static constexpr double k_least_share = 2e-5;
-
     const Spectrum& spectrum_;
-    const BrightTexels& bright_;
+    Bright bright_;
     const FilterOptions& options_;
     FilterResult& result_;
     std::size_t done_ = 0;
 };
+
+/// Everything that follows from the spectrum.
+Result<void> finish(const Spectrum& spectrum, Synthesis::Bright bright, const FilterPlan& plan, const FilterOptions& options, FilterResult& result) {
+    result.band_limit = plan.band_limit;
+    result.mean = mean_radiance(spectrum);
+    if (auto done = Synthesis(spectrum, std::move(bright), options, result).run(plan); !done) return done;
+    if (options.sh_bands > 0) result.sh = spectrum_to_sh(spectrum, options.sh_bands, options.world_to_source);
+    return {};
+}
 
 }  // namespace
 
@@ -130,16 +143,33 @@ Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) 
 
     FilterResult result;
     result.specular.resize(options.specular.size());
-    result.band_limit = plan.band_limit;
     for (std::size_t l = 0; l < mirrors.size(); ++l) {
         if (!mirrors[l]) continue;
         result.specular[l] = as_map(options.layout, mirrors[l]->finish());
         mirrors[l].reset();
     }
     const Spectrum spectrum = analysis.finish();
-    result.mean = mean_radiance(spectrum);
-    if (auto done = Synthesis(spectrum, bright, options, result).run(plan); !done) return done.error();
-    if (options.sh_bands > 0) result.sh = spectrum_to_sh(spectrum, options.sh_bands, options.world_to_source);
+    const auto points = [&](int band_limit) { return bright.points(result.mean, k_least_share, band_limit); };
+    if (auto done = finish(spectrum, points, plan, options, result); !done) return done.error();
+    return result;
+}
+
+Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& options) {
+    const FilterPlan plan = make_filter_plan(options);
+    FilterResult result;
+    result.specular.resize(options.specular.size());
+    for (std::size_t l = 0; l < options.specular.size(); ++l) {
+        const LevelSpec& level = options.specular[l];
+        if (!level.mirror) continue;
+        FilteredMap& map = result.specular[l];
+        if (options.layout == Layout::cube) map.cube = area_resample_cube(source, level.size, options.world_to_source, options.threads);
+        else map.latlong = area_resample_cube_to_latlong(source, level.size, options.world_to_source, options.threads);
+    }
+    if (options.progress && !options.progress("read", 1)) return k_cancelled;
+    const BorderedCube cube(source);
+    const Spectrum spectrum = analyse_cube(cube, plan.band_limit, options.threads);
+    const auto points = [&](int band_limit) { return bright_points(cube, result.mean, k_least_share, band_limit); };
+    if (auto done = finish(spectrum, points, plan, options, result); !done) return done.error();
     return result;
 }
 

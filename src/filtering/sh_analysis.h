@@ -1,13 +1,10 @@
 #pragma once
 
 #include <map>
-#include <memory>
 
 #include "domelight/image.h"
 #include "filtering/latitude_reduction.h"
-#include "filtering/ring_grid.h"
-#include "filtering/spectrum.h"
-#include "simd/batch_fft.h"
+#include "filtering/ring_analysis.h"
 
 namespace domelight {
 
@@ -26,23 +23,14 @@ class ShAnalysis {
     Spectrum finish();
 
   private:
-    /// 32 ring rows that are transformed together, while image rows still add to them.
-    struct Batch {
-        AlignedArray<float> rows;
-    };
     void transform_finished(int next_row);
-    void transform(const Batch& batch, int index, int channel);
 
-    int width_, height_, band_limit_, threads_;
-    RingGrid grid_;
+    int width_, height_, threads_;
+    RingAnalysis rings_;
     LatitudeReduction reduction_;
-    simd::BatchFft fft_;
-    std::vector<std::complex<double>> order_factor_;  ///< 2 pi / W sinc^2(m / W) e^{-i m phi_0}
     int next_row_ = 0;
     int next_batch_ = 0;
-    std::map<int, Batch> open_;
-    int ring_stride_;
-    AlignedArray<float> rings_;  ///< [m][channel, re | im][ring + pad]
+    std::map<int, AlignedArray<float>> open_;  ///< 32 ring rows that are transformed together, while image rows still add to them
 };
 
 }  // namespace domelight

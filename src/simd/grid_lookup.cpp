@@ -44,35 +44,48 @@ void grid_coordinates(const GridView& grid, const double* x, const double* y, co
     }
 }
 
-HWY_INLINE void lookup_one(const GridView& grid, const TapTable& table, double column, double row, float* rgb) {
-    constexpr int taps = 8, quads = 4 * taps;
-    const hn::CappedTag<float, 16> d;
-    constexpr int lanes = int(hn::MaxLanes(d)), vectors = quads / lanes;
+constexpr int k_taps = 8, k_quads = 4 * k_taps;
+using D = hn::CappedTag<float, 16>;
 
-    const int c0 = int(column), r0 = int(std::floor(row));
-    const double fc = (column - c0) * TapTable::k_steps, fr = (row - r0) * TapTable::k_steps;
-    const int ic = std::min(int(fc), TapTable::k_steps - 1), ir = std::min(int(fr), TapTable::k_steps - 1);
-    const float tc = float(fc - ic), tr = float(fr - ir);
+/// Where a direction falls between the grid's points, and the weights there.
+struct Place {
+    Place(const GridView& grid, const TapTable& table, double column, double row) {
+        const int c0 = int(column), r0 = int(std::floor(row));
+        const double fc = (column - c0) * TapTable::k_steps, fr = (row - r0) * TapTable::k_steps;
+        const int ic = std::min(int(fc), TapTable::k_steps - 1), ir = std::min(int(fr), TapTable::k_steps - 1);
+        offset = (r0 - (k_taps / 2 - 1)) * grid.stride + (c0 - (k_taps / 2 - 1)) * 4;
+        across = table.across.data() + std::size_t(ic) * k_quads;
+        t = float(fc - ic);
+        const float* w = table.down.data() + std::size_t(ir) * k_taps;
+        const float tr = float(fr - ir);
+        for (int k = 0; k < k_taps; ++k) down[k] = w[k] + tr * (w[k + k_taps] - w[k]);
+    }
+    /// Vector v of the weights along a row.
+    HWY_INLINE hn::Vec<D> across_weights(int v) const {
+        const D d;
+        const float* w = across + v * int(hn::Lanes(d));
+        const auto low = hn::LoadU(d, w), high = hn::LoadU(d, w + k_quads);
+        return hn::MulAdd(hn::Set(d, t), hn::Sub(high, low), low);
+    }
+    std::ptrdiff_t offset;
+    const float* across;
+    float t;
+    alignas(64) float down[k_taps];
+};
 
-    alignas(64) float down[taps];
-    const float* w = table.down.data() + std::size_t(ir) * taps;
-    for (int k = 0; k < taps; ++k) down[k] = w[k] + tr * (w[k + taps] - w[k]);
-
-    hn::Vec<decltype(d)> sum[vectors];
-    const float* from = grid.rgbx + (r0 - (taps / 2 - 1)) * grid.stride + (c0 - (taps / 2 - 1)) * 4;
-    for (int v = 0; v < vectors; ++v) sum[v] = hn::Mul(hn::LoadU(d, from + v * lanes), hn::Set(d, down[0]));
-    for (int k = 1; k < taps; ++k) {
+HWY_INLINE void lookup_one(const GridView& grid, const Place& place, float* rgb) {
+    const D d;
+    constexpr int lanes = int(hn::MaxLanes(d)), vectors = k_quads / lanes;
+    hn::Vec<D> sum[vectors];
+    const float* from = grid.rgbx + place.offset;
+    for (int v = 0; v < vectors; ++v) sum[v] = hn::Mul(hn::LoadU(d, from + v * lanes), hn::Set(d, place.down[0]));
+    for (int k = 1; k < k_taps; ++k) {
         from += grid.stride;
-        const auto weight = hn::Set(d, down[k]);
+        const auto weight = hn::Set(d, place.down[k]);
         for (int v = 0; v < vectors; ++v) sum[v] = hn::MulAdd(hn::LoadU(d, from + v * lanes), weight, sum[v]);
     }
-    const float* across = table.across.data() + std::size_t(ic) * quads;
-    const auto t = hn::Set(d, tc);
-    auto total = hn::Zero(d);
-    for (int v = 0; v < vectors; ++v) {
-        const auto low = hn::LoadU(d, across + v * lanes), high = hn::LoadU(d, across + quads + v * lanes);
-        total = hn::MulAdd(hn::MulAdd(t, hn::Sub(high, low), low), sum[v], total);
-    }
+    auto total = hn::Mul(place.across_weights(0), sum[0]);
+    for (int v = 1; v < vectors; ++v) total = hn::MulAdd(place.across_weights(v), sum[v], total);
     alignas(64) float parts[lanes];
     hn::Store(total, d, parts);
     for (int c = 0; c < 3; ++c) {
@@ -82,7 +95,25 @@ HWY_INLINE void lookup_one(const GridView& grid, const TapTable& table, double c
     }
 }
 
-void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out) {
+HWY_INLINE void scatter_one(const GridView& grid, float* rgbx, const Place& place, const float* rgb) {
+    const D d;
+    constexpr int lanes = int(hn::MaxLanes(d)), vectors = k_quads / lanes;
+    alignas(64) float value[lanes];
+    for (int i = 0; i < lanes; ++i) value[i] = i % 4 < 3 ? rgb[i % 4] : 0;
+    const auto v_rgb = hn::Load(d, value);
+    hn::Vec<D> row[vectors];
+    for (int v = 0; v < vectors; ++v) row[v] = hn::Mul(place.across_weights(v), v_rgb);
+    float* to = rgbx + place.offset;
+    for (int k = 0; k < k_taps; ++k, to += grid.stride) {
+        const auto weight = hn::Set(d, place.down[k]);
+        for (int v = 0; v < vectors; ++v) hn::StoreU(hn::MulAdd(row[v], weight, hn::LoadU(d, to + v * lanes)), d, to + v * lanes);
+    }
+}
+
+/// Calls use(i, place) for each direction.
+template <typename Use>
+HWY_INLINE void for_each_place(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count,
+                               const Use& use) {
     double column[k_block], row[k_block], bx[k_block], by[k_block], bz[k_block];
     for (int i = 0; i < count; i += k_block) {
         const int n = std::min(k_block, count - i);
@@ -96,8 +127,17 @@ void lookup_directions(const GridView& grid, const TapTable& table, const double
             px = bx, py = by, pz = bz;
         }
         grid_coordinates(grid, px, py, pz, k_block, column, row);
-        for (int k = 0; k < n; ++k) lookup_one(grid, table, column[k], row[k], out + 3 * std::size_t(i + k));
+        for (int k = 0; k < n; ++k) use(i + k, Place(grid, table, column[k], row[k]));
     }
+}
+
+void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out) {
+    for_each_place(grid, table, x, y, z, count, [&](int i, const Place& place) HWY_ATTR { lookup_one(grid, place, out + 3 * std::size_t(i)); });
+}
+
+void scatter_directions(const GridView& grid, float* rgbx, const TapTable& table, const double* x, const double* y, const double* z, int count,
+                        const float* rgb) {
+    for_each_place(grid, table, x, y, z, count, [&](int i, const Place& place) HWY_ATTR { scatter_one(grid, rgbx, place, rgb + 3 * std::size_t(i)); });
 }
 
 }  // namespace domelight::simd::HWY_NAMESPACE
@@ -107,6 +147,7 @@ HWY_AFTER_NAMESPACE();
 namespace domelight::simd {
 
 HWY_EXPORT(lookup_directions);
+HWY_EXPORT(scatter_directions);
 
 TapTable::TapTable(const InterpolationTaps& taps) : across((k_steps + 1) * 32), down((k_steps + 1) * 8) {
     double w[8];
@@ -121,6 +162,10 @@ TapTable::TapTable(const InterpolationTaps& taps) : across((k_steps + 1) * 32), 
 
 void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out) {
     HWY_DYNAMIC_DISPATCH(lookup_directions)(grid, table, x, y, z, count, out);
+}
+void scatter_directions(const GridView& grid, float* rgbx, const TapTable& table, const double* x, const double* y, const double* z, int count,
+                        const float* rgb) {
+    HWY_DYNAMIC_DISPATCH(scatter_directions)(grid, rgbx, table, x, y, z, count, rgb);
 }
 
 }  // namespace domelight::simd

@@ -25,4 +25,8 @@ struct GridView {
 /// Values at `count` directions (need not be of unit length): 8 x 8 taps in colatitude and azimuth from +X towards +Z. out: RGB.
 void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out);
 
+/// The lookup's transpose: adds each direction's value (RGB) to the 8 x 8 grid points around it with the lookup's weights. `rgbx` as in GridView.
+void scatter_directions(const GridView& grid, float* rgbx, const TapTable& table, const double* x, const double* y, const double* z, int count,
+                        const float* rgb);
+
 }  // namespace domelight::simd

@@ -44,14 +44,14 @@ void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* we
     }
 }
 
-void gather_fft_rows(const float* rows, std::ptrdiff_t stride, int channel, int width, float* out) {
+void gather_fft_rows(const float* rows, std::ptrdiff_t stride, int texel, int width, float* out) {
     constexpr int tile = 16;  // texels: their 32-row block of the output stays in the nearest cache
     constexpr int row_count = 2 * k_fft_lanes;
     for (int x0 = 0; x0 < width; x0 += tile) {
         const int x1 = x0 + tile < width ? x0 + tile : width;
         for (int i = 0; i < row_count; ++i) {
-            const float* row = rows + i * stride + channel;
-            for (int x = x0; x < x1; ++x) out[x * row_count + i] = row[3 * x];
+            const float* row = rows + i * stride;
+            for (int x = x0; x < x1; ++x) out[x * row_count + i] = row[x * texel];
         }
     }
 }
@@ -97,8 +97,8 @@ HWY_EXPORT(clamp_negative);
 void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* weights, int count, float* sum, int n) {
     HWY_DYNAMIC_DISPATCH(add_weighted_rows)(rows, stride, weights, count, sum, n);
 }
-void gather_fft_rows(const float* rows, std::ptrdiff_t stride, int channel, int width, float* out) {
-    HWY_DYNAMIC_DISPATCH(gather_fft_rows)(rows, stride, channel, width, out);
+void gather_fft_rows(const float* rows, std::ptrdiff_t stride, int texel, int width, float* out) {
+    HWY_DYNAMIC_DISPATCH(gather_fft_rows)(rows, stride, texel, width, out);
 }
 float largest(const float* values, int n) { return HWY_DYNAMIC_DISPATCH(largest)(values, n); }
 bool clamp_negative(float* values, int n) { return HWY_DYNAMIC_DISPATCH(clamp_negative)(values, n); }

@@ -8,8 +8,8 @@ namespace domelight::simd {
 /// handed over.
 void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* weights, int count, float* sum, int n);
 
-/// Interleaved RGB texels of 32 rows into the layout of BatchFft, one channel: out[x * 32 + i] = rows[i * stride + 3 x + channel].
-void gather_fft_rows(const float* rows, std::ptrdiff_t stride, int channel, int width, float* out);
+/// One channel of 32 rows into the layout of BatchFft: out[x * 32 + i] = rows[i * stride + x * texel].
+void gather_fft_rows(const float* rows, std::ptrdiff_t stride, int texel, int width, float* out);
 
 /// The largest of n values (at least 0).
 float largest(const float* values, int n);

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "domelight/image.h"
+
+namespace domelight {
+
+/// A cubemap's RGB texels with a border of one texel around each face, taken from across the edges; a corner of the border is the mean of the three
+/// texels that meet there. Bilinear interpolation of a bordered face, up to the face's edge, is the cube's reconstruction: it goes on across edges.
+class BorderedCube {
+  public:
+    explicit BorderedCube(const Cubemap& source);
+
+    int size() const { return size_; }
+    /// Texel of a face, column and row -1 .. size.
+    const float* texel(int face, int column, int row) const {
+        return texels_.data() + 3 * ((std::size_t(face) * (size_ + 2) + row + 1) * (size_ + 2) + column + 1);
+    }
+
+  private:
+    float* texel(int face, int column, int row) { return const_cast<float*>(std::as_const(*this).texel(face, column, row)); }
+
+    int size_;
+    std::vector<float> texels_;
+};
+
+}  // namespace domelight
