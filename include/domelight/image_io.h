@@ -15,15 +15,19 @@ namespace domelight {
 
 /// Writers of images. Each output appears whole or not at all; an existing file is replaced only by a complete one.
 
-/// Radiance HDR: RGBE, new run-length encoding (flat where the width does not allow it). The source form writes row by row.
-Result<void> write_hdr(const std::filesystem::path& file, ImageView<const float> rgb);
-Result<void> write_hdr(const std::filesystem::path& file, RowSource& rows);
+/// Radiance HDR: RGBE, new run-length encoding (flat where the width does not allow it), mantissas rounded to the nearest. The source form
+/// writes row by row. Negative values and NaN become 0.
+Result<void> write_hdr(const std::filesystem::path& file, ImageView<const float> rgb, int threads = 0);
+Result<void> write_hdr(const std::filesystem::path& file, RowSource& rows, int threads = 0);
 
 struct ExrWriteOptions {
     bool half = true;                       ///< half or float channels
     std::string compression = "zip";        ///< none | rle | zips | zip | piz | pxr24 | b44 | b44a | dwaa | dwab
-    std::string envmap;                     ///< "", "latlong" or "cube": the envmap attribute
-    std::map<std::string, std::string> attributes;
+    /// The envmap attribute: "", "latlong" (the pixels must then be in OpenEXR's own lat-long convention) or "cube" (pixels: a size x 6 size strip
+    /// of faces in OpenGL's orientation, which are turned into OpenEXR's).
+    std::string envmap;
+    std::map<std::string, std::string> attributes;  ///< further attributes of type string
+    int threads = 0;                        ///< for compression; 0: all
 };
 /// OpenEXR scanline image, RGB (or as many as 4 channels), linear Rec. 709. A channel's values beyond half's range are clipped to 65504.
 Result<void> write_exr(const std::filesystem::path& file, ImageView<const float> pixels, const ExrWriteOptions& options = {});
@@ -32,7 +36,8 @@ Result<void> write_exr(const std::filesystem::path& file, RowSource& rows, const
 /// 8-bit PNG, 1, 3 or 4 channels, sRGB.
 Result<void> write_png(const std::filesystem::path& file, ImageView<const std::uint8_t> pixels, int compression_level = 3);
 
-/// A cube as one picture: "cross" (4 x 3 horizontal cross), "strip" (6 x 1).
+/// A cube as one picture: "cross" (4 x 3 faces: +Y above, -X +Z +X -Z, -Y below), "vertical-cross" (3 x 4, -Z upside down at the bottom), "strip"
+/// (6 x 1), "vertical-strip" (1 x 6). Empty for any other name.
 ImageF cube_layout(const Cubemap& cube, const std::string& layout);
 
 /// Writes a file by way of a temporary neighbour that replaces it once `write` has succeeded and all is on disk; removed otherwise (also on

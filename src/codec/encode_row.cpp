@@ -5,6 +5,7 @@
 #include "codec/r11g11b10f.h"
 #include "codec/rgb9e5.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <limits>
@@ -30,9 +31,10 @@ float clamp_to(float v, float low, float high) {
     return v < low ? low : v > high ? high : v;
 }
 
-/// One coder an encoding: its range per channel, and the conversion of one texel (already inside the range, never NaN)
+/// One coder an encoding: whether it keeps every float, its range per channel, and the conversion of one texel (already inside the range, never NaN)
 /// to bytes and back.
 struct HalfCoder {
+    static constexpr bool k_exact = false;
     static constexpr std::array<float, 3> k_min{-k_half_max, -k_half_max, -k_half_max},
         k_max{k_half_max, k_half_max, k_half_max};
 };
@@ -58,6 +60,7 @@ struct Rg16f : HalfCoder {
     }
 };
 struct FloatCoder {
+    static constexpr bool k_exact = true;
     static constexpr float k_top = std::numeric_limits<float>::max();
     static constexpr std::array<float, 3> k_min{-k_top, -k_top, -k_top}, k_max{k_top, k_top, k_top};
 };
@@ -78,12 +81,14 @@ struct Rg32f : FloatCoder {
     }
 };
 struct Rgb9e5 {
+    static constexpr bool k_exact = false;
     static constexpr int k_bytes = 4, k_channels = 3;
     static constexpr std::array<float, 3> k_min{0, 0, 0}, k_max{k_rgb9e5_max, k_rgb9e5_max, k_rgb9e5_max};
     static void encode(const Vec3f& v, std::uint8_t* out) { store(out, rgb9e5_from_rgb(v)); }
     static Vec3f decode(const std::uint8_t* in) { return rgb_from_rgb9e5(load<std::uint32_t>(in)); }
 };
 struct R11g11b10f {
+    static constexpr bool k_exact = false;
     static constexpr int k_bytes = 4, k_channels = 3;
     static constexpr std::array<float, 3> k_min{0, 0, 0}, k_max{k_float11_max, k_float11_max, k_float10_max};
     static void encode(const Vec3f& v, std::uint8_t* out) { store(out, r11g11b10f_from_rgb(v)); }
@@ -119,22 +124,23 @@ Vec3f clamp_to_range(const Vec3f& v) {
 template <typename Coder>
 EncodeSums encode_row_with(const float* rgb, int count, const float* weight, std::uint8_t* out) {
     constexpr Vec3d k_luminance{0.2126, 0.7152, 0.0722};
+    const auto number = [](float v) { return v == v ? v : 0.0f; };
     EncodeSums sums;
     for (int i = 0; i < count; ++i, rgb += 3, out += Coder::k_bytes) {
-        const Vec3f v{rgb[0], rgb[1], Coder::k_channels == 3 ? rgb[2] : 0.0f};
+        const Vec3f read{rgb[0], rgb[1], Coder::k_channels == 3 ? rgb[2] : 0.0f};
+        const Vec3f v{number(read.x), number(read.y), number(read.z)};
         const Vec3f inside = clamp_to_range<Coder>(v);
         Coder::encode(inside, out);
         const double w = weight[i];
         sums.power += w * dot(k_luminance, Vec3d(v));
-        if (v == inside) {
+        if (!(read == inside)) {
+            ++sums.clipped;
+            const Vec3d above = Vec3d(v) - Vec3d(inside);
+            sums.lost += w * dot(k_luminance, Vec3d{std::max(above.x, 0.0), std::max(above.y, 0.0), std::max(above.z, 0.0)});
+        } else if (!Coder::k_exact) {
             const Vec3d difference = Vec3d(Coder::decode(out)) - Vec3d(v);
             sums.error += w * dot(difference, difference);
             sums.norm += w * dot(Vec3d(v), Vec3d(v));
-        } else {
-            ++sums.clipped;
-            const Vec3d above = Vec3d(v) - Vec3d(inside);
-            sums.lost += w * dot(k_luminance, Vec3d{above.x > 0 ? above.x : 0, above.y > 0 ? above.y : 0,
-                                                    above.z > 0 ? above.z : 0});
         }
     }
     return sums;

@@ -12,7 +12,7 @@ struct EncodeSums {
     double power = 0;          ///< sum w L(v)
     double lost = 0;           ///< sum w L(v - clipped v), of channels above the range
     double error = 0;          ///< sum w |stored - v|^2 over texels that were not clipped
-    double norm = 0;           ///< sum w |v|^2 over the same
+    double norm = 0;           ///< sum w |v|^2 over the same; 0 for encodings that keep every float
 
     void operator+=(const EncodeSums& b) {
         clipped += b.clipped;

@@ -22,7 +22,9 @@ class ByteBuffer {
         u32(std::uint32_t(value));
         u32(std::uint32_t(value >> 32));
     }
-    void text(std::string_view s) { bytes_.insert(bytes_.end(), s.begin(), s.end()); }
+    void text(std::string_view s) {
+        for (char c : s) u8(std::uint8_t(c));
+    }
     /// Zeros up to a multiple of `alignment`.
     void align(std::size_t alignment) {
         while (bytes_.size() % alignment) u8(0);

@@ -69,7 +69,7 @@ std::vector<Sample> samples_of(Encoding encoding) {
 }
 
 /// The data format descriptor: its total size and one basic block.
-void append_descriptor(ByteBuffer& out, Encoding encoding, Supercompression compression) {
+void append_descriptor(ByteBuffer& out, Encoding encoding) {
     const std::vector<Sample> samples = samples_of(encoding);
     const unsigned block_size = 24 + 16 * unsigned(samples.size());
     out.u32(4 + block_size);
@@ -81,8 +81,9 @@ void append_descriptor(ByteBuffer& out, Encoding encoding, Supercompression comp
     out.u8(1);   // transfer function linear
     out.u8(0);   // straight alpha
     out.u32(0);  // texel block of 1 x 1 x 1 x 1
-    // Section 3.10.2.1: bytesPlane is 0 ("unsized") where the levels are supercompressed.
-    out.u8(compression == Supercompression::none ? unsigned(encoding_bytes(encoding)) : 0);
+    // bytesPlane[0]. Revisions of the specification before 2025 wanted 0 where levels are supercompressed; the current
+    // one keeps the bytes, warns of 0, and readers take both ("DFD for Supercompressed Data").
+    out.u8(unsigned(encoding_bytes(encoding)));
     for (int i = 1; i < 8; ++i) out.u8(0);
     for (const Sample& s : samples) {
         out.u16(s.bit_offset);
@@ -107,10 +108,13 @@ void append_key_values(ByteBuffer& out, const std::map<std::string, std::string>
     }
 }
 
+/// The texture's own keys and the container's. What another file said under reserved keys does not hold for this one.
 std::map<std::string, std::string> complete_metadata(const Texture& texture) {
     std::map<std::string, std::string> metadata = texture.metadata;
-    metadata.emplace("KTXorientation", "rd");  // rows run down; what cube maps must say
-    metadata.emplace("KTXwriter", "Domelight " DOMELIGHT_VERSION);
+    std::erase_if(metadata,
+                  [](const auto& pair) { return pair.first.starts_with("KTX") || pair.first.starts_with("ktx"); });
+    metadata["KTXorientation"] = "rd";  // right, down: rows run from top to bottom
+    metadata["KTXwriter"] = "Domelight " DOMELIGHT_VERSION;
     return metadata;
 }
 
@@ -142,7 +146,7 @@ Result<void> write_ktx2(const std::filesystem::path& file, const Texture& textur
     const std::size_t level_count = texture.levels.size();
 
     ByteBuffer descriptor, key_values;
-    append_descriptor(descriptor, texture.encoding, compression);
+    append_descriptor(descriptor, texture.encoding);
     append_key_values(key_values, complete_metadata(texture));
     const std::uint64_t descriptor_at = k_ktx2_header_bytes + k_ktx2_level_bytes * level_count,
                         key_values_at = descriptor_at + descriptor.size();

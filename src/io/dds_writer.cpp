@@ -1,0 +1,51 @@
+// Writes DDS with a DX10 header.
+#include "domelight/image_io.h"
+#include "domelight/texture.h"
+
+#include "io/byte_buffer.h"
+#include "io/dds.h"
+#include "io/dds_formats.h"
+#include "io/output_file.h"
+
+namespace domelight {
+
+Result<void> write_dds(const std::filesystem::path& file, const Texture& texture) {
+    const bool cube = texture.faces == 6, mips = texture.levels.size() > 1;
+    ByteBuffer head;
+    head.text("DDS ");
+    head.u32(124);
+    head.u32(k_ddsd_caps | k_ddsd_height | k_ddsd_width | k_ddsd_pitch | k_ddsd_pixel_format |
+             (mips ? k_ddsd_mip_map_count : 0u));
+    head.u32(std::uint32_t(texture.height));
+    head.u32(std::uint32_t(texture.width));
+    head.u32(std::uint32_t(texture.width * encoding_bytes(texture.encoding)));  // pitch
+    head.u32(0);                                                                // depth
+    head.u32(std::uint32_t(texture.levels.size()));
+    for (int i = 0; i < 11; ++i) head.u32(0);
+    head.u32(32);  // pixel format: what it is stands in the DX10 header
+    head.u32(k_ddpf_four_cc);
+    head.u32(k_dds_dx10);
+    for (int i = 0; i < 5; ++i) head.u32(0);
+    head.u32(k_ddscaps_texture | (mips ? k_ddscaps_mip_map : 0u) | (mips || cube ? k_ddscaps_complex : 0u));
+    head.u32(cube ? k_ddscaps2_cube_map | k_ddscaps2_all_faces : 0u);
+    for (int i = 0; i < 3; ++i) head.u32(0);
+    head.u32(dxgi_number(texture.encoding));
+    head.u32(k_dx10_dimension_2d);
+    head.u32(cube ? k_dx10_misc_cube : 0u);
+    head.u32(1);  // array size, in cubes
+    head.u32(0);  // alpha mode unknown: it is 1 everywhere
+
+    return write_file_atomically(file, [&](const std::filesystem::path& path) {
+        OutputFile out(path);
+        out.write(head.bytes());
+        // Unlike in KTX all levels of a face come before the next face.
+        for (int face = 0; face < texture.faces; ++face)
+            for (const auto& level : texture.levels) {
+                const std::size_t bytes = level.size() / std::size_t(texture.faces);
+                out.write(std::span(level).subspan(bytes * std::size_t(face), bytes));
+            }
+        return out.finish();
+    });
+}
+
+}  // namespace domelight

@@ -1,0 +1,95 @@
+// Writes KTX 1.1 (Khronos KTX File Format Specification, version 1.1): what Filament loads.
+#include "domelight/image_io.h"
+#include "domelight/texture.h"
+
+#include "io/byte_buffer.h"
+#include "io/ktx1.h"
+#include "io/output_file.h"
+
+#include <string>
+
+namespace domelight {
+
+namespace {
+
+/// How OpenGL is told of an encoding.
+struct GlFormat {
+    std::uint32_t internal_format, type, type_bytes, format;
+};
+
+GlFormat gl_format(Encoding encoding) {
+    constexpr std::uint32_t k_half = 0x140b, k_float = 0x1406, k_rgba = 0x1908, k_rgb = 0x1907, k_rg = 0x8227;
+    switch (encoding) {
+        case Encoding::rgba16f:
+            return {k_gl_rgba16f, k_half, 2, k_rgba};
+        case Encoding::rgba32f:
+            return {k_gl_rgba32f, k_float, 4, k_rgba};
+        case Encoding::rg16f:
+            return {k_gl_rg16f, k_half, 2, k_rg};
+        case Encoding::rg32f:
+            return {k_gl_rg32f, k_float, 4, k_rg};
+        case Encoding::rgb9e5:
+            return {k_gl_rgb9_e5, 0x8c3e, 4, k_rgb};  // UNSIGNED_INT_5_9_9_9_REV
+        case Encoding::r11g11b10f:
+            break;
+    }
+    // The type should be UNSIGNED_INT_10F_11F_11F_REV, 0x8c3b. Filament, the format's one consumer, writes and expects
+    // the internal format here and refuses the right value; readers that go by the internal format take either.
+    return {k_gl_r11f_g11f_b10f, k_gl_r11f_g11f_b10f, 4, k_rgb};
+}
+
+bool is_reserved(const std::string& key) {
+    return key.starts_with("KTX") || key.starts_with("ktx");
+}
+
+}  // namespace
+
+Result<void> write_ktx1(const std::filesystem::path& file, const Texture& texture) {
+    ByteBuffer key_values;
+    for (const auto& [key, value] : texture.metadata) {
+        if (is_reserved(key)) continue;
+        key_values.u32(std::uint32_t(key.size() + 1 + value.size() + 1));
+        key_values.text(key);
+        key_values.u8(0);
+        key_values.text(value);
+        key_values.u8(0);
+        key_values.align(4);
+    }
+    const GlFormat gl = gl_format(texture.encoding);
+    ByteBuffer head;
+    for (std::uint8_t byte : k_ktx1_identifier) head.u8(byte);
+    head.u32(k_ktx1_endianness);
+    head.u32(gl.type);
+    head.u32(gl.type_bytes);
+    head.u32(gl.format);
+    head.u32(gl.internal_format);
+    head.u32(gl.format);  // base internal format
+    head.u32(std::uint32_t(texture.width));
+    head.u32(std::uint32_t(texture.height));
+    head.u32(0);  // depth
+    head.u32(0);  // array elements
+    head.u32(std::uint32_t(texture.faces));
+    head.u32(std::uint32_t(texture.levels.size()));
+    head.u32(std::uint32_t(key_values.size()));
+
+    for (std::size_t l = 0; l < texture.levels.size(); ++l)
+        if (texture.levels[l].size() / std::size_t(texture.faces) > 0xffffffffu)
+            return Error{"a face of more than 4 GiB does not fit into KTX 1", file.string(), "write KTX2"};
+
+    return write_file_atomically(file, [&](const std::filesystem::path& path) {
+        OutputFile out(path);
+        out.write(head.bytes());
+        out.write(key_values.bytes());
+        for (const auto& level : texture.levels) {
+            // For a cube, imageSize counts one face. Rows, faces and levels are multiples of 4 bytes in all our
+            // encodings: no padding.
+            ByteBuffer size;
+            size.u32(std::uint32_t(level.size() / std::size_t(texture.faces)));
+            out.write(size.bytes());
+            out.write(level);
+        }
+        return out.finish();
+    });
+}
+
+}  // namespace domelight
