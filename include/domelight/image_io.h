@@ -25,8 +25,8 @@ struct ExrWriteOptions {
     std::string compression = "zip";        ///< none | rle | zips | zip | piz | pxr24 | b44 | b44a | dwaa | dwab
     /// The envmap attribute: "", "latlong" (the pixels must then be in OpenEXR's own lat-long convention) or "cube" (pixels: a size x 6 size strip
     /// of faces in OpenGL's orientation, which are turned into OpenEXR's).
-    std::string envmap;
-    std::map<std::string, std::string> attributes;  ///< further attributes of type string
+    std::string envmap = {};
+    std::map<std::string, std::string> attributes = {};  ///< further attributes of type string
     int threads = 0;                        ///< for compression; 0: all
 };
 /// OpenEXR scanline image, RGB (or as many as 4 channels), linear Rec. 709. A channel's values beyond half's range are clipped to 65504.

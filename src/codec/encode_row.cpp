@@ -31,8 +31,8 @@ float clamp_to(float v, float low, float high) {
     return v < low ? low : v > high ? high : v;
 }
 
-/// One coder an encoding: whether it keeps every float, its range per channel, and the conversion of one texel (already inside the range, never NaN)
-/// to bytes and back.
+/// One coder an encoding: whether it keeps every float, its range per channel, and the conversion of one texel (already
+/// inside the range, never NaN) to bytes and back.
 struct HalfCoder {
     static constexpr bool k_exact = false;
     static constexpr std::array<float, 3> k_min{-k_half_max, -k_half_max, -k_half_max},
@@ -136,7 +136,8 @@ EncodeSums encode_row_with(const float* rgb, int count, const float* weight, std
         if (!(read == inside)) {
             ++sums.clipped;
             const Vec3d above = Vec3d(v) - Vec3d(inside);
-            sums.lost += w * dot(k_luminance, Vec3d{std::max(above.x, 0.0), std::max(above.y, 0.0), std::max(above.z, 0.0)});
+            sums.lost +=
+                w * dot(k_luminance, Vec3d{std::max(above.x, 0.0), std::max(above.y, 0.0), std::max(above.z, 0.0)});
         } else if (!Coder::k_exact) {
             const Vec3d difference = Vec3d(Coder::decode(out)) - Vec3d(v);
             sums.error += w * dot(difference, difference);

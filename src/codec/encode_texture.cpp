@@ -1,9 +1,9 @@
 // Filtered levels to texture levels, with a report of what the encoding lost.
 #include "domelight/parallel.h"
 #include "domelight/texture.h"
-#include "simd/encode_row.h"
 
 #include "codec/encode_row.h"
+#include "simd/encode_row.h"
 
 #include <cassert>
 #include <cmath>

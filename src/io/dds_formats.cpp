@@ -245,7 +245,8 @@ DdsFormat legacy_dds_format(std::uint32_t flags, std::uint32_t four_cc, std::uin
                             const std::uint32_t (&masks)[4]) {
     constexpr std::uint32_t k_alpha_pixels = 0x1, k_alpha = 0x2, k_four_cc = 0x4, k_rgb = 0x40, k_luminance = 0x20000;
     if (flags & k_four_cc) return coded_format(four_cc);
-    if (!(flags & (k_alpha | k_rgb | k_luminance)) || bits == 0 || bits > 32 || bits % 8) return {"an unknown format", 1, 0, {}};
+    if (!(flags & (k_alpha | k_rgb | k_luminance)) || bits == 0 || bits > 32 || bits % 8)
+        return {"an unknown format", 1, 0, {}};
     // Channels in the order of their bits: "BGRA8".
     const bool luminance = flags & k_luminance, has_colour = flags & (k_rgb | k_luminance);
     std::string name;

@@ -1,11 +1,11 @@
 // Vector forms of codec/encode_row.cpp; see there and in codec/ for what each step is.
 #include "simd/encode_row.h"
 
-#include <cstring>
-
 #include "codec/half.h"
 #include "codec/r11g11b10f.h"
 #include "codec/rgb9e5.h"
+
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/encode_row.cpp"
@@ -24,7 +24,8 @@ struct Rgb {
     V r, g, b;
 };
 
-/// Stores texels inside the range and gives back what was stored. Half: by the processor's own conversion, which rounds to nearest even.
+/// Stores texels inside the range and gives back what was stored. Half: by the processor's own conversion, which rounds
+/// to nearest even.
 struct HalfCoder {
     static constexpr int k_bytes = 8;
     static constexpr float k_min = -k_half_max, k_max = k_half_max, k_max_blue = k_half_max;
@@ -33,8 +34,8 @@ struct HalfCoder {
         const hn::Rebind<hwy::float16_t, D> dh;
         const hn::Rebind<std::uint16_t, D> du;
         const auto r = hn::DemoteTo(dh, v.r), g = hn::DemoteTo(dh, v.g), b = hn::DemoteTo(dh, v.b);
-        hn::StoreInterleaved4(hn::BitCast(du, r), hn::BitCast(du, g), hn::BitCast(du, b), hn::Set(du, std::uint16_t(0x3c00)), du,
-                              reinterpret_cast<std::uint16_t*>(out));
+        hn::StoreInterleaved4(hn::BitCast(du, r), hn::BitCast(du, g), hn::BitCast(du, b),
+                              hn::Set(du, std::uint16_t(0x3c00)), du, reinterpret_cast<std::uint16_t*>(out));
         return {hn::PromoteTo(d, r), hn::PromoteTo(d, g), hn::PromoteTo(d, b)};
     }
 };
@@ -49,16 +50,21 @@ struct Rgb9e5Coder {
         const auto floor_log2 = hn::Sub(hn::ShiftRight<23>(hn::BitCast(di, largest)), hn::Set(di, 127));
         auto exponent = hn::Add(hn::Max(floor_log2, hn::Set(di, -16)), hn::Set(di, 16));
         const auto half = hn::Set(d, 0.5f);
-        const auto inverse_step = [&](auto e) HWY_ATTR { return hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127 + 24), e))); };
-        const auto mantissa = [&](auto c, auto scale) HWY_ATTR { return hn::ConvertTo(di, hn::Add(hn::Mul(c, scale), half)); };
+        const auto inverse_step = [&](auto e) HWY_ATTR {
+            return hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127 + 24), e)));
+        };
+        const auto mantissa = [&](auto c, auto scale)
+                                  HWY_ATTR { return hn::ConvertTo(di, hn::Add(hn::Mul(c, scale), half)); };
         const auto carries = hn::Eq(mantissa(largest, inverse_step(exponent)), hn::Set(di, 512));
         exponent = hn::Add(exponent, hn::IfThenElseZero(carries, hn::Set(di, 1)));
         const auto scale = inverse_step(exponent);
         const auto r = mantissa(v.r, scale), g = mantissa(v.g, scale), b = mantissa(v.b, scale);
-        const auto packed = hn::Or(hn::Or(r, hn::ShiftLeft<9>(g)), hn::Or(hn::ShiftLeft<18>(b), hn::ShiftLeft<27>(exponent)));
+        const auto packed =
+            hn::Or(hn::Or(r, hn::ShiftLeft<9>(g)), hn::Or(hn::ShiftLeft<18>(b), hn::ShiftLeft<27>(exponent)));
         hn::StoreU(packed, di, reinterpret_cast<std::int32_t*>(out));
         const auto step = hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(exponent, hn::Set(di, 127 - 24))));
-        return {hn::Mul(hn::ConvertTo(d, r), step), hn::Mul(hn::ConvertTo(d, g), step), hn::Mul(hn::ConvertTo(d, b), step)};
+        return {hn::Mul(hn::ConvertTo(d, r), step), hn::Mul(hn::ConvertTo(d, g), step),
+                hn::Mul(hn::ConvertTo(d, b), step)};
     }
 };
 
@@ -69,13 +75,15 @@ hn::Vec<hn::RebindToUnsigned<D>> small_float(D d, V v, V& rounded) {
     constexpr int k_shift = 23 - mantissa_bits;
     const auto bits = hn::BitCast(du, v);
     const auto odd = hn::And(hn::ShiftRight<k_shift>(bits), hn::Set(du, 1u));
-    const auto shifted = hn::ShiftRight<k_shift>(hn::Add(bits, hn::Add(odd, hn::Set(du, 0xc8000000u + ((1u << (k_shift - 1)) - 1)))));
+    const auto shifted =
+        hn::ShiftRight<k_shift>(hn::Add(bits, hn::Add(odd, hn::Set(du, 0xc8000000u + ((1u << (k_shift - 1)) - 1)))));
     const auto align = hn::Set(d, float(1 << (9 - mantissa_bits)));
     const auto aligned = hn::Add(v, align);
     const auto is_small = hn::Lt(v, hn::Set(d, 0x1p-14f));
     const auto normal_value = hn::BitCast(d, hn::Add(hn::ShiftLeft<k_shift>(shifted), hn::Set(du, 112u << 23)));
     rounded = hn::IfThenElse(is_small, hn::Sub(aligned, align), normal_value);
-    return hn::IfThenElse(hn::RebindMask(du, is_small), hn::Sub(hn::BitCast(du, aligned), hn::BitCast(du, align)), shifted);
+    return hn::IfThenElse(hn::RebindMask(du, is_small), hn::Sub(hn::BitCast(du, aligned), hn::BitCast(du, align)),
+                          shifted);
 }
 
 struct R11g11b10fCoder {
@@ -85,8 +93,10 @@ struct R11g11b10fCoder {
     static Rgb<V> store(D d, const Rgb<V>& v, std::uint8_t* out) {
         const hn::RebindToUnsigned<D> du;
         Rgb<V> rounded = v;
-        const auto r = small_float<6>(d, v.r, rounded.r), g = small_float<6>(d, v.g, rounded.g), b = small_float<5>(d, v.b, rounded.b);
-        hn::StoreU(hn::Or(r, hn::Or(hn::ShiftLeft<11>(g), hn::ShiftLeft<22>(b))), du, reinterpret_cast<std::uint32_t*>(out));
+        const auto r = small_float<6>(d, v.r, rounded.r), g = small_float<6>(d, v.g, rounded.g),
+                   b = small_float<5>(d, v.b, rounded.b);
+        hn::StoreU(hn::Or(r, hn::Or(hn::ShiftLeft<11>(g), hn::ShiftLeft<22>(b))), du,
+                   reinterpret_cast<std::uint32_t*>(out));
         return rounded;
     }
 };
@@ -101,12 +111,17 @@ EncodeSums encode_row_with(Encoding encoding, const float* rgb, int count, const
     const hn::ScalableTag<float> d;
     using V = hn::Vec<decltype(d)>;
     const int lanes = int(hn::Lanes(d));
-    const auto low = hn::Set(d, Coder::k_min), high = hn::Set(d, Coder::k_max), high_blue = hn::Set(d, Coder::k_max_blue);
+    const auto low = hn::Set(d, Coder::k_min), high = hn::Set(d, Coder::k_max),
+               high_blue = hn::Set(d, Coder::k_max_blue);
     const auto luminance = [&](const Rgb<V>& v) HWY_ATTR {
-        return hn::Add(hn::Mul(hn::Set(d, 0.2126f), v.r), hn::Add(hn::Mul(hn::Set(d, 0.7152f), v.g), hn::Mul(hn::Set(d, 0.0722f), v.b)));
+        return hn::Add(hn::Mul(hn::Set(d, 0.2126f), v.r),
+                       hn::Add(hn::Mul(hn::Set(d, 0.7152f), v.g), hn::Mul(hn::Set(d, 0.0722f), v.b)));
     };
-    const auto square = [&](const Rgb<V>& v) HWY_ATTR { return hn::Add(hn::Mul(v.r, v.r), hn::Add(hn::Mul(v.g, v.g), hn::Mul(v.b, v.b))); };
-    const auto minus = [](const Rgb<V>& a, const Rgb<V>& b) HWY_ATTR { return Rgb<V>{hn::Sub(a.r, b.r), hn::Sub(a.g, b.g), hn::Sub(a.b, b.b)}; };
+    const auto square = [&](const Rgb<V>& v) HWY_ATTR {
+        return hn::Add(hn::Mul(v.r, v.r), hn::Add(hn::Mul(v.g, v.g), hn::Mul(v.b, v.b)));
+    };
+    const auto minus = [](const Rgb<V>& a, const Rgb<V>& b)
+                           HWY_ATTR { return Rgb<V>{hn::Sub(a.r, b.r), hn::Sub(a.g, b.g), hn::Sub(a.b, b.b)}; };
     const auto number = [](V v) HWY_ATTR { return hn::IfThenElseZero(hn::Eq(v, v), v); };
     V power = hn::Zero(d), lost = power, error = power, norm = power;
     EncodeSums sums;
@@ -115,12 +130,14 @@ EncodeSums encode_row_with(Encoding encoding, const float* rgb, int count, const
         Rgb<V> read{hn::Undefined(d), hn::Undefined(d), hn::Undefined(d)};
         hn::LoadInterleaved3(d, rgb + 3 * x, read.r, read.g, read.b);
         const Rgb<V> v{number(read.r), number(read.g), number(read.b)};
-        const Rgb<V> inside{hn::Min(hn::Max(v.r, low), high), hn::Min(hn::Max(v.g, low), high), hn::Min(hn::Max(v.b, low), high_blue)};
+        const Rgb<V> inside{hn::Min(hn::Max(v.r, low), high), hn::Min(hn::Max(v.g, low), high),
+                            hn::Min(hn::Max(v.b, low), high_blue)};
         const Rgb<V> stored = Coder::store(d, inside, out + std::size_t(x) * Coder::k_bytes);
         const auto w = hn::LoadU(d, weight + x);
         power = hn::Add(power, hn::Mul(w, luminance(v)));
         // Not Ne: that is false for NaN.
-        const auto kept = hn::And(hn::Eq(read.r, inside.r), hn::And(hn::Eq(read.g, inside.g), hn::Eq(read.b, inside.b)));
+        const auto kept =
+            hn::And(hn::Eq(read.r, inside.r), hn::And(hn::Eq(read.g, inside.g), hn::Eq(read.b, inside.b)));
         const auto clipped = hn::Not(kept);
         auto w_kept = w;
         if (HWY_UNLIKELY(!hn::AllFalse(d, clipped))) {
@@ -146,13 +163,17 @@ EncodeSums encode_row_here(Encoding encoding, const float* rgb, int count, const
     switch (encoding) {
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_NEON
         // Only where the processor converts: Highway's own emulation rounds differently.
-        case Encoding::rgba16f: return encode_row_with<HalfCoder>(encoding, rgb, count, weight, out);
+        case Encoding::rgba16f:
+            return encode_row_with<HalfCoder>(encoding, rgb, count, weight, out);
 #endif
 #if HWY_TARGET != HWY_SCALAR
-        case Encoding::rgb9e5: return encode_row_with<Rgb9e5Coder>(encoding, rgb, count, weight, out);
-        case Encoding::r11g11b10f: return encode_row_with<R11g11b10fCoder>(encoding, rgb, count, weight, out);
+        case Encoding::rgb9e5:
+            return encode_row_with<Rgb9e5Coder>(encoding, rgb, count, weight, out);
+        case Encoding::r11g11b10f:
+            return encode_row_with<R11g11b10fCoder>(encoding, rgb, count, weight, out);
 #endif
-        default: return encode_row_scalar(encoding, rgb, count, weight, out);
+        default:
+            return encode_row_scalar(encoding, rgb, count, weight, out);
     }
 }
 

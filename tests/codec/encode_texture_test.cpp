@@ -1,17 +1,19 @@
-#include <cmath>
-#include <limits>
-
-#include "codec/encode_row.h"
 #include "domelight/projection.h"
 #include "domelight/texture.h"
+
+#include "codec/encode_row.h"
 #include "simd/encode_row.h"
 #include "test.h"
+
+#include <cmath>
+#include <limits>
 
 using namespace domelight;
 
 namespace {
 
-constexpr Encoding k_all[] = {Encoding::rgba16f, Encoding::rgba32f, Encoding::rgb9e5, Encoding::r11g11b10f, Encoding::rg16f, Encoding::rg32f};
+constexpr Encoding k_all[] = {Encoding::rgba16f,    Encoding::rgba32f, Encoding::rgb9e5,
+                              Encoding::r11g11b10f, Encoding::rg16f,   Encoding::rg32f};
 
 float noise(std::uint32_t& state) {
     state = state * 1664525u + 1013904223u;
@@ -49,10 +51,14 @@ TEST_CASE("encode_texture: decoding gives back what the encoding can hold") {
     const auto tolerance = [](Encoding e) {
         switch (e) {
             case Encoding::rgba32f:
-            case Encoding::rg32f: return 0.0;
-            case Encoding::rgb9e5: return std::exp2(-9);
-            case Encoding::r11g11b10f: return std::exp2(-6);
-            default: return std::exp2(-11);
+            case Encoding::rg32f:
+                return 0.0;
+            case Encoding::rgb9e5:
+                return std::exp2(-9);
+            case Encoding::r11g11b10f:
+                return std::exp2(-6);
+            default:
+                return std::exp2(-11);
         }
     };
     for (Encoding e : k_all) {
@@ -73,7 +79,8 @@ TEST_CASE("encode_texture: decoding gives back what the encoding can hold") {
                     for (int x = 0; x < back.width(); ++x) {
                         const float* v = source.at(x, y);
                         const double largest = std::max({v[0], v[1], v[2]});
-                        for (int c = 0; c < back.channels(); ++c) REQUIRE(std::abs(back.at(x, y)[c] - v[c]) <= tolerance(e) * largest);
+                        for (int c = 0; c < back.channels(); ++c)
+                            REQUIRE(std::abs(back.at(x, y)[c] - v[c]) <= tolerance(e) * largest);
                     }
             }
         }
@@ -137,11 +144,13 @@ TEST_CASE("encode_texture: the same bytes and reports on any number of threads")
 TEST_CASE("encode_row: the fast rows agree with the plain ones") {
     std::vector<float> rgb;
     std::uint32_t state = 3;
-    for (int i = 0; i < 3 * 1031; ++i) rgb.push_back(std::exp2(40 * noise(state) - 24) * (noise(state) < 0.05f ? -1.0f : 1.0f));
+    for (int i = 0; i < 3 * 1031; ++i)
+        rgb.push_back(std::exp2(40 * noise(state) - 24) * (noise(state) < 0.05f ? -1.0f : 1.0f));
     rgb[5] = std::numeric_limits<float>::quiet_NaN();
     rgb[20] = 1e30f;
     rgb[31] = 0;
-    const std::vector<float> special{65504, 65519, 65520, 65408, 65409, 65024, 64512, 0x1p-14f, 0x1p-24f, 0x1p-25f, 1e-40f, 511.6f / 512};
+    const std::vector<float> special{65504, 65519,    65520,    65408,    65409,  65024,
+                                     64512, 0x1p-14f, 0x1p-24f, 0x1p-25f, 1e-40f, 511.6f / 512};
     std::copy(special.begin(), special.end(), rgb.begin() + 300);
     std::vector<float> weight(1031);
     for (float& w : weight) w = 0.5f + noise(state);

@@ -1,19 +1,21 @@
 #include "codec/half.h"
 
+#include "test.h"
+
 #include <Imath/half.h>
 
 #include <cmath>
 #include <limits>
-
-#include "test.h"
 
 using namespace domelight;
 
 TEST_CASE("half: every half survives the way to float and back") {
     for (std::uint32_t h = 0; h < 65536; ++h) {
         const float f = float_from_half(std::uint16_t(h));
-        if (std::isnan(f)) CHECK((half_from_float(f) & 0x7fffu) > 0x7c00u);
-        else REQUIRE(half_from_float(f) == h);
+        if (std::isnan(f))
+            CHECK((half_from_float(f) & 0x7fffu) > 0x7c00u);
+        else
+            REQUIRE(half_from_float(f) == h);
     }
 }
 

@@ -1,12 +1,12 @@
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <random>
-
 #include "codec/r11g11b10f.h"
 #include "codec/rgb9e5.h"
 #include "codec/rgbe.h"
 #include "test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
 
 using namespace domelight;
 
@@ -34,7 +34,8 @@ void check_small_float(float max) {
         REQUIRE(small_float_from_float<mantissa_bits>(std::nextafter(middle, 1e9f)) == bits + 1);
     }
     CHECK(float_from_small_float<mantissa_bits>(count - 1) == max);
-    for (float high : {max * 1.001f, 1e30f, std::numeric_limits<float>::infinity()}) CHECK(small_float_from_float<mantissa_bits>(high) == count - 1);
+    for (float high : {max * 1.001f, 1e30f, std::numeric_limits<float>::infinity()})
+        CHECK(small_float_from_float<mantissa_bits>(high) == count - 1);
     for (float zero : {0.0f, -1.0f, -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()})
         CHECK(small_float_from_float<mantissa_bits>(zero) == 0);
 }
@@ -53,8 +54,10 @@ TEST_CASE("rgb9e5: off by at most half a step of the largest channel's mantissa"
         const Vec3f v{floats.next(65408, 34), floats.next(65408, 34), floats.next(65408, 34)};
         const Vec3f back = rgb_from_rgb9e5(rgb9e5_from_rgb(v));
         const float largest = std::max({v.x, v.y, v.z, 0x1p-16f});
-        // 2^9 steps below the next power of two above the largest; a channel that rounds up to it doubles the step for the others.
-        const float step = std::ldexp(1.0f, std::max(std::ilogb(largest), -16) + 1 - 9), slack = largest > step * 511.4f ? 2 : 1;
+        // 2^9 steps below the next power of two above the largest; a channel that rounds up to it doubles the step for
+        // the others.
+        const float step = std::ldexp(1.0f, std::max(std::ilogb(largest), -16) + 1 - 9),
+                    slack = largest > step * 511.4f ? 2 : 1;
         REQUIRE(std::abs(back.x - v.x) <= 0.5f * step * slack);
         REQUIRE(std::abs(back.y - v.y) <= 0.5f * step * slack);
         REQUIRE(std::abs(back.z - v.z) <= 0.5f * step * slack);
@@ -76,14 +79,17 @@ TEST_CASE("rgb9e5: known words and the ends of the range") {
 TEST_CASE("rgb9e5: what was decoded encodes to the same value") {
     Floats floats;
     for (int i = 0; i < 20000; ++i) {
-        const Vec3f v = rgb_from_rgb9e5(rgb9e5_from_rgb({floats.next(65408, 40), floats.next(65408, 40), floats.next(65408, 40)}));
+        const Vec3f v =
+            rgb_from_rgb9e5(rgb9e5_from_rgb({floats.next(65408, 40), floats.next(65408, 40), floats.next(65408, 40)}));
         REQUIRE(rgb_from_rgb9e5(rgb9e5_from_rgb(v)) == v);
     }
 }
 
 TEST_CASE("rgbe: off by at most half a step, unbiased, and stable") {
     Floats floats;
-    const auto decode = [](std::array<std::uint8_t, 4> p, int c) { return double(p[std::size_t(c)]) * std::ldexp(1.0, p[3] - 136); };
+    const auto decode = [](std::array<std::uint8_t, 4> p, int c) {
+        return double(p[std::size_t(c)]) * std::ldexp(1.0, p[3] - 136);
+    };
     double bias = 0;
     for (int i = 0; i < 100000; ++i) {
         // At least 16 steps each, so that errors are uniform over a step.

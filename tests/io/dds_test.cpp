@@ -1,10 +1,11 @@
-#include <algorithm>
-#include <cstring>
-
 #include "domelight/texture.h"
+
 #include "io/io_helpers.h"
 #include "io/texture_reading.h"
 #include "test.h"
+
+#include <algorithm>
+#include <cstring>
 
 using namespace domelight;
 using namespace domelight::test;
@@ -35,9 +36,9 @@ TEST_CASE("dds: faces one after the other, each with all its levels") {
     const Texture texture = sample_texture(Encoding::rgba16f, 4, 6, 3);
     REQUIRE(write_dds(file, texture));
     const auto bytes = file_bytes(file);
-    CHECK(u32_at(bytes, 128) == 10);      // DXGI_FORMAT_R16G16B16A16_FLOAT
-    CHECK(u32_at(bytes, 136) == 4);       // cube
-    CHECK(u32_at(bytes, 140) == 1);       // one of it
+    CHECK(u32_at(bytes, 128) == 10);  // DXGI_FORMAT_R16G16B16A16_FLOAT
+    CHECK(u32_at(bytes, 136) == 4);   // cube
+    CHECK(u32_at(bytes, 140) == 1);   // one of it
     CHECK((u32_at(bytes, 112) & 0xfe00) == 0xfe00);
     std::size_t at = 148;
     for (std::size_t face = 0; face < 6; ++face)
@@ -100,16 +101,19 @@ TEST_CASE("dds: formats of other tools are named") {
 
 TEST_CASE("dds: odd and hostile files give a result or one error") {
     const auto data = data_folder();
-    if (!data || !std::filesystem::exists(*data / "malformed/dds_magnum")) return note_skip("DOMELIGHT_DATA has no malformed/dds_magnum");
+    if (!data || !std::filesystem::exists(*data / "malformed/dds_magnum"))
+        return note_skip("DOMELIGHT_DATA has no malformed/dds_magnum");
     std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(*data / "malformed/dds_magnum")) files.push_back(entry.path());
+    for (const auto& entry : std::filesystem::directory_iterator(*data / "malformed/dds_magnum"))
+        files.push_back(entry.path());
     for (const auto& entry : std::filesystem::directory_iterator(*data / "malformed/oiio"))
         if (entry.path().extension() == ".dds") files.push_back(entry.path());
     CHECK(files.size() >= 29);
     for (const auto& file : files) {
         const auto info = read_texture_info(file);
         const auto texture = read_texture(file);
-        if (info) CHECK(info->decodable == bool(texture));
+        if (info)
+            CHECK(info->decodable == bool(texture));
         else {
             CHECK(info.error().where == file.string());
             CHECK(!texture);

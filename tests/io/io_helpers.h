@@ -1,13 +1,13 @@
 #pragma once
 // Files as bytes, and textures to write.
 
+#include "domelight/texture.h"
+
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
-
-#include "domelight/texture.h"
 
 namespace domelight::test {
 
@@ -42,7 +42,8 @@ inline Texture sample_texture(Encoding encoding, int size, int faces, int levels
 }
 
 inline bool same_texels(const Texture& a, const Texture& b) {
-    return a.encoding == b.encoding && a.width == b.width && a.height == b.height && a.faces == b.faces && a.levels == b.levels;
+    return a.encoding == b.encoding && a.width == b.width && a.height == b.height && a.faces == b.faces &&
+           a.levels == b.levels;
 }
 
 }  // namespace domelight::test

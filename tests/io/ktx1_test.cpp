@@ -1,11 +1,12 @@
-#include <algorithm>
-#include <cmath>
-#include <sstream>
-
 #include "domelight/texture.h"
+
 #include "io/io_helpers.h"
 #include "io/texture_reading.h"
 #include "test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
 
 using namespace domelight;
 using namespace domelight::test;

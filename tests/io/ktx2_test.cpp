@@ -1,19 +1,24 @@
-#include <algorithm>
-#include <cstring>
-
 #include "domelight/texture.h"
+
 #include "io/io_helpers.h"
 #include "io/texture_reading.h"
 #include "io/vulkan_formats.h"
 #include "test.h"
+
+#include <algorithm>
+#include <cstring>
 
 using namespace domelight;
 using namespace domelight::test;
 
 namespace {
 
-std::uint32_t u32(const std::vector<std::uint8_t>& bytes, std::size_t at) { return u32_at(bytes, at); }
-std::uint64_t u64(const std::vector<std::uint8_t>& bytes, std::size_t at) { return u64_at(bytes, at); }
+std::uint32_t u32(const std::vector<std::uint8_t>& bytes, std::size_t at) {
+    return u32_at(bytes, at);
+}
+std::uint64_t u64(const std::vector<std::uint8_t>& bytes, std::size_t at) {
+    return u64_at(bytes, at);
+}
 
 void set_u32(std::vector<std::uint8_t>& bytes, std::size_t at, std::uint32_t value) {
     for (int i = 0; i < 4; ++i) bytes[at + std::size_t(i)] = std::uint8_t(value >> 8 * i);
@@ -65,10 +70,11 @@ TEST_CASE("ktx2: levels lie aligned, smallest first, key/value data sorted") {
             CHECK(std::memcmp(bytes.data() + offset, texture.levels[l].data(), length) == 0);
             previous = offset;
         }
-        CHECK(u32(bytes, 48) == 80 + 24 * 5);             // descriptor right behind the index
+        CHECK(u32(bytes, 48) == 80 + 24 * 5);                      // descriptor right behind the index
         CHECK(u32(bytes, 56) == u32(bytes, 48) + u32(bytes, 52));  // key/value data right behind it
         std::string last;
-        for (std::size_t at = u32(bytes, 56); at < u32(bytes, 56) + u32(bytes, 60); at += (4 + u32(bytes, at) + 3) / 4 * 4) {
+        for (std::size_t at = u32(bytes, 56); at < u32(bytes, 56) + u32(bytes, 60);
+             at += (4 + u32(bytes, at) + 3) / 4 * 4) {
             const std::string key = reinterpret_cast<const char*>(bytes.data() + at + 4);
             CHECK(last < key);
             last = key;
@@ -87,18 +93,18 @@ TEST_CASE("ktx2: the data format descriptors, word for word") {
         return words;
     };
     using Words = std::vector<std::uint32_t>;
-    // Total size; vendor and type; version 2 and block size; RGBSDA, BT.709, linear; texel block; bytes of plane 0; planes 4-7; then samples of
-    // {offset, length - 1, channel and qualifiers}, position, lower, upper.
-    CHECK(descriptor(Encoding::rg16f) == Words{60, 0, 2 | 56 << 16, 0x00010101, 0, 4, 0, 0xc00f0000, 0, 0xbf800000, 0x3f800000, 0xc10f0010, 0, 0xbf800000,
-                                               0x3f800000});
+    // Total size; vendor and type; version 2 and block size; RGBSDA, BT.709, linear; texel block; bytes of plane 0;
+    // planes 4-7; then samples of {offset, length - 1, channel and qualifiers}, position, lower, upper.
+    CHECK(descriptor(Encoding::rg16f) == Words{60, 0, 2 | 56 << 16, 0x00010101, 0, 4, 0, 0xc00f0000, 0, 0xbf800000,
+                                               0x3f800000, 0xc10f0010, 0, 0xbf800000, 0x3f800000});
     CHECK(descriptor(Encoding::rgba32f)[5] == 16);
     CHECK(descriptor(Encoding::rgba32f)[19] == 0xcf1f0060);
-    CHECK(descriptor(Encoding::r11g11b10f) == Words{76, 0, 2 | 72 << 16, 0x00010101, 0, 4, 0, 0x800a0000, 0, 0, 0x3f800000, 0x810a000b, 0, 0,
-                                                    0x3f800000, 0x82090016, 0, 0, 0x3f800000});
-    CHECK(descriptor(Encoding::rgb9e5) == Words{124, 0, 2 | 120 << 16, 0x00010101, 0, 4, 0,
-                                                0x00080000, 0, 0, 8448, 0x2004001b, 0, 15, 31,
-                                                0x01080009, 0, 0, 8448, 0x2104001b, 0, 15, 31,
-                                                0x02080012, 0, 0, 8448, 0x2204001b, 0, 15, 31});
+    CHECK(descriptor(Encoding::r11g11b10f) == Words{76, 0, 2 | 72 << 16, 0x00010101, 0, 4, 0, 0x800a0000, 0, 0,
+                                                    0x3f800000, 0x810a000b, 0, 0, 0x3f800000, 0x82090016, 0, 0,
+                                                    0x3f800000});
+    CHECK(descriptor(Encoding::rgb9e5) ==
+          Words{124, 0, 2 | 120 << 16, 0x00010101, 0, 4,  0,  0x00080000, 0, 0, 8448, 0x2004001b, 0, 15, 31, 0x01080009,
+                0,   0, 8448,          0x2104001b, 0, 15, 31, 0x02080012, 0, 0, 8448, 0x2204001b, 0, 15, 31});
 }
 
 TEST_CASE("ktx2: writing is deterministic and foreign reserved keys are not passed on") {
@@ -177,7 +183,8 @@ TEST_CASE("ktx2: headers that promise too much are refused before memory is take
 
 TEST_CASE("ktx2: the conformance suite's invalid files give a result or one error") {
     const auto data = data_folder();
-    if (!data || !std::filesystem::exists(*data / "malformed/ktx2_cts")) return note_skip("DOMELIGHT_DATA has no malformed/ktx2_cts");
+    if (!data || !std::filesystem::exists(*data / "malformed/ktx2_cts"))
+        return note_skip("DOMELIGHT_DATA has no malformed/ktx2_cts");
     int files = 0, refused = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(*data / "malformed/ktx2_cts")) {
         if (!entry.is_regular_file()) continue;

@@ -1,0 +1,12 @@
+// DDS reader on arbitrary bytes.
+#include "io/texture_reading.h"
+
+#include <cstddef>
+#include <cstdint>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    domelight::MemorySource source({data, size});
+    (void)!domelight::dds_info(source);
+    (void)!domelight::dds_texture(source);
+    return 0;
+}

@@ -1,0 +1,12 @@
+// KTX2 reader on arbitrary bytes.
+#include "io/texture_reading.h"
+
+#include <cstddef>
+#include <cstdint>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    domelight::MemorySource source({data, size});
+    (void)!domelight::ktx2_info(source);
+    (void)!domelight::ktx2_texture(source);
+    return 0;
+}

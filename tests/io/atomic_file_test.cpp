@@ -1,0 +1,179 @@
+#include "domelight/image_io.h"
+#include "domelight/texture.h"
+
+#include "io/io_helpers.h"
+#include "io/output_file.h"
+#include "test.h"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <string>
+
+using namespace domelight;
+using namespace domelight::test;
+
+namespace {
+
+std::vector<std::uint8_t> bytes_of(const std::string& text) {
+    return {text.begin(), text.end()};
+}
+
+std::size_t entries(const TemporaryFolder& folder) {
+    std::size_t n = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path())) ++n;
+    return n;
+}
+
+/// Runs `work` in a child process and returns its wait status.
+template <typename Work>
+int in_child(Work work) {
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(work());
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return status;
+}
+
+/// All writers on one folder's files, under the names a b c ...; how many failed.
+int write_everything(const TemporaryFolder& folder) {
+    const Texture texture = sample_texture(Encoding::rgba16f, 64, 6, 3);
+    ImageF image(256, 256, 3);
+    Image<std::uint8_t> pixels(256, 256, 3);
+    std::uint32_t state = 9;
+    for (float& p : image.pixels()) p = float((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-12f;
+    for (auto& p : pixels.pixels()) p = std::uint8_t((state = state * 1664525u + 1013904223u) >> 24);
+    const auto failed = [](const Result<void>& written) {
+        return !written && !written.error().where.empty() && written.error().what.find("cannot write: ") == 0 ? 1 : 0;
+    };
+    return failed(write_ktx2(folder / "a", texture)) +
+           failed(write_ktx2(folder / "b", texture, Supercompression::zstd)) +
+           failed(write_ktx1(folder / "c", texture)) + failed(write_dds(folder / "d", texture)) +
+           failed(write_hdr(folder / "e", image, 1)) + failed(write_exr(folder / "f", image, {.threads = 1})) +
+           failed(write_png(folder / "g", pixels));
+}
+
+}  // namespace
+
+TEST_CASE("write_file_atomically: makes, replaces, and leaves no other file") {
+    const TemporaryFolder folder;
+    REQUIRE(write_file_atomically(folder / "a", bytes_of("one")));
+    CHECK(file_bytes(folder / "a") == bytes_of("one"));
+    REQUIRE(write_file_atomically(folder / "a", bytes_of("two")));
+    CHECK(file_bytes(folder / "a") == bytes_of("two"));
+    CHECK(entries(folder) == 1);
+}
+
+TEST_CASE("write_file_atomically: a failure leaves the old file and nothing else") {
+    const TemporaryFolder folder;
+    REQUIRE(write_file_atomically(folder / "a", bytes_of("old")));
+    const auto written = write_file_atomically(folder / "a", [&](const std::filesystem::path& path) -> Result<void> {
+        write_bytes(path, bytes_of("half of it"));
+        CHECK(file_bytes(folder / "a") == bytes_of("old"));
+        return Error{"it broke", "", "mend it"};
+    });
+    REQUIRE(!written);
+    CHECK(written.error().where == (folder / "a").string());
+    CHECK(written.error().what == "it broke");
+    CHECK(file_bytes(folder / "a") == bytes_of("old"));
+    CHECK(entries(folder) == 1);
+}
+
+TEST_CASE("write_file_atomically: no such folder, a folder, a long name, one link") {
+    const TemporaryFolder folder;
+    const auto nowhere = write_file_atomically(folder / "none/a", bytes_of("x"));
+    REQUIRE(!nowhere);
+    CHECK(nowhere.error().format().find("none/a") != std::string::npos);
+    std::filesystem::create_directory(folder / "sub");
+    CHECK(!write_file_atomically(folder / "sub", bytes_of("x")));
+    CHECK(write_file_atomically(folder / std::string(255, 'n'), bytes_of("x")));
+    CHECK(!write_file_atomically(folder / std::string(256, 'n'), bytes_of("x")));
+
+    REQUIRE(write_file_atomically(folder / "sub/real", bytes_of("x")));
+    std::filesystem::create_symlink("sub/real", folder / "link");
+    REQUIRE(write_file_atomically(folder / "link", bytes_of("through")));
+    CHECK(std::filesystem::is_symlink(folder / "link"));
+    CHECK(file_bytes(folder / "sub/real") == bytes_of("through"));
+}
+
+TEST_CASE("write_file_atomically: keeps the permissions of the file it replaces") {
+    const TemporaryFolder folder;
+    REQUIRE(write_file_atomically(folder / "a", bytes_of("x")));
+    REQUIRE(::chmod((folder / "a").c_str(), 0640) == 0);
+    REQUIRE(write_file_atomically(folder / "a", bytes_of("y")));
+    struct stat facts = {};
+    REQUIRE(::stat((folder / "a").c_str(), &facts) == 0);
+    CHECK((facts.st_mode & 0777) == 0640);
+}
+
+TEST_CASE("write_file_atomically: a device is written to, and a full one reported") {
+    CHECK(write_file_atomically("/dev/null", bytes_of("x")));
+    const auto full = write_file_atomically("/dev/full", bytes_of("x"));
+    REQUIRE(!full);
+    CHECK(full.error().what == "cannot write: No space left on device");
+    CHECK(full.error().where == "/dev/full");
+    CHECK(std::filesystem::exists("/dev/full"));
+}
+
+TEST_CASE("every writer: no room is one error, the old file stays, the new one goes") {
+    const TemporaryFolder folder;
+    for (const char* name : {"a", "b", "c", "d", "e", "f", "g"})
+        REQUIRE(write_file_atomically(folder / name, bytes_of("old")));
+    for (rlim_t room : {rlim_t(0), rlim_t(100), rlim_t(10000)}) {
+        const int status = in_child([&] {
+            ::signal(SIGXFSZ, SIG_IGN);
+            const rlimit limit{room, room};
+            ::setrlimit(RLIMIT_FSIZE, &limit);
+            return write_everything(folder);
+        });
+        REQUIRE(WIFEXITED(status));
+        CHECK(WEXITSTATUS(status) == 7);
+        for (const char* name : {"a", "b", "c", "d", "e", "f", "g"})
+            REQUIRE(file_bytes(folder / name) == bytes_of("old"));
+        CHECK(entries(folder) == 7);
+    }
+}
+
+TEST_CASE("remove_temporaries_on_signals: interruption removes the temporary and ends as the signal does") {
+    const TemporaryFolder folder;
+    REQUIRE(write_file_atomically(folder / "a", bytes_of("old")));
+    for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        const int status = in_child([&] {
+            ::signal(signal, SIG_DFL);
+            remove_temporaries_on_signals();
+            (void)!write_file_atomically(folder / "a", [&](const std::filesystem::path& path) -> Result<void> {
+                write_bytes(path, bytes_of("half of it"));
+                // Two at a time: both go.
+                (void)!write_file_atomically(folder / "b", [&](const std::filesystem::path&) -> Result<void> {
+                    ::raise(signal);
+                    return {};
+                });
+                return {};
+            });
+            return 0;
+        });
+        REQUIRE(WIFSIGNALED(status));
+        CHECK(WTERMSIG(status) == signal);
+        CHECK(entries(folder) == 1);
+        CHECK(file_bytes(folder / "a") == bytes_of("old"));
+    }
+}
+
+TEST_CASE("remove_temporaries_on_signals: a signal that was ignored stays ignored, and a file-size limit is an error") {
+    const TemporaryFolder folder;
+    const int status = in_child([&] {
+        ::signal(SIGHUP, SIG_IGN);
+        remove_temporaries_on_signals();
+        ::raise(SIGHUP);
+        const rlimit limit{10, 10};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        return write_file_atomically(folder / "a", bytes_of("more than ten bytes")) ? 1 : 0;
+    });
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 0);
+    CHECK(entries(folder) == 0);
+}
