@@ -28,7 +28,7 @@ struct RepairReport {
 struct EnvironmentOptions {
     std::string projection = "auto";  ///< auto | latlong | cube-cross | cube-strip | cube-faces
     /// Lat-long convention: default, usd, mitsuba, openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]"; empty: what the file says, else default.
-    std::string latlong;
+    std::string latlong = "";
     std::string decode = "auto";      ///< PNG and JPEG: auto (= srgb) | srgb | gamma22 | linear
     double rotate_y_deg = 0;          ///< turns the light about +Y: +X moves towards +Z
     std::string up = "+Y";            ///< the world axis (of the file's author) that the image's top shows: +Y, +Z, ...

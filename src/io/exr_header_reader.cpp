@@ -185,7 +185,7 @@ Result<ExrPreflight> check_exr_headers(std::span<const std::uint8_t> file, std::
         if (!size || *size < 0) return damaged("an attribute has no size");
         const std::size_t value_at = cursor.at();
         if (!cursor.skip(std::size_t(*size)))
-            return damaged(fmt::format("attribute \"{}\" reaches past the end of the file", name->substr(0, 40)));
+            return damaged(fmt::format("attribute \"{}\" reaches past the end of the file", printable(*name)));
         if (std::find(k_needed.begin(), k_needed.end(), *name) == k_needed.end())
             crossed_out.emplace_back(start + name->size() + 1, type->size());
         if (const auto read = read_attribute(*name, file.subspan(value_at, std::size_t(*size)), shape); !read)

@@ -60,6 +60,14 @@ class MemoryStream : public Imf::IStream {
     std::size_t at_ = 0;
 };
 
+/// What OpenEXR says, on one line and without the name it knows the stream by.
+std::string message_of(const std::exception& error) {
+    std::string text = error.what();
+    if (const std::size_t named = text.find("\"image\". "); named != std::string::npos) text.erase(0, named + 9);
+    while (text.ends_with('.') || text.ends_with('\n')) text.pop_back();
+    return printable(text, 200);
+}
+
 /// The channels that make up the picture: three, or one luminance, or luminance and chroma.
 struct ColourChannels {
     enum class Kind { none, rgb, luminance, luminance_chroma } kind = Kind::none;
@@ -137,7 +145,7 @@ Result<int> choose_part(const Imf::MultiPartInputFile& file) {
         }
         if (find_colour(header.channels()).kind != ColourChannels::Kind::none) return p;
         for (auto c = header.channels().begin(); c != header.channels().end() && names.size() < 200; ++c)
-            names += (names.empty() ? "" : ", ") + std::string(c.name());
+            names += (names.empty() ? "" : ", ") + printable(c.name());
     }
     if (deep) return Error{"deep images cannot be read", "", "Flatten it first."};
     return Error{fmt::format("no colour channels (R, G, B or Y) among: {}", names.empty() ? "none" : names), "", ""};
@@ -175,7 +183,7 @@ Result<void> ExrReader::open() {
         for (const std::string& name : colour_.names) {
             const Imf::Channel* channel = header.channels().findChannel(name);
             if (channel && (channel->xSampling != 1 || channel->ySampling != 1))
-                return Error{fmt::format("channel {} is subsampled", name), "", ""};
+                return Error{fmt::format("channel {} is subsampled", printable(name)), "", ""};
         }
         part_ = std::make_unique<Imf::InputPart>(*file_, *part);
     }
@@ -265,7 +273,7 @@ Result<bool> ExrReader::read(ImageView<float> rows) {
             rgba_ ? read_luminance_chroma(part, first) : read_rgb(part, first);
         }
     } catch (const std::exception& e) {
-        return Error{fmt::format("decoding near row {} failed: {}", next_row_, e.what()), "",
+        return Error{fmt::format("decoding near row {} failed: {}", next_row_, message_of(e)), "",
                      "The file is truncated or damaged."};
     }
     next_row_ += rows.height;
@@ -282,7 +290,8 @@ Result<std::unique_ptr<ImageReader>> open_exr_reader(std::shared_ptr<const FileB
     try {
         if (const auto opened = reader->open(); !opened) return opened.error();
     } catch (const std::exception& e) {
-        return Error{fmt::format("not a readable OpenEXR file: {}", e.what()), "", "The file is truncated or damaged."};
+        return Error{fmt::format("not a readable OpenEXR file: {}", message_of(e)), "",
+                     "The file is truncated or damaged."};
     }
     return std::unique_ptr<ImageReader>(std::move(reader));
 }

@@ -78,9 +78,9 @@ Result<void> apply_variable(HdrHeader& header, std::string_view line) {
         if (trimmed(value) == "32-bit_rle_xyze") {
             header.xyze = true;
         } else if (trimmed(value) != "32-bit_rle_rgbe") {
-            return Error{fmt::format("FORMAT is \"{}\", not 32-bit_rle_rgbe or 32-bit_rle_xyze",
-                                     std::string(trimmed(value)).substr(0, 40)),
-                         "", ""};
+            return Error{
+                fmt::format("FORMAT is \"{}\", not 32-bit_rle_rgbe or 32-bit_rle_xyze", printable(trimmed(value))), "",
+                ""};
         }
     } else if (name == "EXPOSURE") {
         apply_factors(header, name, numbers_in(value), 1);
@@ -94,8 +94,7 @@ Result<void> apply_variable(HdrHeader& header, std::string_view line) {
 
 /// "-Y 512 +X 1024" and its seven brothers.
 Result<void> apply_resolution(HdrHeader& header, std::string_view line) {
-    const Error broken{
-        fmt::format("resolution line is \"{}\", not like \"-Y 512 +X 1024\"", std::string(line).substr(0, 40)), "", ""};
+    const Error broken{fmt::format("resolution line is \"{}\", not like \"-Y 512 +X 1024\"", printable(line)), "", ""};
     char axis[2] = {};
     char sign[2] = {};
     long long size[2] = {};

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace domelight {
@@ -66,5 +67,8 @@ Result<std::unique_ptr<ImageReader>> open_jpeg_reader(std::shared_ptr<const File
 
 /// An error unless 1 <= width, height <= k_max_image_side.
 Result<void> check_image_size(std::int64_t width, std::int64_t height);
+
+/// Text from a file, fit for a message: at most `longest` characters, those that cannot be printed replaced.
+std::string printable(std::string_view text, std::size_t longest = 40);
 
 }  // namespace domelight
