@@ -26,16 +26,30 @@ same_version() {
 names_no_build_folder() { ! grep -rnF -e "$(cd -- "$here/../.." && pwd)" "$work/prefix/lib" --include='*.cmake'; }
 refuses_another_version() { ! cmake -S "$work/project" -B "$work/other" -DCMAKE_PREFIX_PATH="$work/moved"; }
 
+no_file() { "$work/build/bake_minimal" "$work/none.hdr" "$work/none.ktx2" 2>&1 | grep -q '^error: .*none\.hdr'; }
+
 claim "the library, headers, package and program install" cmake --install "$build" --prefix "$work/prefix"
 claim "the installed program runs and tells the project's version" same_version
 claim "the package names no folder of the build" names_no_build_folder
 # A package must not depend on where it was installed first.
 claim "the prefix can be moved" mv "$work/prefix" "$work/moved"
 cp -r "$here/project" "$work/project"
+cp "$here"/../../examples/*.cpp "$work/project"
 claim "a stranger's project finds the package" \
     cmake -S "$work/project" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/moved"
 claim "a stranger's project compiles and links" cmake --build "$work/build"
-claim "a stranger's program runs" env -C "$work" "$work/build/stranger"
+claim "a stranger's program runs" "$work/build/stranger"
+# 32 x 16 texels of (1, 1, 1): mantissa 128, exponent 129.
+{
+    printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16 +X 32\n'
+    for _ in {1..512}; do printf '\200\200\200\201'; done
+} >"$work/white.hdr"
+claim "examples/bake_minimal.cpp bakes" "$work/build/bake_minimal" "$work/white.hdr" "$work/specular.ktx2"
+# Half floats: 1.0 is 0x3c00, so a white environment leaves one value in all 6 (256^2 + ... + 16^2) texels of four channels.
+claim "what it bakes of a white environment is white" \
+    python3 -c 'import sys; d = open(sys.argv[1], "rb").read(); sys.exit(d.count(b"\x00\x3c") < 0.99 * 4 * 6 * sum((256 >> l) ** 2 for l in range(5)))' \
+    "$work/specular.ktx2"
+claim "examples/bake_minimal.cpp says what is wrong" no_file
 sed -i 's/domelight 0.1 REQUIRED/domelight 99 REQUIRED/' "$work/project/CMakeLists.txt"
 claim "another version is refused" refuses_another_version
 
