@@ -4,8 +4,8 @@
     seeds.py TARGET FOLDER
 
 They are files that the program (DOMELIGHT_PROGRAM) writes, the made-up hostile ones of tests/malformed, and the malformed ones of
-DOMELIGHT_DATA. TARGET is hdr_fuzz, exr_fuzz, ...: files of its format, told by their first bytes (most malformed ones have no usual name); a
-target of another name gets all.
+DOMELIGHT_DATA. The first word of TARGET is a format (exr_reader_fuzz): files of that format, told by their first bytes, since most malformed
+ones have no usual name. A target of another name gets all.
 """
 
 import os
@@ -48,7 +48,7 @@ def made_by(program, folder):
 
 
 def main():
-    target, out = sys.argv[1].removesuffix("_fuzz"), pathlib.Path(sys.argv[2])
+    target, out = sys.argv[1].split("_")[0], pathlib.Path(sys.argv[2])
     out.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         made = pathlib.Path(folder)
