@@ -5,6 +5,10 @@
 #include <new>
 #include <type_traits>
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 namespace domelight {
 
 /// An array of trivial values on a 64-byte boundary, as the SIMD kernels want it. Moves, does not copy. Zeroed unless asked otherwise.
@@ -15,9 +19,14 @@ class AlignedArray {
   public:
     AlignedArray() = default;
     explicit AlignedArray(std::size_t count, bool zeroed = true) : size_(count) {
-        const std::size_t bytes = (count * sizeof(T) + 63) / 64 * 64;
-        data_.reset(static_cast<T*>(std::aligned_alloc(64, bytes ? bytes : 64)));
+        // Large arrays on huge pages where the system has them: touching 50 MB for the first time in 4 KB steps costs as much as filling it.
+        const std::size_t bytes = count * sizeof(T), boundary = bytes >= k_huge_page ? k_huge_page : 64;
+        const std::size_t rounded = (bytes + boundary - 1) / boundary * boundary;
+        data_.reset(static_cast<T*>(std::aligned_alloc(boundary, rounded ? rounded : boundary)));
         if (!data_) throw std::bad_alloc();
+#ifdef __linux__
+        if (boundary == k_huge_page) madvise(data_.get(), rounded, MADV_HUGEPAGE);
+#endif
         if (zeroed) fill_zero();
     }
     T* data() { return data_.get(); }
@@ -34,6 +43,7 @@ class AlignedArray {
         void operator()(T* p) const { std::free(p); }
     };
     std::unique_ptr<T, Free> data_;
+    static constexpr std::size_t k_huge_page = std::size_t(2) << 20;
     std::size_t size_ = 0;
 };
 

@@ -17,7 +17,7 @@ int required_band_limit(const ZonalKernel& kernel) {
         case Lobe::ggx: {
             // The spectrum falls as b l K_1(b l). The clamp at the horizon adds a tail, alpha^2 l^-2.5.
             const double alpha = kernel.width, b = alpha < 1 ? 2 * alpha / std::sqrt(1 - alpha * alpha) : 1e9;
-            return std::clamp(int(std::ceil(17 / b)), alpha > 0.05 ? k_least_degrees : 64, k_most_degrees);
+            return std::clamp(int(std::ceil(16.6 / b)), alpha > 0.05 ? k_least_degrees : 64, k_most_degrees);
         }
         case Lobe::charlie: return 2 * k_least_degrees;
         default:

@@ -10,12 +10,17 @@ using simd::k_ring_group;
 /// A group takes part once a value passes this. Waiting groups are looked at every few degrees, and in so few a value can grow by 1e10.
 constexpr double k_log_negligible = -55;  // 1e-24
 constexpr int k_waiting_steps = 4;
+/// Scaled values are brought down when they pass this.
+constexpr double k_largest = 1e100;
+
+/// The scaled value at which a waiting group must be looked at: it matters now, or it is about to leave the range of doubles.
+double wake_value(double log_scale) { return std::min(std::exp(std::min(k_log_negligible - log_scale, 700.0)), k_largest); }
 
 }  // namespace
 
 LegendreWalk::LegendreWalk(const NorthernRings& rings, int band_limit)
     : rings_(rings), band_limit_(band_limit), log_norm_(band_limit + 1), steps_(band_limit / 2 + 4), p_(rings.padded), p_prev_(rings.padded),
-      rows_(std::size_t(k_chunk) * rings.padded), log_scale_(rings.padded / k_ring_group), active_(rings.padded / k_ring_group) {
+      rows_(std::size_t(k_chunk) * rings.padded), log_scale_(rings.padded / k_ring_group), wake_(rings.padded / k_ring_group), active_(rings.padded / k_ring_group) {
     // P_mm = sqrt((2m + 1) / 4 pi  prod_{k=1}^{m} (2k - 1) / 2k) sin^m theta.
     double log_product = 0;
     for (int m = 0; m <= band_limit; ++m) {
@@ -46,6 +51,7 @@ void LegendreWalk::start(int m, int parity) {
         const double scale = log_norm_[m] + m * rings_.log_sin_theta[last];
         active_[g] = scale > k_log_negligible;
         log_scale_[g] = active_[g] ? 0 : scale;
+        wake_[g] = wake_value(scale);
         for (int r = r0; r < r0 + k_ring_group; ++r) {
             const double p_mm = r < rings_.count ? std::exp(log_norm_[m] + m * rings_.log_sin_theta[r] - log_scale_[g]) : 0;
             p_[r] = parity ? rings_.cos_theta[r] * std::sqrt(2.0 * m + 3) * p_mm : p_mm;
@@ -87,12 +93,12 @@ void LegendreWalk::advance_waiting_group(int group, int first, int count) {
         for (int k = 0; k < n; ++k) std::fill_n(rows + std::ptrdiff_t(i + k) * rings_.padded, k_ring_group, 0.f);
         double largest = 0;
         for (int r = r0; r < r0 + k_ring_group; ++r) largest = std::max({largest, std::abs(p_[r]), std::abs(p_prev_[r])});
-        if (largest == 0) continue;
+        if (largest < wake_[group]) continue;
         double& scale = log_scale_[group];
         const bool matters = scale + std::log(largest) > k_log_negligible;
-        if (!matters && largest < 1e100) continue;
-        const double shift = matters ? std::exp(scale) : 1e-100;
-        scale = matters ? 0 : scale + std::log(1e100);
+        const double shift = matters ? std::exp(scale) : 1 / k_largest;
+        scale = matters ? 0 : scale + std::log(k_largest);
+        wake_[group] = wake_value(scale);
         active_[group] = matters;
         for (int r = r0; r < r0 + k_ring_group; ++r) {
             p_[r] *= shift;

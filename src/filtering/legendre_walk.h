@@ -55,6 +55,7 @@ class LegendreWalk {
     AlignedArray<double> p_, p_prev_;
     AlignedArray<float> rows_;       ///< [k_chunk][padded]
     std::vector<double> log_scale_;  ///< of each group; p_ holds P / exp(log_scale)
+    std::vector<double> wake_;       ///< of each waiting group: the scaled value at which it must be looked at
     std::vector<bool> active_;       ///< the group's values are at their true scale and large enough to matter
     int first_possible_ = 0;         ///< groups before this one stay negligible up to the band limit
 };

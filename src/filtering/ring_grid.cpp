@@ -10,9 +10,9 @@ namespace domelight {
 
 RingGrid ring_grid_for(int band_limit) {
     const int least = std::max(16, int(std::ceil(1.44 * (band_limit + 1))));
-    // Widths 2^a, 3 2^a, 5 2^a, 9 2^a and 15 2^a: at most 1/8 more than asked for, and radix-4 passes nearly all the way.
+    // Widths 2^a times a few threes and fives: at most 1/16 more than asked for, and radix-4 passes nearly all the way.
     int best = 1 << 30;
-    for (int odd : {1, 3, 5, 9, 15}) {
+    for (int odd : {1, 3, 5, 9, 15, 25, 27, 45, 75}) {
         int rings = 2 * odd;
         while (rings < least) rings *= 2;
         best = std::min(best, rings);
