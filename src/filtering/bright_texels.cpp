@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "domelight/projection.h"
-#include "math/gauss_legendre.h"
+#include "filtering/tent_nodes.h"
 #include "simd/row_kernels.h"
 
 namespace domelight {
@@ -38,26 +38,9 @@ BrightPoints BrightTexels::points(const Vec3d& mean, double least_share, int ban
         if (t.power > least_share * total) texels.push_back(t);
     std::sort(texels.begin(), texels.end(), stronger);
 
-    const double step_theta = k_pi / height_, step_phi = 2 * k_pi / width_;
-    const auto& rule = gauss_legendre(std::clamp(1 + int(step_theta * band_limit), 1, 8));
+    const int nodes = std::clamp(1 + int(k_pi / height_ * band_limit), 1, 8);
     BrightPoints points;
-    for (const Texel& t : texels) {
-        // The tent's four patches; in the half row at a pole it is constant in theta.
-        for (int down = -1; down <= 1; down += 2)
-            for (int right = -1; right <= 1; right += 2) {
-                const bool cap = (down < 0 && t.y == 0) || (down > 0 && t.y == height_ - 1);
-                const double length = (cap ? 0.5 : 1.0) * step_theta;
-                for (std::size_t i = 0; i < rule.x.size(); ++i)
-                    for (std::size_t j = 0; j < rule.x.size(); ++j) {
-                        const double a = 0.5 * (1 + rule.x[i]), b = 0.5 * (1 + rule.x[j]);
-                        const double theta = step_theta * (t.y + 0.5) + down * a * length;
-                        const double phi = step_phi * (t.x + 0.5) - k_pi + right * b * step_phi;
-                        const double tent = (cap ? 1 : 1 - a) * (1 - b);
-                        const double weight = tent * std::sin(theta) * 0.25 * rule.w[i] * rule.w[j] * length * step_phi;
-                        points.add({std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)}, weight, t.rgb);
-                    }
-            }
-    }
+    for (const Texel& t : texels) add_tent_nodes(points, width_, height_, t.x, t.y, t.rgb, nodes);
     return points;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "domelight/image.h"
@@ -16,6 +17,10 @@ struct BrightPoints {
     void add(const Vec3d& direction, double solid_angle, const float* rgb) {
         x.push_back(float(direction.x)), y.push_back(float(direction.y)), z.push_back(float(direction.z));
         r.push_back(float(solid_angle * rgb[0])), g.push_back(float(solid_angle * rgb[1])), b.push_back(float(solid_angle * rgb[2]));
+    }
+    void append(const BrightPoints& p) {
+        for (auto [to, from] : {std::pair{&x, &p.x}, {&y, &p.y}, {&z, &p.z}, {&r, &p.r}, {&g, &p.g}, {&b, &p.b}})
+            to->insert(to->end(), from->begin(), from->end());
     }
     simd::PointSet view() const { return {x.data(), y.data(), z.data(), r.data(), g.data(), b.data(), count()}; }
 };

@@ -9,15 +9,19 @@ namespace {
 /// Degrees beyond this cost seconds; what they would add is stated in docs/math/prefilter.md.
 constexpr int k_most_degrees = 3072;
 constexpr int k_least_degrees = 256;
+/// b L at the band limit L.
+constexpr double k_decay = 16.6, k_decay_split = 12.5;
+/// From here on a lobe counts as narrow.
+constexpr int k_split_degrees = 1000;
 
 }  // namespace
 
-int required_band_limit(const ZonalKernel& kernel) {
+int required_band_limit(const ZonalKernel& kernel, bool split) {
     switch (kernel.lobe) {
         case Lobe::ggx: {
             // The spectrum falls as b l K_1(b l). The clamp at the horizon adds a tail, alpha^2 l^-2.5.
             const double alpha = kernel.width, b = alpha < 1 ? 2 * alpha / std::sqrt(1 - alpha * alpha) : 1e9;
-            return std::clamp(int(std::ceil(16.6 / b)), alpha > 0.05 ? k_least_degrees : 64, k_most_degrees);
+            return std::clamp(int(std::ceil((split ? k_decay_split : k_decay) / b)), alpha > 0.05 ? k_least_degrees : 64, k_most_degrees);
         }
         case Lobe::charlie: return 2 * k_least_degrees;
         default:
@@ -38,13 +42,15 @@ FilterPlan make_filter_plan(const FilterOptions& options) {
     struct Need {
         int level, band_limit;
     };
+    FilterPlan plan;
+    for (const LevelSpec& level : options.specular)
+        plan.split |= !level.mirror && level.kernel.lobe == Lobe::ggx && required_band_limit(level.kernel, false) > k_split_degrees;
     std::vector<Need> needs;
     for (int l = 0; l < int(options.specular.size()); ++l)
-        if (!options.specular[l].mirror) needs.push_back({l, required_band_limit(options.specular[l].kernel)});
-    if (options.irradiance_size > 0) needs.push_back({FilterPlan::k_irradiance, required_band_limit(ZonalKernel::cosine())});
+        if (!options.specular[l].mirror) needs.push_back({l, required_band_limit(options.specular[l].kernel, plan.split)});
+    if (options.irradiance_size > 0) needs.push_back({FilterPlan::k_irradiance, required_band_limit(ZonalKernel::cosine(), plan.split)});
     std::stable_sort(needs.begin(), needs.end(), [](const Need& a, const Need& b) { return a.band_limit > b.band_limit; });
 
-    FilterPlan plan;
     plan.band_limit = std::max(options.sh_bands - 1, 8);
     for (const Need& need : needs) {
         plan.band_limit = std::max(plan.band_limit, need.band_limit);

@@ -18,13 +18,15 @@ struct FilterPlan {
     static constexpr int k_irradiance = -1;
 
     int band_limit = 0;  ///< of the analysis
+    /// A lobe is so narrow that what outshines the rest is better taken out of a lat-long image before it is expanded (BrightSplit).
+    bool split = false;
     std::vector<Group> groups;
 };
 
 FilterPlan make_filter_plan(const FilterOptions& options);
 
-/// Degrees that a lobe needs for the accuracy that docs/math/prefilter.md states.
-int required_band_limit(const ZonalKernel& kernel);
+/// Degrees that a lobe needs for the accuracy that docs/math/prefilter.md states; fewer where the brightest texels are taken out (`split`).
+int required_band_limit(const ZonalKernel& kernel, bool split);
 
 /// Whether the clamp at the horizon leaves a tail that a strong sun shows: what is left out is then summed over the brightest texels.
 bool leaves_residual(const ZonalKernel& kernel);

@@ -57,8 +57,9 @@ class Synthesis {
     /// The environment's brightest texels as point lights, fine enough for a band limit.
     using Bright = std::function<BrightPoints(int band_limit)>;
 
-    Synthesis(const Spectrum& spectrum, Bright bright, const FilterOptions& options, FilterResult& result)
-        : spectrum_(spectrum), bright_(std::move(bright)), options_(options), result_(result) {}
+    /// `split`: what was taken out of the spectrum, if anything.
+    Synthesis(const Spectrum& spectrum, Bright bright, const BrightSplit* split, const FilterOptions& options, FilterResult& result)
+        : spectrum_(spectrum), bright_(std::move(bright)), split_(split && !split->empty() ? split : nullptr), options_(options), result_(result) {}
 
     Result<void> run(const FilterPlan& plan) {
         for (const FilterPlan::Group& group : plan.groups) {
@@ -94,8 +95,14 @@ class Synthesis {
             if (points.count() > 0) tables = std::make_unique<ResidualKernels>(kernels, factors);
         }
         for (std::size_t i = 0; i < levels.size(); ++i) {
-            LookupOptions lookup{double(group.band_limit) / group.grid.rings, options_.world_to_source, options_.threads, nullptr, {}};
+            LookupOptions lookup{double(group.band_limit) / group.grid.rings, options_.world_to_source, options_.threads, nullptr, {}, nullptr, {}};
             if (tables && leaves_residual(kernels[i])) lookup.bright = &points, lookup.residual = tables->table(int(i));
+            BrightSplit::Lights lights;
+            const DirectKernelTable direct(kernels[i]);
+            if (split_) {
+                lights = split_->lights(kernels[i]);
+                lookup.lights = &lights, lookup.kernel = direct.view();
+            }
             const bool irradiance = levels[i] == FilterPlan::k_irradiance;
             const int size = irradiance ? options_.irradiance_size : options_.specular[levels[i]].size;
             FilteredMap& map = irradiance ? result_.irradiance_over_pi : result_.specular[levels[i]];
@@ -106,17 +113,23 @@ class Synthesis {
 
     const Spectrum& spectrum_;
     Bright bright_;
+    const BrightSplit* split_;
     const FilterOptions& options_;
     FilterResult& result_;
     std::size_t done_ = 0;
 };
 
 /// Everything that follows from the spectrum.
-Result<void> finish(const Spectrum& spectrum, Synthesis::Bright bright, const FilterPlan& plan, const FilterOptions& options, FilterResult& result) {
+Result<void> finish(const Spectrum& spectrum, Synthesis::Bright bright, const BrightSplit* split, const FilterPlan& plan,
+                    const FilterOptions& options, FilterResult& result) {
     result.band_limit = plan.band_limit;
     result.mean = mean_radiance(spectrum);
-    if (auto done = Synthesis(spectrum, std::move(bright), options, result).run(plan); !done) return done;
-    if (options.sh_bands > 0) result.sh = spectrum_to_sh(spectrum, options.sh_bands, options.world_to_source);
+    if (split) result.mean = result.mean + split->power() / (4 * k_pi);
+    if (auto done = Synthesis(spectrum, std::move(bright), split, options, result).run(plan); !done) return done;
+    if (options.sh_bands > 0) {
+        result.sh = spectrum_to_sh(spectrum, options.sh_bands, options.world_to_source);
+        if (split) split->add_to_sh(result.sh, options.sh_bands, options.world_to_source);
+    }
     return {};
 }
 
@@ -127,16 +140,18 @@ Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) 
     const FilterPlan plan = make_filter_plan(options);
     ShAnalysis analysis(width, height, plan.band_limit, options.threads);
     BrightTexels bright(width, height);
+    BrightSplit split(width, height);
     auto mirrors = make_mirrors(options, width, height);
 
     ImageF rows(width, std::min(k_chunk_rows, height), 3);
     for (int y = 0; y < height; y += k_chunk_rows) {
         const auto chunk = rows.view().rows(0, std::min(k_chunk_rows, height - y));
         if (auto read = source.read(chunk); !read) return read.error();
-        analysis.add_rows(chunk);
-        bright.add_rows(chunk);
         for (auto& mirror : mirrors)
             if (mirror) mirror->add_rows(chunk);
+        if (plan.split) split.take_from(chunk);
+        analysis.add_rows(chunk);
+        bright.add_rows(chunk);
         if (options.progress && !options.progress("read", double(y + chunk.height) / height)) return k_cancelled;
     }
     rows = {};
@@ -150,7 +165,7 @@ Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) 
     }
     const Spectrum spectrum = analysis.finish();
     const auto points = [&](int band_limit) { return bright.points(result.mean, k_least_share, band_limit); };
-    if (auto done = finish(spectrum, points, plan, options, result); !done) return done.error();
+    if (auto done = finish(spectrum, points, &split, plan, options, result); !done) return done.error();
     return result;
 }
 
@@ -169,7 +184,7 @@ Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& optio
     const BorderedCube cube(source);
     const Spectrum spectrum = analyse_cube(cube, plan.band_limit, options.threads);
     const auto points = [&](int band_limit) { return bright_points(cube, result.mean, k_least_share, band_limit); };
-    if (auto done = finish(spectrum, points, plan, options, result); !done) return done.error();
+    if (auto done = finish(spectrum, points, nullptr, plan, options, result); !done) return done.error();
     return result;
 }
 

@@ -39,13 +39,16 @@ std::int64_t lookup_rows(const SphereGrid& grid, ImageView<float> out, const Loo
             }
             float* rgb = out.row(row);
             simd::lookup_directions(view, table, x.data(), y.data(), z.data(), out.width, rgb);
-            if (options.bright && options.bright->count() > 0) {
+            if (options.bright || options.lights) {
                 float *ux = unit.data(), *uy = ux + out.width, *uz = uy + out.width;
                 for (int i = 0; i < out.width; ++i) {
                     const double n = 1 / std::sqrt(x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
                     ux[i] = float(x[i] * n), uy[i] = float(y[i] * n), uz[i] = float(z[i] * n);
                 }
-                simd::add_zonal_sum(options.bright->view(), options.residual, ux, uy, uz, out.width, rgb);
+                if (options.bright) simd::add_zonal_sum(options.bright->view(), options.residual, ux, uy, uz, out.width, rgb);
+                if (options.lights)
+                    simd::add_direct_lights(options.lights->clusters.data(), int(options.lights->clusters.size()) - 1, options.lights->points.view(),
+                                            options.kernel, ux, uy, uz, out.width, rgb);
             }
             clamped[row] = clamp_texels(rgb, out.width);
         }

@@ -5,7 +5,7 @@
 #include "core/aligned.h"
 #include "domelight/image.h"
 #include "domelight/vec.h"
-#include "filtering/bright_texels.h"
+#include "filtering/bright_split.h"
 #include "filtering/ring_grid.h"
 #include "simd/grid_lookup.h"
 
@@ -39,6 +39,9 @@ struct LookupOptions {
     /// What the truncated expansion is short of: a residual kernel summed over the brightest texels. None: null.
     const BrightPoints* bright = nullptr;
     simd::ZonalTable residual{};
+    /// Light that was taken out of the expansion: a kernel summed over it. None: null.
+    const BrightSplit::Lights* lights = nullptr;
+    simd::DirectKernel kernel{};
 };
 
 /// The grid's function at the texel centres of a cube or lat-long image. Negative values, which only truncation makes, become 0; the number of

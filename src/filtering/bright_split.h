@@ -1,0 +1,59 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "domelight/image.h"
+#include "domelight/zonal_kernel.h"
+#include "filtering/bright_texels.h"
+#include "simd/direct_lights.h"
+
+namespace domelight {
+
+/// Takes the few texels that outshine everything else by far out of a lat-long image before it is expanded; their exact kernel is added to each
+/// output texel instead. For narrow lobes only, where a sun is 10^7 times the darkest places beside it: rounding of the float expansion, harmless
+/// anywhere else, would show there.
+class BrightSplit {
+  public:
+    BrightSplit(int width, int height) : width_(width), height_(height) {}
+
+    /// Sets the bright texels of the next rows to 0 and keeps them. Any choice is exact; which ones are taken (over 300 times the mean of what was
+    /// left in the rows so far) does not depend on how rows are handed over.
+    void take_from(ImageView<float> rows);
+    bool empty() const { return texels_.empty(); }
+    /// The power taken out: int g d omega.
+    Vec3d power() const;
+    /// Adds its real coefficients in world space (basis of spherical_harmonics.h).
+    void add_to_sh(std::vector<Vec3d>& coefficients, int bands, const Mat3& world_to_source) const;
+
+    /// The texels as lights for lobes down to `angular_width`, in clusters.
+    struct Lights {
+        std::vector<simd::LightCluster> clusters;  ///< and one more that closes the last ranges
+        BrightPoints points;
+    };
+    Lights lights(const ZonalKernel& kernel) const;
+
+  private:
+    struct Texel {
+        int x, y;
+        float rgb[3];
+    };
+    static constexpr int k_most = 4096;
+    static constexpr double k_outshine = 300;
+
+    BrightPoints points(int nodes) const;
+
+    int width_, height_, next_row_ = 0;
+    double sum_ = 0, weight_ = 0;  ///< of the strongest channel over the rows so far, without what was taken
+    std::vector<Texel> texels_;
+};
+
+/// A kernel in the form that the sum over lights takes, with its table if it needs one.
+struct DirectKernelTable {
+    explicit DirectKernelTable(const ZonalKernel& kernel);
+    simd::DirectKernel view() const { return {scale, alpha2, {values.empty() ? nullptr : values.data(), int(values.size()) - 2}}; }
+    float scale = 0, alpha2 = 0;
+    std::vector<float> values;
+};
+
+}  // namespace domelight

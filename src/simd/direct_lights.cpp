@@ -1,0 +1,111 @@
+#include "simd/targets.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simd/direct_lights.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+#include <hwy/contrib/math/math-inl.h>
+
+#include "simd/direct_lights.h"
+
+#include <algorithm>
+#include <numbers>
+
+HWY_BEFORE_NAMESPACE();
+namespace domelight::simd::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, 16>;
+using V = hn::Vec<D>;
+
+/// The closed form from the chord: 1 - c keeps its digits for the narrowest lobe.
+struct GgxKernel {
+    const DirectKernel& kernel;
+    HWY_INLINE V operator()(V half_chord2) const {
+        const D d;
+        const V one = hn::Set(d, 1.f), c = hn::Sub(one, half_chord2);
+        const V q = hn::MulAdd(hn::Set(d, kernel.alpha2), hn::Add(one, c), half_chord2);
+        return hn::Div(hn::Mul(hn::Set(d, kernel.scale), hn::Max(c, hn::Zero(d))), hn::Mul(q, q));
+    }
+};
+
+struct TableKernel {
+    const DirectKernel& kernel;
+    HWY_INLINE V operator()(V half_chord2) const {
+        const D d;
+        const V c = hn::Max(hn::Sub(hn::Set(d, 1.f), half_chord2), hn::Set(d, -1.f));
+        const V at = hn::Mul(hn::Acos(d, c), hn::Set(d, float(kernel.table.steps / std::numbers::pi)));
+        const auto index = hn::ConvertTo(hn::RebindToSigned<D>(), at);
+        const V low = hn::GatherIndex(d, kernel.table.values, index), high = hn::GatherIndex(d, kernel.table.values + 1, index);
+        return hn::MulAdd(hn::Sub(at, hn::ConvertTo(d, index)), hn::Sub(high, low), low);
+    }
+};
+
+template <typename Kernel>
+HWY_INLINE void add_lights(const LightCluster* clusters, int cluster_count, const PointSet& points, const Kernel& kernel, const float* x,
+                           const float* y, const float* z, int count, float* rgb) {
+    const D d;
+    const int lanes = int(hn::Lanes(d));
+    constexpr int block_size = 16;  // on every instruction set, so that all choose the same detail
+    for (int i = 0; i < count; i += block_size) {
+        const int n = std::min(block_size, count - i);
+        alignas(64) float block[6][block_size] = {};
+        for (int k = 0; k < block_size; ++k) {
+            const int from = i + std::min(k, n - 1);
+            block[0][k] = x[from], block[1][k] = y[from], block[2][k] = z[from];
+        }
+        for (int cluster = 0; cluster < cluster_count; ++cluster) {
+            const LightCluster& c = clusters[cluster];
+            float nearest = -1, farthest = 1;
+            for (int k = 0; k < block_size; ++k) {
+                const float cosine = block[0][k] * c.x + block[1][k] * c.y + block[2][k] * c.z;
+                nearest = std::max(nearest, cosine);
+                farthest = std::min(farthest, cosine);
+            }
+            const bool on_horizon = farthest < c.spread && nearest > -c.spread;
+            const LightCluster& next = clusters[cluster + 1];
+            const bool coarse = !on_horizon && nearest < c.cos_coarse, middle = !on_horizon && nearest < c.cos_middle;
+            const int begin = coarse ? c.coarse : middle ? c.middle : c.fine, end = coarse ? next.coarse : middle ? next.middle : next.fine;
+            for (int lane = 0; lane < block_size; lane += lanes) {
+                const V vx = hn::Load(d, block[0] + lane), vy = hn::Load(d, block[1] + lane), vz = hn::Load(d, block[2] + lane);
+                V r = hn::Load(d, block[3] + lane), g = hn::Load(d, block[4] + lane), b = hn::Load(d, block[5] + lane);
+                for (int p = begin; p < end; ++p) {
+                    const V dx = hn::Sub(vx, hn::Set(d, points.x[p])), dy = hn::Sub(vy, hn::Set(d, points.y[p])),
+                            dz = hn::Sub(vz, hn::Set(d, points.z[p]));
+                    const V half_chord2 = hn::Mul(hn::Set(d, 0.5f), hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))));
+                    const V f = kernel(half_chord2);
+                    r = hn::MulAdd(f, hn::Set(d, points.r[p]), r);
+                    g = hn::MulAdd(f, hn::Set(d, points.g[p]), g);
+                    b = hn::MulAdd(f, hn::Set(d, points.b[p]), b);
+                }
+                hn::Store(r, d, block[3] + lane);
+                hn::Store(g, d, block[4] + lane);
+                hn::Store(b, d, block[5] + lane);
+            }
+        }
+        for (int k = 0; k < n; ++k)
+            for (int c = 0; c < 3; ++c) rgb[3 * (i + k) + c] += block[3 + c][k];
+    }
+}
+
+void add_direct_lights(const LightCluster* clusters, int cluster_count, const PointSet& points, const DirectKernel& kernel, const float* x,
+                       const float* y, const float* z, int count, float* rgb) {
+    if (kernel.table.values) add_lights(clusters, cluster_count, points, TableKernel{kernel}, x, y, z, count, rgb);
+    else add_lights(clusters, cluster_count, points, GgxKernel{kernel}, x, y, z, count, rgb);
+}
+
+}  // namespace domelight::simd::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace domelight::simd {
+
+HWY_EXPORT(add_direct_lights);
+
+void add_direct_lights(const LightCluster* clusters, int cluster_count, const PointSet& points, const DirectKernel& kernel, const float* x,
+                       const float* y, const float* z, int count, float* rgb) {
+    HWY_DYNAMIC_DISPATCH(add_direct_lights)(clusters, cluster_count, points, kernel, x, y, z, count, rgb);
+}
+
+}  // namespace domelight::simd
+#endif
