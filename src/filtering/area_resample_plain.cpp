@@ -6,14 +6,7 @@
 
 namespace domelight::area {
 
-namespace {
-
-struct Moments {
-    double zeroth, first;
-};
-
-/// int_a^b sin t dt and int_a^b (t - a) sin t dt, without cancellation in thin intervals.
-Moments sine_moments(double a, double b) {
+SineMoments sine_moments(double a, double b) {
     const double d = b - a, s = std::sin(a), c = std::cos(a);
     const double zeroth = 2 * std::sin(0.5 * (a + b)) * std::sin(0.5 * d);
     if (d > 0.2) return {zeroth, std::sin(b) - s - d * std::cos(b)};
@@ -24,12 +17,10 @@ Moments sine_moments(double a, double b) {
     return {zeroth, s * with_cos + c * with_sin};
 }
 
-}  // namespace
-
 LatlongIntegrator::LatlongIntegrator(ImageView<const float> image)
     : image_(image), row_angle_(k_pi / image.height), column_angle_(2 * k_pi / image.width) {
     for (int j = -1; j < image.height; ++j) {
-        const Moments m = sine_moments(cell_top(j), cell_top(j + 1));
+        const SineMoments m = sine_moments(cell_top(j), cell_top(j + 1));
         lower_.push_back(m.first / row_angle_);
         upper_.push_back(m.zeroth - lower_.back());
     }
@@ -59,7 +50,7 @@ LatlongIntegrator::Flux LatlongIntegrator::meridian(double theta, double u, Cell
         sum.solid_angle += upper + lower;
     };
     const auto part = [&](double a, double b) {
-        const Moments m = sine_moments(a, b);
+        const SineMoments m = sine_moments(a, b);
         // In the half rows at the poles both rows are the same one, so where s starts does not matter.
         const double s0 = (a - (cell.row + 0.5) * row_angle_) / row_angle_;
         const double lower = m.first / row_angle_ + s0 * m.zeroth;

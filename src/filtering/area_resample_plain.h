@@ -10,6 +10,13 @@
 
 namespace domelight::area {
 
+struct SineMoments {
+    double zeroth, first;
+};
+
+/// int_a^b sin t dt and int_a^b (t - a) sin t dt, without cancellation in thin intervals.
+SineMoments sine_moments(double a, double b);
+
 /// int g d omega over regions of the sphere, g the bilinear reconstruction of a lat-long image (u wraps, v clamps in
 /// the half rows at the poles). In double; the view must outlive the integrator.
 ///

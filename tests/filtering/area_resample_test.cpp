@@ -315,3 +315,32 @@ TEST_CASE("area_resample_cube: texels are averages, the mean is kept, a constant
             CHECK(worst < 1e-6);
         }
 }
+
+TEST_CASE("area_resample: the fast version is the plain one") {
+    for (const Shape s : {Shape{64, 32, 16},
+                          {64, 32, 5},
+                          {66, 32, 8},
+                          {65, 33, 9},
+                          {67, 40, 7},
+                          {128, 64, 64},
+                          {256, 40, 33},
+                          {64, 200, 12},
+                          {192, 96, 2},
+                          {64, 32, 3}})
+        for (const Mat3& m : {k_identity, rotation_y(0.3), rotation_y(k_pi / 2), rotation_y(-2.1), k_z_up, k_mirror}) {
+            const ImageF image = random_image(s.width, s.height);
+            const ImageF fast = resample_to_cube(image, s.size, m);
+            auto plain = area::plain_to_cube(s.width, s.height, s.size, m, 2);
+            plain->add_rows(image);
+            const ImageF truth = plain->finish();
+            double worst = 0;
+            int at = 0;
+            for (int k = 0; k < int(truth.pixels().size()); ++k) {
+                const double e = std::abs(fast.pixels()[k] - truth.pixels()[k]) / (truth.pixels()[k] + 0.1);
+                if (e > worst) worst = e, at = k / 3;
+            }
+            INFO(s.width, "x", s.height, " to ", s.size, ": face ", at / s.size / s.size, " y ", at / s.size % s.size,
+                 " x ", at % s.size);
+            CHECK(worst < 1e-6);
+        }
+}
