@@ -17,24 +17,32 @@ namespace {
 
 // "OpenEXR File Layout", section "Header": attributes of (name \0, type \0, int32 size, bytes), ended by an empty name.
 
-/// Attributes that decoding needs; the rest is crossed out.
-constexpr std::array<std::string_view, 17> k_needed{"channels",
-                                                    "compression",
-                                                    "dataWindow",
-                                                    "displayWindow",
-                                                    "lineOrder",
-                                                    "pixelAspectRatio",
-                                                    "screenWindowCenter",
-                                                    "screenWindowWidth",
-                                                    "tiles",
-                                                    "type",
-                                                    "name",
-                                                    "chunkCount",
-                                                    "version",
-                                                    "view",
-                                                    "envmap",
-                                                    "chromaticities",
-                                                    "maxSamplesPerPixel"};
+/// Attributes that decoding needs; the rest is crossed out. The library reads the value of a known type without looking
+/// at its size, so both must be right, or it would take the bytes that follow for something else.
+struct Needed {
+    std::string_view name, type;
+    int size;  ///< bytes, or k_any_size where the value ends where its size says
+};
+constexpr int k_any_size = -1;
+constexpr std::array<Needed, 17> k_needed{{
+    {"channels", "chlist", k_any_size},
+    {"compression", "compression", 1},
+    {"dataWindow", "box2i", 16},
+    {"displayWindow", "box2i", 16},
+    {"lineOrder", "lineOrder", 1},
+    {"pixelAspectRatio", "float", 4},
+    {"screenWindowCenter", "v2f", 8},
+    {"screenWindowWidth", "float", 4},
+    {"tiles", "tiledesc", 9},
+    {"type", "string", k_any_size},
+    {"name", "string", k_any_size},
+    {"view", "string", k_any_size},
+    {"chunkCount", "int", 4},
+    {"version", "int", 4},
+    {"maxSamplesPerPixel", "int", 4},
+    {"envmap", "envmap", 1},
+    {"chromaticities", "chromaticities", 32},
+}};
 
 constexpr std::uint32_t k_multi_part = 0x1000;
 
@@ -101,7 +109,10 @@ Result<void> read_channels(std::span<const std::uint8_t> value, PartShape& shape
     for (;;) {
         const auto name = cursor.text();
         if (!name) return broken;
-        if (name->empty()) return {};
+        if (name->empty()) {
+            if (cursor.at() != value.size()) return broken;
+            return {};
+        }
         const auto type = cursor.int32();
         if (!type || !cursor.skip(4)) return broken;
         const auto x_sampling = cursor.int32(), y_sampling = cursor.int32();
@@ -186,8 +197,13 @@ Result<ExrPreflight> check_exr_headers(std::span<const std::uint8_t> file, std::
         const std::size_t value_at = cursor.at();
         if (!cursor.skip(std::size_t(*size)))
             return damaged(fmt::format("attribute \"{}\" reaches past the end of the file", printable(*name)));
-        if (std::find(k_needed.begin(), k_needed.end(), *name) == k_needed.end())
+        const auto needed =
+            std::find_if(k_needed.begin(), k_needed.end(), [&](const Needed& n) { return n.name == *name; });
+        if (needed == k_needed.end()) {
             crossed_out.emplace_back(start + name->size() + 1, type->size());
+        } else if (*type != needed->type || (needed->size != k_any_size && *size != needed->size)) {
+            return damaged(fmt::format("attribute \"{}\" has the wrong type or size", *name));
+        }
         if (const auto read = read_attribute(*name, file.subspan(value_at, std::size_t(*size)), shape); !read)
             return read.error();
     }
