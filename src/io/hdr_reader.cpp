@@ -115,22 +115,45 @@ Result<bool> HdrReader::read(ImageView<float> rows) {
 }
 
 Result<bool> HdrReader::read_scanlines(ImageView<float> rows) {
+    const Result<bool> in_range =
+        resolve_threads(threads_) == 1 && !header_.flip_y ? read_in_order(rows) : read_by_index(rows);
+    if (!in_range) return in_range;
+    next_row_ += rows.height;
+    if (!header_.flip_y) bytes_->release_before(offsets_[next_row_]);
+    return in_range;
+}
+
+/// One row after the other: decoding finds where the next one starts.
+Result<bool> HdrReader::read_in_order(ImageView<float> rows) {
+    const std::size_t stride = header_.width;
+    std::vector<std::uint8_t> planes(4 * stride + k_scanline_slack);
+    bool in_range = true;
+    for (int y = 0; y < rows.height; ++y) {
+        const auto data = bytes_->bytes().subspan(offsets_.back());
+        const ScanlineStep step = decode_hdr_scanline(data, header_.width, planes.data(), stride);
+        if (step.error) return scanline_error(next_row_ + y, step.error);
+        offsets_.push_back(offsets_.back() + step.bytes);
+        in_range &= convert_row(planes.data(), stride, rows.row(y));
+    }
+    return in_range;
+}
+
+/// Finds where the rows are, then decodes them on all threads.
+Result<bool> HdrReader::read_by_index(ImageView<float> rows) {
     // From the bottom up, the first row lies at the end of the file: find them all.
     const int height = header_.height;
     if (const auto indexed = index_scanlines(header_.flip_y ? height : next_row_ + rows.height); !indexed)
         return indexed.error();
     std::atomic<bool> in_range{true};
     parallel_ranges(rows.height, k_rows_a_task, threads_, [&](int begin, int end) {
-        const std::size_t stride = std::size_t(header_.width);
-        std::vector<std::uint8_t> planes(4 * stride);
+        const std::size_t stride = header_.width;
+        std::vector<std::uint8_t> planes(4 * stride + k_scanline_slack);
         for (int y = begin; y < end; ++y) {
             const int row = next_row_ + y, scanline = header_.flip_y ? height - 1 - row : row;
             decode_hdr_scanline(bytes_->bytes().subspan(offsets_[scanline]), header_.width, planes.data(), stride);
             if (!convert_row(planes.data(), stride, rows.row(y))) in_range = false;
         }
     });
-    next_row_ += rows.height;
-    if (!header_.flip_y) bytes_->release_before(offsets_[next_row_]);
     return in_range.load();
 }
 
@@ -141,7 +164,7 @@ Result<void> HdrReader::decode_columns() {
     columns_.resize(4 * width * height);
     // Eight neighbouring columns a task: their bytes of a row share a cache line.
     parallel_ranges(header_.width, k_rows_a_task, threads_, [&](int begin, int end) {
-        std::vector<std::uint8_t> column(4 * height);
+        std::vector<std::uint8_t> column(4 * height + k_scanline_slack);
         for (int scanline = begin; scanline < end; ++scanline) {
             decode_hdr_scanline(bytes_->bytes().subspan(offsets_[scanline]), header_.height, column.data(), height);
             const std::size_t x = header_.flip_x ? width - 1 - scanline : scanline;

@@ -21,6 +21,8 @@ class HdrReader : public ImageReader {
     Result<void> index_scanlines(int count);
     Result<void> decode_columns();
     Result<bool> read_scanlines(ImageView<float> rows);
+    Result<bool> read_in_order(ImageView<float> rows);
+    Result<bool> read_by_index(ImageView<float> rows);
     Result<bool> read_columns(ImageView<float> rows);
     bool convert_row(const std::uint8_t* planes, std::size_t plane_stride, float* out) const;
     Error scanline_error(int scanline, const char* what) const;

@@ -1,5 +1,6 @@
 #include "io/hdr_scanline_reader.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace domelight {
@@ -65,6 +66,26 @@ ScanlineStep walk_old_rle(std::span<const std::uint8_t> data, int width, const T
     return {at, nullptr};
 }
 
+/// Copies n <= 128 bytes as 16, 32 or 128: a few wide moves cost less than finding out how few would do. The bytes
+/// behind are those of components that are decoded later, or slack.
+void copy_short(std::uint8_t* to, const std::uint8_t* from, int n) {
+    if (n <= 16) {
+        std::memcpy(to, from, 16);
+    } else if (n <= 32) {
+        std::memcpy(to, from, 32);
+    } else {
+        std::memcpy(to, from, 128);
+    }
+}
+
+void fill_short(std::uint8_t* to, int value, int n) {
+    if (n <= 16) {
+        std::memset(to, value, 16);
+    } else {
+        std::memset(to, value, 128);
+    }
+}
+
 }  // namespace
 
 ScanlineStep skip_hdr_scanline(std::span<const std::uint8_t> data, int width) {
@@ -77,11 +98,16 @@ ScanlineStep skip_hdr_scanline(std::span<const std::uint8_t> data, int width) {
 ScanlineStep decode_hdr_scanline(std::span<const std::uint8_t> data, int width, std::uint8_t* planes,
                                  std::size_t plane_stride) {
     if (is_new_rle(data, width)) {
+        const std::uint8_t* const last_wide_copy = data.data() + data.size() - std::min<std::size_t>(data.size(), 128);
         return walk_new_rle(
-            data, width,
-            [&](int c, int x, int n, int value) { std::memset(planes + c * plane_stride + x, value, std::size_t(n)); },
+            data, width, [&](int c, int x, int n, int value) { fill_short(planes + c * plane_stride + x, value, n); },
             [&](int c, int x, int n, const std::uint8_t* from) {
-                std::memcpy(planes + c * plane_stride + x, from, std::size_t(n));
+                std::uint8_t* to = planes + c * plane_stride + x;
+                if (from <= last_wide_copy) {
+                    copy_short(to, from, n);
+                } else {
+                    std::memcpy(to, from, std::size_t(n));
+                }
             });
     }
     return walk_old_rle(

@@ -18,7 +18,11 @@ struct ScanlineStep {
 /// Where the scanline at the start of `data` ends, without decoding it.
 ScanlineStep skip_hdr_scanline(std::span<const std::uint8_t> data, int width);
 
-/// Decodes it into four planes of `width` bytes (red, green, blue, exponent), each `plane_stride` apart.
+/// Bytes that decoding may touch beyond the last plane: short runs are written in whole blocks.
+inline constexpr std::size_t k_scanline_slack = 128;
+
+/// Decodes it into four planes of `width` bytes (red, green, blue, exponent), each `plane_stride` >= width apart, with
+/// k_scanline_slack bytes after the last.
 ScanlineStep decode_hdr_scanline(std::span<const std::uint8_t> data, int width, std::uint8_t* planes,
                                  std::size_t plane_stride);
 
