@@ -106,6 +106,7 @@ TEST_CASE("screen curves: sRGB, gamma 2.2 and linear at known points") {
     }
     CHECK(std::abs(srgb[128] - 0.2158605) < 1e-6);  // the usual table's value
     CHECK(std::abs(srgb[10] - 10 / 255.0 / 12.92) < 1e-7);
+    CHECK(std::abs(srgb[50] - 0.0318960) < 1e-6);
     CHECK(std::abs(gamma[128] - std::pow(128 / 255.0, 2.2)) < 1e-7);
     CHECK(linear[51] == 0.2f);
     CHECK(screen_curve("auto", 256) == srgb);
