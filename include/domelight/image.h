@@ -6,6 +6,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "domelight/large_allocator.h"
+
 namespace domelight {
 
 /// Pixels that live elsewhere: interleaved channels, rows top to bottom. T may be const.
@@ -67,7 +69,7 @@ class Image {
 
   private:
     int width_ = 0, height_ = 0, channels_ = 0;
-    std::vector<T> data_;
+    std::vector<T, LargeAllocator<T>> data_;
 };
 
 using ImageF = Image<float>;

@@ -40,8 +40,10 @@ Result<void> write_png(const std::filesystem::path& file, ImageView<const std::u
 /// (6 x 1), "vertical-strip" (1 x 6). Empty for any other name.
 ImageF cube_layout(const Cubemap& cube, const std::string& layout);
 
-/// Writes a file by way of a temporary neighbour that replaces it once `write` has succeeded and all is on disk; removed otherwise (also on
-/// SIGINT and SIGTERM). `write` gets the temporary path.
+/// Writes a file by way of a temporary neighbour that replaces it once `write` has succeeded and every byte was accepted and the file closed;
+/// removed otherwise (also on SIGINT and SIGTERM in a program that calls remove_temporaries_on_signals). `write` gets the temporary path. A link
+/// is followed; a device or pipe is written to directly. Not flushed to the disk itself: that would take longer than a bake, and only a power
+/// cut in the following seconds could tell.
 Result<void> write_file_atomically(const std::filesystem::path& file, const std::function<Result<void>(const std::filesystem::path&)>& write);
 Result<void> write_file_atomically(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "domelight/large_allocator.h"
 #include "domelight/prefilter.h"
 #include "domelight/result.h"
 
@@ -28,12 +29,15 @@ struct EncodingReport {
     double rms_error = 0;        ///< relative RMS error of the stored values against the float ones, clipped texels left out
 };
 
+/// Encoded texels: like any byte vector, but one made by size alone is not cleared.
+using TexelBytes = std::vector<std::uint8_t, LargeAllocator<std::uint8_t>>;
+
 /// A GPU texture in memory: levels, each of all faces (cube: 6, +X -X +Y -Y +Z -Z, OpenGL's orientation; else 1), texels tightly packed.
 struct Texture {
     Encoding encoding = Encoding::rgba16f;
     int width = 0, height = 0;
     int faces = 1;
-    std::vector<std::vector<std::uint8_t>> levels;  ///< level l: faces one after the other, (width >> l) x (height >> l) texels each
+    std::vector<TexelBytes> levels;                ///< level l: faces one after the other, (width >> l) x (height >> l) texels each
     std::map<std::string, std::string> metadata;    ///< key/value data, UTF-8 without terminator
     int level_width(int l) const { return std::max(1, width >> l); }
     int level_height(int l) const { return std::max(1, height >> l); }
@@ -63,7 +67,8 @@ struct TextureInfo {
     bool decodable = false;  ///< read_texture can decode it
 };
 Result<TextureInfo> read_texture_info(const std::filesystem::path& file);
-/// Reads a texture in one of our encodings. Checks every size and offset against the file before it allocates.
+/// Reads a texture in one of our encodings, or in half or float RGB or R (which gain the missing channels). Checks every size and offset against
+/// the file before it allocates; refuses what would need more than 2 GiB.
 Result<Texture> read_texture(const std::filesystem::path& file);
 
 }  // namespace domelight

@@ -57,7 +57,7 @@ EncodeSums encode_rows(const FilteredMap& map, const Task& task, Encoding encodi
         for (int face = 0; face < shape.faces; ++face) {
             const std::size_t first = (std::size_t(face) * shape.height + y) * shape.width;
             sums +=
-                encode_row_scalar(encoding, pixels.data() + 3 * first, shape.width, weight.data(), out + bytes * first);
+                simd::encode_row(encoding, pixels.data() + 3 * first, shape.width, weight.data(), out + bytes * first);
         }
     }
     return sums;

@@ -17,9 +17,9 @@ Error ByteSource::truncated(std::uint64_t offset, std::uint64_t count, const cha
             "", "the file is truncated or damaged"};
 }
 
-Result<std::vector<std::uint8_t>> ByteSource::take(std::uint64_t offset, std::uint64_t count, const char* what) {
+Result<Bytes> ByteSource::take(std::uint64_t offset, std::uint64_t count, const char* what) {
     if (!contains(offset, count)) return truncated(offset, count, what);
-    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(count));
+    Bytes bytes(static_cast<std::size_t>(count));
     Result<void> done = read(offset, bytes, what);
     if (!done) return done.error();
     return bytes;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "domelight/large_allocator.h"
 #include "domelight/result.h"
 
 #include <cstdint>
@@ -8,6 +9,9 @@
 #include <vector>
 
 namespace domelight {
+
+/// Bytes that are about to be filled: not cleared first.
+using Bytes = std::vector<std::uint8_t, LargeAllocator<std::uint8_t>>;
 
 /// Bytes to parse, of known number: a file or memory. Parsers take what they need and never hold more.
 class ByteSource {
@@ -23,7 +27,7 @@ class ByteSource {
         return offset <= size() && count <= size() - offset;
     }
     /// The bytes of a range; allocates only once it is known to lie inside.
-    Result<std::vector<std::uint8_t>> take(std::uint64_t offset, std::uint64_t count, const char* what);
+    Result<Bytes> take(std::uint64_t offset, std::uint64_t count, const char* what);
 
   protected:
     /// The error of a range that does not lie inside.

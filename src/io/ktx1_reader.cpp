@@ -107,8 +107,7 @@ std::size_t swap_unit(const StoredTexels& texels) {
 }
 
 /// One face of a level: rows padded to 4 bytes become tight ones.
-void append_face(const Ktx1& file, int width, int height, std::vector<std::uint8_t>& stored,
-                 std::vector<std::uint8_t>& out) {
+void append_face(const Ktx1& file, int width, int height, Bytes& stored, Bytes& out) {
     if (file.swapped) {
         const std::size_t unit = swap_unit(*file.texels);
         for (std::size_t i = 0; i + unit <= stored.size(); i += unit)
@@ -151,7 +150,7 @@ Result<Texture> ktx1_texture(ByteSource& source) {
                          "", "the file is damaged"};
         }
         at += 4;
-        std::vector<std::uint8_t> level;
+        Bytes level;
         level.reserve(std::size_t(width) * std::size_t(height) * std::size_t(texture->faces) *
                       std::size_t(encoding_bytes(texture->encoding)));
         for (int face = 0; face < texture->faces; ++face, at += face_bytes) {

@@ -122,10 +122,10 @@ std::uint64_t align_up(std::uint64_t n, std::uint64_t alignment) {
     return (n + alignment - 1) / alignment * alignment;
 }
 
-Result<std::vector<std::vector<std::uint8_t>>> compress_levels(const Texture& texture) {
-    std::vector<std::vector<std::uint8_t>> packed;
+Result<std::vector<TexelBytes>> compress_levels(const Texture& texture) {
+    std::vector<TexelBytes> packed;
     for (const auto& level : texture.levels) {
-        std::vector<std::uint8_t>& out = packed.emplace_back(ZSTD_compressBound(level.size()));
+        TexelBytes& out = packed.emplace_back(ZSTD_compressBound(level.size()));
         const std::size_t n = ZSTD_compress(out.data(), out.size(), level.data(), level.size(), 3);
         if (ZSTD_isError(n)) return Error{std::string("zstd: ") + ZSTD_getErrorName(n), "", ""};
         out.resize(n);
@@ -136,7 +136,7 @@ Result<std::vector<std::vector<std::uint8_t>>> compress_levels(const Texture& te
 }  // namespace
 
 Result<void> write_ktx2(const std::filesystem::path& file, const Texture& texture, Supercompression compression) {
-    std::vector<std::vector<std::uint8_t>> packed;
+    std::vector<TexelBytes> packed;
     if (compression == Supercompression::zstd) {
         auto compressed = compress_levels(texture);
         if (!compressed) return compressed.error().at(file.string());

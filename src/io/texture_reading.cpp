@@ -87,10 +87,10 @@ void widen_texels(const StoredTexels& texels, const std::uint8_t* in, std::size_
     }
 }
 
-std::vector<std::uint8_t> widen_level(const StoredTexels& texels, std::vector<std::uint8_t> stored) {
+Bytes widen_level(const StoredTexels& texels, Bytes stored) {
     if (texels.channels == 0) return stored;
     const std::size_t count = stored.size() / std::size_t(texels.bytes());
-    std::vector<std::uint8_t> wide(count * std::size_t(encoding_bytes(texels.encoding)));
+    Bytes wide(count * std::size_t(encoding_bytes(texels.encoding)));
     widen_texels(texels, stored.data(), count, wide.data());
     return wide;
 }

@@ -47,7 +47,7 @@ std::uint64_t stored_level_bytes(const Texture& texture, const StoredTexels& tex
 void widen_texels(const StoredTexels& texels, const std::uint8_t* in, std::size_t count, std::uint8_t* out);
 
 /// Stored bytes of one level to a Texture's (in place where nothing changes).
-std::vector<std::uint8_t> widen_level(const StoredTexels& texels, std::vector<std::uint8_t> stored);
+Bytes widen_level(const StoredTexels& texels, Bytes stored);
 
 /// A metadata value as UTF-8 text: a terminator is cut off; what is not text is given as "hex:" and its bytes.
 std::string metadata_text(std::span<const std::uint8_t> value);

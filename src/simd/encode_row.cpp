@@ -6,6 +6,7 @@
 #include "codec/rgb9e5.h"
 
 #include <cstring>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/encode_row.cpp"
@@ -28,6 +29,7 @@ struct Rgb {
 /// to nearest even.
 struct HalfCoder {
     static constexpr int k_bytes = 8;
+    static constexpr bool k_exact = false;
     static constexpr float k_min = -k_half_max, k_max = k_half_max, k_max_blue = k_half_max;
     template <typename D, typename V = hn::Vec<D>>
     static Rgb<V> store(D d, const Rgb<V>& v, std::uint8_t* out) {
@@ -40,8 +42,20 @@ struct HalfCoder {
     }
 };
 
+struct FloatCoder {
+    static constexpr int k_bytes = 16;
+    static constexpr bool k_exact = true;
+    static constexpr float k_max = std::numeric_limits<float>::max(), k_min = -k_max, k_max_blue = k_max;
+    template <typename D, typename V = hn::Vec<D>>
+    static Rgb<V> store(D d, const Rgb<V>& v, std::uint8_t* out) {
+        hn::StoreInterleaved4(v.r, v.g, v.b, hn::Set(d, 1.0f), d, reinterpret_cast<float*>(out));
+        return v;
+    }
+};
+
 struct Rgb9e5Coder {
     static constexpr int k_bytes = 4;
+    static constexpr bool k_exact = false;
     static constexpr float k_min = 0, k_max = k_rgb9e5_max, k_max_blue = k_rgb9e5_max;
     template <typename D, typename V = hn::Vec<D>>
     static Rgb<V> store(D d, const Rgb<V>& v, std::uint8_t* out) {
@@ -88,6 +102,7 @@ hn::Vec<hn::RebindToUnsigned<D>> small_float(D d, V v, V& rounded) {
 
 struct R11g11b10fCoder {
     static constexpr int k_bytes = 4;
+    static constexpr bool k_exact = false;
     static constexpr float k_min = 0, k_max = k_float11_max, k_max_blue = k_float10_max;
     template <typename D, typename V = hn::Vec<D>>
     static Rgb<V> store(D d, const Rgb<V>& v, std::uint8_t* out) {
@@ -148,6 +163,7 @@ EncodeSums encode_row_with(Encoding encoding, const float* rgb, int count, const
             const Rgb<V> lost_here{hn::Max(above.r, zero), hn::Max(above.g, zero), hn::Max(above.b, zero)};
             lost = hn::Add(lost, hn::Mul(w, luminance(lost_here)));
         }
+        if (Coder::k_exact) continue;
         error = hn::Add(error, hn::Mul(w_kept, square(minus(stored, inside))));
         norm = hn::Add(norm, hn::Mul(w_kept, square(inside)));
     }
