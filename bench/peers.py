@@ -70,7 +70,7 @@ def main():
         source = options.source
         if not source:
             source = work / "sky.hdr"
-            subprocess.run([DOMELIGHT, "sky", "--size", "1024", "-o", source, "--quiet"], check=True)
+            subprocess.run([DOMELIGHT, "sky", "--height", "1024", "-o", source, "--quiet"], check=True)
 
         cmgen = ["cmgen", "--quiet", f"--size={options.size}", f"--ibl-samples={options.samples}"]
         peer = cpu_seconds([*cmgen, "--format=ktx", f"--deploy={work / 'cmgen'}", source])

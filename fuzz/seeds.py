@@ -39,8 +39,8 @@ def made_by(program, folder):
     def run(*arguments):
         subprocess.run([program, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=60, check=False)
 
-    run("sky", "--size", "16", "-o", folder / "sky.hdr")
-    run("sky", "--size", "16", "-o", folder / "sky.exr")
+    run("sky", "--height", "16", "-o", folder / "sky.hdr")
+    run("sky", "--height", "16", "-o", folder / "sky.exr")
     for encoding in ("rgba16f", "rgba32f", "rgb9e5", "r11g11b10f"):
         run("bake", folder / "sky.hdr", "-o", folder / encoding, "--size", "8", "--levels", "2", "--encoding", encoding)
     for target in ("filament", "babylon", "three", "bevy", "khronos"):

@@ -229,11 +229,11 @@ def draw_harmonics():
             index += 1
     sheet.text(10, 30, "positive", 12, COLOURS["X"])
     sheet.text(10, 48, "negative", 12, COLOURS["Z"])
-    sheet.save("harmonics.png", 256)
+    sheet.save("harmonics.png", colours=0)
 
 
 def main():
-    environment = made_by_domelight("sky", "--axes", "--size", "512")
+    environment = made_by_domelight("sky", "--axes", "--height", "512")
     draw_world()
     draw_latlong(environment)
     draw_octahedral(environment)

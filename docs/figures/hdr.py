@@ -5,7 +5,7 @@ import numpy as np
 
 from pictures import FAINT, INK, PROGRAM, Sheet, made_by_domelight, srgb
 
-SKY = ["sky", "--size", "512", "--sun-elevation-deg", "35", "--turbidity", "3"]
+SKY = ["sky", "--height", "512", "--sun-elevation-deg", "35", "--turbidity", "3"]
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
@@ -32,7 +32,7 @@ def irradiance_up(image):
 
 
 def main():
-    sky = made_by_domelight(*SKY, "--encoding", "rgba32f", ending=".exr")
+    sky = made_by_domelight(*SKY, "--exr", "float", ending=".exr")
     rgbe = made_by_domelight(*SKY)
     height, width, _ = sky.shape
     brightness = sky @ LUMINANCE
@@ -52,7 +52,8 @@ def main():
         sheet.text(12, top + n * (high + 14) + 6, text, 12)
     calm_mean = sky[calm].mean(axis=(0, 1))
     print(f"{'':12} {'largest':>10} {'most error, sky':>16} {'E kept':>9}")
-    in_range = (brightness * exposure < 0.9) & (brightness * exposure > 0.02)
+    brightest = sky.max(axis=-1) * exposure
+    in_range = (brightest < 1) & (brightest > 0.02)
     for n, (name, image) in enumerate(stored.items()):
         x = left + n * (wide + 10)
         sheet.text(x, top - 24, name, 14, INK, bold=True)

@@ -92,9 +92,9 @@ def test_full_disk(work, bakes):
     for ending in (".hdr", ".exr"):
         folder = work / f"sky{ending}"
         folder.mkdir()
-        assert run(["sky", "-o", folder / f"sky{ending}", "--size", "16"]).returncode == 0
+        assert run(["sky", "-o", folder / f"sky{ending}", "--height", "16"]).returncode == 0
         before = contents(folder)
-        result = run(["sky", "-o", folder / f"sky{ending}", "--size", "256"], **small_disk(5000))
+        result = run(["sky", "-o", folder / f"sky{ending}", "--height", "256"], **small_disk(5000))
         claim(f"sky over an older {ending} on a full disk", failed_write(result, folder, before))
 
 
@@ -108,9 +108,9 @@ def test_real_full_disk(work):
         skipped += 1
         return
     try:
-        assert run(["sky", "-o", disk / "sky.hdr", "--size", "32"]).returncode == 0
+        assert run(["sky", "-o", disk / "sky.hdr", "--height", "32"]).returncode == 0
         before = contents(disk)
-        result = run(["sky", "-o", disk / "sky.hdr", "--size", "512"])
+        result = run(["sky", "-o", disk / "sky.hdr", "--height", "512"])
         claim("sky on a file system that is full", failed_write(result, disk, before))
         result = run(["bake", "-o", disk / "bake", *NEW])
         wrong = failed_write(result, disk, before)
@@ -124,7 +124,7 @@ def test_no_place(work):
     before = contents(work)
     for what, place in (("under a file", work / "file" / "out"), ("on a file", work / "file")):
         claim(f"bake {what}", failed_write(run(["bake", "-o", place, *OLD]), work, before))
-    claim("sky in a folder that is not there", failed_write(run(["sky", "-o", work / "none" / "sky.hdr", "--size", "16"]), work, before))
+    claim("sky in a folder that is not there", failed_write(run(["sky", "-o", work / "none" / "sky.hdr", "--height", "16"]), work, before))
 
 
 def test_interruption(work, bakes, seconds):
