@@ -1,6 +1,7 @@
 #include "domelight/environment.h"
 
 #include "io/cube_input.h"
+#include "io/cube_texture_reader.h"
 #include "io/image_reader.h"
 #include "io/radiance_reader.h"
 #include "projection/latlong_convention.h"
@@ -107,10 +108,14 @@ Environment begin_environment(const std::filesystem::path& file, const ImageFact
     return environment;
 }
 
+ReaderOptions reader_options(const EnvironmentOptions& options) {
+    return {options.decode, options.max_bytes, options.threads};
+}
+
 Result<std::unique_ptr<ImageReader>> open_file(const std::filesystem::path& file, const EnvironmentOptions& options) {
     auto bytes = FileBytes::open(file, options.max_bytes);
     if (!bytes) return bytes.error();
-    auto image = open_image_reader(std::move(*bytes), {options.decode, options.max_bytes, options.threads});
+    auto image = open_image_reader(std::move(*bytes), reader_options(options));
     if (!image) return image.error().at(file.string());
     return image;
 }
@@ -151,8 +156,27 @@ Environment finish_cube(Environment environment, Cubemap cube, const Request& re
     return environment;
 }
 
+/// KTX2, KTX and DDS hold cubes as the engines load them.
+Result<Environment> open_texture(const std::filesystem::path& file, const std::string& container,
+                                 const Request& request) {
+    if (const std::string& projection = request.options.projection; projection != "auto")
+        return Error{"a texture's projection is known: leave " + projection + " out", "--projection", ""};
+    Environment environment;
+    environment.file = file;
+    environment.format = container;
+    environment.report = std::make_shared<RepairReport>();
+    Result<Cubemap> cube = read_cube_texture(file, request.options.max_bytes, request.scale, *environment.report);
+    if (!cube) return cube.error();
+    environment.width = environment.height = cube->size();
+    return finish_cube(std::move(environment), std::move(*cube), request);
+}
+
 Result<Environment> open_picture(const std::filesystem::path& file, const Request& request) {
-    auto image = open_file(file, request.options);
+    auto bytes = FileBytes::open(file, request.options.max_bytes);
+    if (!bytes) return bytes.error();
+    if (const std::string container = texture_container((*bytes)->bytes()); !container.empty())
+        return open_texture(file, container, request);
+    auto image = open_image_reader(std::move(*bytes), reader_options(request.options));
     if (!image) return image.error();
     const ImageFacts& facts = (*image)->facts();
     const auto layout = choose_layout(facts, request.options.projection);

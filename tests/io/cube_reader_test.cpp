@@ -1,4 +1,5 @@
 #include "domelight/projection.h"
+#include "domelight/texture.h"
 
 #include "io/cube_input.h"
 #include "io/reader_samples.h"
@@ -162,4 +163,31 @@ TEST_CASE("cube reader: faces that do not fit together are refused by name") {
     CHECK_FALSE(open_environment({files[0]}));
     CHECK_FALSE(open_environment({files[0], files[1]}));
     CHECK_FALSE(open_environment({files[0], files[1], files[2], files[3], files[4], folder / "other.hdr"}));
+}
+
+TEST_CASE("cube reader: a cube texture of ours is read back as the environment it holds") {
+    TemporaryFolder folder;
+    std::vector<FilteredMap> levels(1);
+    levels[0].cube = Cubemap(k_size);
+    for (int f = 0; f < 6; ++f) {
+        const ImageF face = face_picture(f);
+        for (int y = 0; y < k_size; ++y) std::copy_n(face.row(y), 3 * k_size, levels[0].cube.face(f).row(y));
+    }
+    const Texture texture = encode_texture(levels, Encoding::rgba32f, 1);
+    REQUIRE(write_ktx2(folder / "c.ktx2", texture));
+    REQUIRE(write_ktx1(folder / "c.ktx", texture));
+    REQUIRE(write_dds(folder / "c.dds", texture));
+    for (const char* name : {"c.ktx2", "c.ktx", "c.dds"}) {
+        const auto environment = open_environment({folder / name}, {.exposure = 0});
+        REQUIRE_MESSAGE(environment, environment.error().format());
+        CHECK(environment->projection == "cube");
+        CHECK(error_of(environment->cube) == 0);
+        CHECK_FALSE(open_environment({folder / name}, {.max_bytes = 1000}));
+    }
+    Bytes cut = load(folder / "c.dds");
+    cut.resize(cut.size() / 2);
+    save(folder / "cut.dds", cut);
+    const auto refused = open_environment({folder / "cut.dds"});
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().where == (folder / "cut.dds").string());
 }
