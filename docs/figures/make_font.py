@@ -10,7 +10,7 @@ import sys
 
 from PIL import Image, ImageDraw, ImageFont
 
-TEXT = [chr(c) for c in range(32, 127)] + list("°²·×απ–−…→ω")
+TEXT = [chr(c) for c in range(32, 127)] + list("°²·×απ–−…→↓")
 FACES = [("small", "DejaVuSans.ttf", 15), ("large", "DejaVuSans-Bold.ttf", 24)]
 SDF_TEXT, SDF_SIZE, SDF_RANGE = "+-XYZ", 36, 5  # distances of +-5 px at a nominal size of 36 px
 

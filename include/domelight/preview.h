@@ -36,7 +36,7 @@ struct PreviewInput {
 
 /// A contact sheet (8-bit sRGB, 3 channels) that a person can judge a bake by at a glance: the environment, each level
 /// as a chrome ball and unfolded, irradiance, its spherical-harmonic reconstruction, the BRDF table; tone mapped
-/// (Khronos PBR Neutral) and labelled.
+/// (AgX) and labelled.
 ///
 /// Balls are seen along -Z with +X to the right and +Y up, so a chrome ball has +Z at its middle and -Z around its rim.
 /// Cubes unfold as a horizontal cross, lat-long levels in the default convention. The same bytes on any number of

@@ -36,16 +36,6 @@ struct Text {
     Align align = Align::left;
 };
 
-/// How pixels get their colour.
-struct Look {
-    float exposure = 1;
-    Vec3f linear(const Vec3f& radiance) const { return tonemap(radiance * exposure, Tonemap::neutral); }
-    void put(std::uint8_t* pixel, const Vec3f& radiance) const {
-        const auto c = display_rgb8(radiance, exposure, Tonemap::neutral);
-        std::copy(c.begin(), c.end(), pixel);
-    }
-};
-
 std::string number(double v) {
     return fmt::format("{:.3g}", v);
 }
@@ -67,6 +57,10 @@ class Sheet {
     void cross_panel(int x, int y, int width, const PreviewMap& map);
     void ball_panel(int x, int y, int size, const PreviewMap& map, bool chrome, int samples);
     void brdf_panel(int x, int y, int size);
+    void put(std::uint8_t* pixel, const Vec3f& radiance) const {
+        const auto c = look_.rgb8(radiance);
+        std::copy(c.begin(), c.end(), pixel);
+    }
     void axis_names(int x, int y, int width);
     void text(int x, int baseline, std::string s, Colour8 colour = k_text, Align align = Align::left,
               FontSize size = FontSize::small) {
@@ -79,7 +73,7 @@ class Sheet {
     const PreviewInput& in_;
     int width_, y_ = 0;
     double log_average_ = 0;
-    Look look_;
+    Display look_{Tonemap::agx_punchy, 1};
     PreviewMap environment_, irradiance_, sh_;
     std::vector<PreviewMap> levels_;
     std::vector<Panel> panels_;
@@ -133,7 +127,8 @@ Sheet::Sheet(const PreviewInput& input) : in_(input), width_(std::max(input.widt
         log_average_ = log_average_luminance(picture.view());
     }
     const double automatic = log_average_ > 0 ? std::log2(k_key / log_average_) : 0;
-    look_.exposure = float(std::exp2(std::clamp(in_.exposure_ev.value_or(automatic), -60.0, 60.0)));
+    const double ev = std::clamp(in_.exposure_ev.value_or(automatic), -60.0, 60.0);
+    look_ = Display(Tonemap::agx_punchy, float(std::exp2(ev)));
     header();
     environment_row();
     level_grid();
@@ -143,13 +138,13 @@ Sheet::Sheet(const PreviewInput& input) : in_(input), width_(std::max(input.widt
 void Sheet::header() {
     const int right = width_ - k_margin;
     y_ = k_margin;
-    const std::string exposure = fmt::format("exposure {:+.2f} EV", std::log2(look_.exposure));
+    const std::string exposure = fmt::format("exposure {:+.2f} EV", std::log2(look_.exposure()));
     const std::string reason = in_.exposure_ev ? std::string("as asked for")
                                : log_average_ > 0
                                    ? fmt::format("log-average luminance {} to {}", number(log_average_), k_key)
                                    : std::string("black environment");
     text(right, y_ + 20, exposure + " (" + reason + ")", k_text, Align::right);
-    text(right, y_ + 46, "tone map Khronos PBR Neutral, sRGB", k_quiet, Align::right);
+    text(right, y_ + 46, "tone map AgX (punchy), sRGB", k_quiet, Align::right);
     const int room =
         width_ - 2 * k_margin - k_gap - std::max(text_width(exposure + " (" + reason + ")", FontSize::small), 280);
     text(k_margin, y_ + 20, fit_text(in_.title.empty() ? "environment" : in_.title, FontSize::large, room), k_bright,
@@ -200,7 +195,7 @@ void Sheet::environment_row() {
         ball_panel(x, y_, s, sh_, false, 1);
         latlong_panel(x, y_ + s + 10, s, sh_);
         const int bands = int(std::lround(std::sqrt(double(in_.sh.size()))));
-        caption(x, y_ + height, s, fmt::format("irradiance / π of {} harmonics ({} bands)", in_.sh.size(), bands),
+        caption(x, y_ + height, s, fmt::format("the same of {} harmonics, {} bands", in_.sh.size(), bands),
                 irradiance_.empty() ? "" : fmt::format("differs by {:.2f} % RMS", 100 * sh_difference()));
     }
     y_ += height + 2 * k_line + 34;
@@ -221,9 +216,8 @@ void Sheet::level_grid() {
             const int below = y + cell + 10;
             text(x, below + 14,
                  fit_text(fmt::format("BRDF table, {} × {}", in_.brdf.width, in_.brdf.height), FontSize::small, cell));
-            text(x, below + 14 + k_line, fit_text("right: N·V 0 to 1", FontSize::small, cell), k_quiet);
-            text(x, below + 14 + 2 * k_line, fit_text("down: roughness 0 to 1", FontSize::small, cell), k_quiet);
-            text(x, below + 14 + 3 * k_line, fit_text("red: scale, green: bias", FontSize::small, cell), k_quiet);
+            text(x, below + 14 + k_line, fit_text("red scale, green bias", FontSize::small, cell), k_quiet);
+            text(x, below + 14 + 2 * k_line, fit_text("→ N·V  ↓ roughness", FontSize::small, cell), k_quiet);
             continue;
         }
         const PreviewLevel& level = in_.specular[i];
@@ -260,8 +254,8 @@ void Sheet::latlong_panel(int x, int y, int width, const PreviewMap& map) {
     panels_.push_back(
         {{x, y, width, height}, [this, x, y, width, height, &map](ImageView<std::uint8_t> image, int row) {
              for (int i = 0; i < width; ++i)
-                 look_.put(image.at(x + i, y + row),
-                           map.sample_latlong(float((i + 0.5) / width), float((row + 0.5) / height)));
+                 put(image.at(x + i, y + row),
+                     map.sample_latlong(float((i + 0.5) / width), float((row + 0.5) / height)));
          }});
 }
 
@@ -276,8 +270,8 @@ void Sheet::cross_panel(int x, int y, int width, const PreviewMap& map) {
                  const int face = faces[row / n][column];
                  if (face < 0) continue;
                  for (int i = 0; i < n; ++i)
-                     look_.put(image.at(x + column * n + i, y + row),
-                               map.sample_face(face, (float(i) + 0.5f) / float(n), (float(row % n) + 0.5f) / float(n)));
+                     put(image.at(x + column * n + i, y + row),
+                         map.sample_face(face, (float(i) + 0.5f) / float(n), (float(row % n) + 0.5f) / float(n)));
              }
          }});
 }
@@ -302,10 +296,10 @@ void Sheet::ball_panel(int x, int y, int size, const PreviewMap& map, bool chrom
                      n.z = std::sqrt(std::max(0.0f, 1 - n.x * n.x - n.y * n.y));
                      // Towards the viewer is +Z: r = 2 (n.z) n - z.
                      const Vec3f d = chrome ? Vec3f{2 * n.z * n.x, 2 * n.z * n.y, 2 * n.z * n.z - 1} : n;
-                     sum = sum + look_.linear(map.sample(d));
+                     sum = sum + look_.encoded(map.sample(d));
                  }
                  sum = sum / float(samples * samples);
-                 blend(image, x + i, y + row, {srgb8(sum.x), srgb8(sum.y), srgb8(sum.z)}, opacity);
+                 blend(image, x + i, y + row, {to_byte(sum.x), to_byte(sum.y), to_byte(sum.z)}, opacity);
              }
          }});
 }
@@ -330,8 +324,8 @@ void Sheet::brdf_panel(int x, int y, int size) {
                                    return a * (1 - (fy - j)) + b * (fy - j);
                                };
                                std::uint8_t* p = image.at(x + i, y + row);
-                               p[0] = srgb8(value(0));
-                               p[1] = srgb8(value(1));
+                               p[0] = to_byte(srgb_encode(std::clamp(value(0), 0.0f, 1.0f)));
+                               p[1] = to_byte(srgb_encode(std::clamp(value(1), 0.0f, 1.0f)));
                                p[2] = 0;
                            }
                        }});

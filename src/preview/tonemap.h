@@ -14,16 +14,34 @@ enum class Tonemap {
     neutral,  ///< Khronos PBR Neutral (2024): colours below 0.8 as they are, highlights rolled off without a change of
               ///< hue
     agx,      ///< AgX (Sobotka 2022), by Wrensch's polynomial: a film's contrast, bright colours towards white
+    agx_punchy,  ///< AgX with its "punchy" look: more contrast and saturation
 };
 
 /// Tone maps linear Rec. 709 (already exposed); the result is display-linear Rec. 709 in 0..1. NaN gives 0.
 Vec3f tonemap(const Vec3f& rgb, Tonemap method);
 
-/// The sRGB transfer function (IEC 61966-2-1), 0..1 to 0..255; the nearest of 256.
-std::uint8_t srgb8(float linear);
+/// The sRGB transfer function (IEC 61966-2-1) of 0..1.
+float srgb_encode(float linear);
 
-/// Tone map and transfer function in one, by table where that is exact to a 255th.
-std::array<std::uint8_t, 3> display_rgb8(const Vec3f& radiance, float exposure, Tonemap method);
+/// Exposure, tone map and transfer function in one, by tables: within one 255th of srgb_encode(tonemap(...)), at a
+/// tenth of the cost.
+class Display {
+  public:
+    Display(Tonemap method, float exposure) : method_(method), exposure_(exposure) {}
+    float exposure() const { return exposure_; }
+    /// Radiance to sRGB, 0..1.
+    Vec3f encoded(const Vec3f& radiance) const;
+    std::array<std::uint8_t, 3> rgb8(const Vec3f& radiance) const;
+
+  private:
+    Tonemap method_;
+    float exposure_;
+};
+
+/// 0..1 to 0..255, rounded.
+inline std::uint8_t to_byte(float v) {
+    return std::uint8_t(v * 255 + 0.5f);
+}
 
 inline float luminance(const Vec3f& v) {
     return 0.2126f * v.x + 0.7152f * v.y + 0.0722f * v.z;

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <utility>
 
 namespace domelight::sky {
@@ -21,9 +22,9 @@ constexpr double k_angstrom_exponent = 1.3, k_single_scattering_albedo = 0.94;
 // lm/W is the candela's.
 constexpr double k_efficacy_ratio = 683.0 / 179.0;
 
-constexpr int k_mu_nodes = 128, k_radius_nodes = 48;  // columns
-constexpr int k_height_nodes = 24, k_sun_nodes = 32;  // multiple scattering
-constexpr int k_gather_polar = 16, k_gather_azimuth = 6, k_gather_steps = 32;
+constexpr int k_mu_nodes = 160, k_radius_nodes = 48;  // columns
+constexpr int k_height_nodes = 16, k_sun_nodes = 20;  // multiple scattering
+constexpr int k_gather_polar = 8, k_gather_azimuth = 6, k_gather_steps = 20;
 
 const double k_horizon_distance = std::sqrt(k_top_radius * k_top_radius - k_ground_radius * k_ground_radius);
 
@@ -77,6 +78,47 @@ Columns columns_outward(double r, double mu, double distance, int steps) {
     return {float(air), float(aerosol), float(ozone)};
 }
 
+/// One of the directions that multiple scattering is gathered from.
+struct GatherDirection {
+    double mu, nu, length;    ///< cosines to the zenith and to the sun; how far it goes, km
+    float weight;             ///< share of the sphere
+    float rayleigh, aerosol;  ///< weight times phase function
+    bool hits_ground;
+};
+
+/// Directions over half a turn of azimuth (the other half is its mirror image), quadratic away from the sun; above and
+/// below the horizon apart and quadratic away from it: twilight comes from close to it.
+void gather_directions(double r, double mu_sun, std::span<GatherDirection> out) {
+    double node[k_gather_polar], node_weight[k_gather_polar];
+    gauss_legendre(k_gather_polar, node, node_weight);
+    const double sine_sun = std::sqrt(std::max(0.0, 1 - mu_sun * mu_sun));
+    const double horizon = -std::sqrt(std::max(0.0, 1 - k_ground_radius * k_ground_radius / (r * r)));
+    double rayleigh = 0, aerosol = 0;
+    for (int p = 0; p < 2 * k_gather_polar; ++p) {
+        const bool ground = p >= k_gather_polar;
+        const double s = 0.5 + 0.5 * node[p % k_gather_polar], span = ground ? -1 - horizon : 1 - horizon;
+        const double mu = horizon + span * s * s, sine = std::sqrt(std::max(0.0, 1 - mu * mu));
+        const double ring = node_weight[p % k_gather_polar] * std::abs(span) * s / 2;
+        const double to_ground =
+            -r * mu - std::sqrt(std::max(0.0, r * r * (mu * mu - 1) + k_ground_radius * k_ground_radius));
+        for (int q = 0; q < k_gather_azimuth; ++q) {
+            const double x = (q + 0.5) / k_gather_azimuth, weight = ring * 2 * x / k_gather_azimuth;
+            const double nu = mu * mu_sun + sine * sine_sun * std::cos(k_pi * x * x);
+            const double pr = weight * phase_rayleigh(float(nu)), pm = weight * phase_aerosol(float(nu));
+            out[p * k_gather_azimuth + q] = {
+                mu, nu, ground ? to_ground : distance_to_top(r, mu), float(weight), float(pr), float(pm), ground};
+            rayleigh += pr;
+            aerosol += pm;
+        }
+    }
+    // So few directions miss much of the aerosol's forward lobe or count it twice: what they have is scaled to the
+    // lobe's true integral.
+    for (GatherDirection& d : out) {
+        d.rayleigh *= float(1 / (4 * k_pi * rayleigh));
+        d.aerosol *= float(1 / (4 * k_pi * aerosol));
+    }
+}
+
 }  // namespace
 
 Medium::Medium(double turbidity) {
@@ -117,9 +159,9 @@ Vec3f Medium::colour(const Spectrum& relative_to_sun) const {
 }
 
 Columns density(double height) {
-    const double h = std::max(0.0, height);
-    return {float(std::exp(-h / k_air_scale)), float(std::exp(-h / k_aerosol_scale)),
-            float(std::max(0.0, 1 - std::abs(h - k_ozone_middle) / k_ozone_half_width))};
+    const float h = float(std::max(0.0, height));
+    return {exp_negative(-h / float(k_air_scale)), exp_negative(-h / float(k_aerosol_scale)),
+            std::max(0.0f, 1 - std::abs(h - float(k_ozone_middle)) / float(k_ozone_half_width))};
 }
 
 Columns columns_to_top(double r, double mu, int steps) {
@@ -138,9 +180,18 @@ Spectrum transmittance(const Medium& m, const Columns& c) {
 }
 
 /// A path: from radius r at cosine mu over `length` km, under a sun at cosine mu_sun from the start's zenith, nu from
-/// the ray.
+/// the ray. `lowest` is how far along it comes closest to the ground: 0 for one that climbs.
 struct Atmosphere::Ray {
-    double r, mu, length, mu_sun, nu;
+    double r, mu, length, mu_sun, nu, lowest;
+
+    /// Distance along it of point x of [0, 1]: quadratic away from the lowest point on either side, dense where the air
+    /// is.
+    double distance(double x) const {
+        if (lowest <= 0) return length * x * x;
+        if (lowest >= length) return length * (1 - (1 - x) * (1 - x));
+        const double y = 2 * x - 1;
+        return y < 0 ? lowest * (1 - y * y) : lowest + (length - lowest) * y * y;
+    }
 };
 
 Atmosphere::Atmosphere(double turbidity, double sun_elevation, double ground_albedo, int threads)
@@ -194,8 +245,8 @@ Gathered Atmosphere::march(const Ray& ray, int steps, bool with_multiple, Spectr
     const Medium& m = medium_;
     for (int i = 0; i < steps; ++i) {
         const double x0 = double(i) / steps, x1 = double(i + 1) / steps, xm = 0.5 * (x0 + x1);
-        const double t = ray.length * xm * xm;
-        const float dt = float(ray.length * (x1 * x1 - x0 * x0));
+        const double t = ray.distance(xm);
+        const float dt = float(ray.distance(x1) - ray.distance(x0));
         const double r = std::sqrt(ray.r * ray.r + t * t + 2 * ray.r * t * ray.mu);
         const double mu_sun = (ray.r * ray.mu_sun + t * ray.nu) / r;
         const Columns d = density(r - k_ground_radius);
@@ -231,30 +282,20 @@ Gathered Atmosphere::march(const Ray& ray, int steps, bool with_multiple, Spectr
 // each f times the one before: Psi = L_2 / (1 - f) (Hillaire 2020, eqs. 5 to 10). Unlike there, the first scattering
 // keeps its phase functions.
 Spectrum Atmosphere::multiple_scattering_at(double r, double mu_sun) const {
-    double node[k_gather_polar], node_weight[k_gather_polar];
-    gauss_legendre(k_gather_polar, node, node_weight);
-    const double sine_sun = std::sqrt(std::max(0.0, 1 - mu_sun * mu_sun));
+    std::array<GatherDirection, 2 * k_gather_polar * k_gather_azimuth> directions;
+    gather_directions(r, mu_sun, directions);
     Spectrum second{}, share{};
-    for (int p = 0; p < k_gather_polar; ++p) {
-        const double mu = node[p], sine = std::sqrt(1 - mu * mu);
-        const double discriminant = r * r * (mu * mu - 1) + k_ground_radius * k_ground_radius;
-        const bool hits_ground = mu < 0 && discriminant >= 0;
-        const double length = hits_ground ? -r * mu - std::sqrt(discriminant) : distance_to_top(r, mu);
-        for (int q = 0; q < k_gather_azimuth; ++q) {  // half a turn: the other half is its mirror image
-            const double nu = mu * mu_sun + sine * sine_sun * std::cos(k_pi * (q + 0.5) / k_gather_azimuth);
-            Spectrum transfer{};
-            const Gathered g = march({r, mu, length, mu_sun, nu}, k_gather_steps, false, &transfer);
-            const float w = float(node_weight[p] / 2 / k_gather_azimuth);  // a mean over the sphere
-            const float pr = phase_rayleigh(float(nu)), pm = phase_aerosol(float(nu));
-            for (int b = 0; b < k_bands; ++b) {
-                second[b] += w * (g.rayleigh[b] * pr + g.aerosol[b] * pm);
-                share[b] += w * transfer[b];
-            }
-            const double ground_mu = (r * mu_sun + length * nu) / k_ground_radius;
-            if (!hits_ground || ground_mu <= 0) continue;
-            const Spectrum lit = transmittance(medium_, g.columns + columns(k_ground_radius, ground_mu));
-            for (int b = 0; b < k_bands; ++b) second[b] += w * lit[b] * float(ground_mu * ground_albedo_ / k_pi);
+    for (const GatherDirection& d : directions) {
+        Spectrum transfer{};
+        const Gathered g = march({r, d.mu, d.length, mu_sun, d.nu, -r * d.mu}, k_gather_steps, false, &transfer);
+        for (int b = 0; b < k_bands; ++b) {
+            second[b] += g.rayleigh[b] * d.rayleigh + g.aerosol[b] * d.aerosol;
+            share[b] += d.weight * transfer[b];
         }
+        const double ground_mu = (r * mu_sun + d.length * d.nu) / k_ground_radius;
+        if (!d.hits_ground || ground_mu <= 0) continue;
+        const Spectrum lit = transmittance(medium_, g.columns + columns(k_ground_radius, ground_mu));
+        for (int b = 0; b < k_bands; ++b) second[b] += d.weight * lit[b] * float(ground_mu * ground_albedo_ / k_pi);
     }
     for (int b = 0; b < k_bands; ++b) second[b] /= 1 - share[b];
     return second;
@@ -270,6 +311,8 @@ void Atmosphere::make_multiple_scattering(int threads) {
         const double x = double(i / k_sun_nodes) / (k_height_nodes - 1);
         const double r = k_ground_radius + (k_top_radius - k_ground_radius) * x * x;
         multiple_[i] = multiple_scattering_at(r, std::sin(multiple_first_ + multiple_step_ * (i % k_sun_nodes)));
+        // As logarithms: in twilight it falls threefold a degree, and straight lines between nodes would show.
+        for (float& v : multiple_[i]) v = std::log(std::max(v, 1e-30f));
     });
 }
 
@@ -282,16 +325,17 @@ void Atmosphere::add_multiple_scattering(double r, double mu_sun, const Spectrum
     const int i = std::min(int(x), k_sun_nodes - 2), j = std::min(int(y), k_height_nodes - 2);
     const float fx = float(x - i), fy = float(y - j);
     const Spectrum *a = &multiple_[j * k_sun_nodes + i], *b = a + k_sun_nodes;
-    for (int k = 0; k < k_bands; ++k)
-        out[k] +=
-            scattering[k] * ((a[0][k] * (1 - fx) + a[1][k] * fx) * (1 - fy) + (b[0][k] * (1 - fx) + b[1][k] * fx) * fy);
+    for (int k = 0; k < k_bands; ++k) {
+        const float value = (a[0][k] * (1 - fx) + a[1][k] * fx) * (1 - fy) + (b[0][k] * (1 - fx) + b[1][k] * fx) * fy;
+        out[k] += scattering[k] * exp_negative(std::min(value, 0.0f));  // no more than the sun's irradiance a steradian
+    }
 }
 
 Gathered Atmosphere::gather(double elevation, double azimuth, double distance, int steps) const {
     const double mu = std::sin(elevation), mu_sun = std::sin(sun_elevation_);
     const double nu = mu * mu_sun + std::cos(elevation) * std::cos(sun_elevation_) * std::cos(azimuth);
     const double length = std::min(distance, distance_to_top(k_ground_radius, mu));
-    return march({k_ground_radius, mu, length, mu_sun, nu}, steps, true, nullptr);
+    return march({k_ground_radius, mu, length, mu_sun, nu, 0}, steps, true, nullptr);
 }
 
 }  // namespace domelight::sky

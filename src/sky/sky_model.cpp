@@ -11,7 +11,7 @@
 namespace domelight::sky {
 namespace {
 
-constexpr int k_above_nodes = 96, k_below_nodes = 48, k_steps = 64;
+constexpr int k_above_nodes = 96, k_below_nodes = 32, k_steps = 56;
 constexpr int k_row_nodes = SkyModel::k_azimuths;
 // Eye height (km) that sets how far off the ground is at each angle below the horizon, hence the haze before it; and
 // the horizon's distance.
