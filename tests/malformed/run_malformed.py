@@ -27,6 +27,10 @@ ADDRESS_SPACE = 4 << 30           # a broken size that slips through fails here,
 RESIDENT_MADE_UP = 128 << 20      # a header alone must not make the program allocate what it promises
 RESIDENT = 1200 << 20             # the readers' cap of 1 GiB, and the program itself
 
+SANITIZED = bool(os.environ.get("DOMELIGHT_SANITIZED"))  # AddressSanitizer reserves terabytes of addresses and keeps freed memory
+if SANITIZED:
+    SECONDS, RESIDENT_MADE_UP, RESIDENT = 10 * SECONDS, 4 * RESIDENT_MADE_UP, 2 * RESIDENT
+
 # Not images, but what `info` may be pointed at by mistake: no use in baking each of them.
 NOT_IMAGES = {".gltf", ".glb", ".json", ".bin", ".rst", ".md"}
 
@@ -96,7 +100,7 @@ def check(file, work, number, made_up):
 def main():
     word = sys.argv[1] if len(sys.argv) > 1 else ""
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    if not os.environ.get("DOMELIGHT_SANITIZED"):  # AddressSanitizer reserves terabytes of addresses
+    if not SANITIZED:
         resource.setrlimit(resource.RLIMIT_AS, (ADDRESS_SPACE, ADDRESS_SPACE))
     skipped = 0
     with tempfile.TemporaryDirectory() as folder:
