@@ -38,7 +38,9 @@ BrightPoints BrightTexels::points(const Vec3d& mean, double least_share, int ban
         if (t.power > least_share * total) texels.push_back(t);
     std::sort(texels.begin(), texels.end(), stronger);
 
-    const int nodes = std::clamp(1 + int(k_pi / height_ * band_limit), 1, 8);
+    // A texel wider than a few waves is no point: its own tent has smoothed it beyond what truncation could show.
+    const int nodes = 1 + int(k_pi / height_ * band_limit);
+    if (nodes > 16) return {};
     BrightPoints points;
     for (const Texel& t : texels) add_tent_nodes(points, width_, height_, t.x, t.y, t.rgb, nodes);
     return points;

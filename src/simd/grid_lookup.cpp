@@ -84,10 +84,14 @@ HWY_INLINE void lookup_one(const GridView& grid, const Place& place, float* rgb)
         const auto weight = hn::Set(d, place.down[k]);
         for (int v = 0; v < vectors; ++v) sum[v] = hn::MulAdd(hn::LoadU(d, from + v * lanes), weight, sum[v]);
     }
-    auto total = hn::Mul(place.across_weights(0), sum[0]);
-    for (int v = 1; v < vectors; ++v) total = hn::MulAdd(place.across_weights(v), sum[v], total);
-    alignas(64) float parts[lanes];
-    hn::Store(total, d, parts);
+    // Vectors whose lanes are the same channels add up first: all of them, unless a vector is shorter than a texel (the portable target).
+    constexpr int kinds = lanes < 4 ? 4 / lanes : 1;
+    alignas(64) float parts[lanes * kinds];
+    for (int k = 0; k < kinds; ++k) {
+        auto total = hn::Mul(place.across_weights(k), sum[k]);
+        for (int v = k + kinds; v < vectors; v += kinds) total = hn::MulAdd(place.across_weights(v), sum[v], total);
+        hn::Store(total, d, parts + k * lanes);
+    }
     for (int c = 0; c < 3; ++c) {
         float value = parts[c];
         for (int p = 4; p < lanes; p += 4) value += parts[p + c];
@@ -98,11 +102,10 @@ HWY_INLINE void lookup_one(const GridView& grid, const Place& place, float* rgb)
 HWY_INLINE void scatter_one(const GridView& grid, float* rgbx, const Place& place, const float* rgb) {
     const D d;
     constexpr int lanes = int(hn::MaxLanes(d)), vectors = k_quads / lanes;
-    alignas(64) float value[lanes];
-    for (int i = 0; i < lanes; ++i) value[i] = i % 4 < 3 ? rgb[i % 4] : 0;
-    const auto v_rgb = hn::Load(d, value);
+    alignas(64) float value[k_quads];
+    for (int i = 0; i < k_quads; ++i) value[i] = i % 4 < 3 ? rgb[i % 4] : 0;
     hn::Vec<D> row[vectors];
-    for (int v = 0; v < vectors; ++v) row[v] = hn::Mul(place.across_weights(v), v_rgb);
+    for (int v = 0; v < vectors; ++v) row[v] = hn::Mul(place.across_weights(v), hn::Load(d, value + v * lanes));
     float* to = rgbx + place.offset;
     for (int k = 0; k < k_taps; ++k, to += grid.stride) {
         const auto weight = hn::Set(d, place.down[k]);

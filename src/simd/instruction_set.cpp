@@ -17,7 +17,7 @@ void limit_instruction_set(const std::string& name) {
     auto targets = hwy::SupportedTargets();
     if (name == "AVX2") targets &= ~(HWY_AVX2 - 1);
     if (name == "SSE4") targets &= ~(HWY_SSE4 - 1);
-    if (name == "EMU128") targets &= ~(HWY_EMU128 - 1);
+    if (name == "SCALAR") targets = HWY_SCALAR;
     hwy::SetSupportedTargetsForTest(targets);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
