@@ -1,0 +1,182 @@
+#include "bake/plan.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace domelight {
+namespace {
+
+constexpr int k_max_size = 16384;
+
+/// Levels that halving gives from `size` down to 1.
+int most_levels(int size) {
+    return std::bit_width(unsigned(size));
+}
+
+bool is_phong(Lobe lobe) {
+    return lobe == Lobe::phong_brdf || lobe == Lobe::phong_plain;
+}
+
+/// Phong's exponents where none are given: the environment itself, then 2048 and a quarter of that with each level, as
+/// its texels double.
+std::vector<double> default_exponents(int levels) {
+    std::vector<double> exponents{INFINITY};
+    for (int l = 1; l < levels; ++l) exponents.push_back(std::max(1.0, 2048 * std::pow(0.25, l - 1)));
+    return exponents;
+}
+
+LevelPlan glossy_level(Lobe lobe, int size, double roughness) {
+    // Charlie has no mirror: its lobe lies along the horizon.
+    if (lobe == Lobe::charlie) roughness = std::max(roughness, k_charlie_least_roughness);
+    LevelPlan level;
+    level.roughness = roughness;
+    level.alpha = roughness * roughness;
+    level.spec.size = size;
+    level.spec.mirror = roughness == 0;
+    level.spec.kernel = {lobe, level.alpha};
+    if (level.spec.mirror) level.spec.kernel.width = 1;  // not used; any valid one
+    return level;
+}
+
+LevelPlan phong_level(Lobe lobe, int size, double exponent) {
+    LevelPlan level;
+    level.exponent = exponent;
+    level.spec.size = size;
+    level.spec.mirror = std::isinf(exponent);
+    level.spec.kernel = {lobe, level.spec.mirror ? 1.0 : exponent};
+    return level;
+}
+
+Error option_error(const char* option, std::string what, std::string hint = "") {
+    return {std::move(what), option, std::move(hint)};
+}
+
+Result<void> check_values(const BakeOptions& o) {
+    if (o.size && (*o.size < 1 || *o.size > k_max_size))
+        return option_error("--size", fmt::format("{} is not from 1 to {}", *o.size, k_max_size));
+    for (const double r : o.roughness)
+        if (!(r >= 0 && r <= 1)) return option_error("--roughness", fmt::format("{} is not from 0 to 1", r));
+    for (const double n : o.exponents)
+        if (!(n >= 0))
+            return option_error("--exponents", fmt::format("{} is not 0 or more", n),
+                                "inf stands for the environment itself.");
+    if (!o.exponents.empty() && !(o.lobe && is_phong(*o.lobe)))
+        return option_error("--exponents", "belongs to --lobe phong", "Roughness is given with --roughness.");
+    if (o.lobe && is_phong(*o.lobe) && !o.roughness.empty())
+        return option_error("--roughness", "does not apply to --lobe phong",
+                            "Give its exponents with --exponents n0,n1,...");
+    if (o.encoding && (*o.encoding == Encoding::rg16f || *o.encoding == Encoding::rg32f))
+        return option_error("--encoding", encoding_name(*o.encoding) + " has no room for a colour",
+                            "Accepted are rgba16f, rgba32f, rgb9e5, r11g11b10f.");
+    if (o.irradiance_size && (*o.irradiance_size < 1 || *o.irradiance_size > 4096))
+        return option_error("--irradiance-size", fmt::format("{} is not from 1 to 4096", *o.irradiance_size));
+    if (o.brdf_size && (*o.brdf_size < 1 || *o.brdf_size > 4096))
+        return option_error("--brdf-size", fmt::format("{} is not from 1 to 4096", *o.brdf_size));
+    if (o.sh_bands < 1 || o.sh_bands > 64)
+        return option_error("--sh-bands", fmt::format("{} is not from 1 to 64", o.sh_bands));
+    if (o.samples < 1 || o.samples > (1 << 24))
+        return option_error("--samples", fmt::format("{} is not from 1 to 2^24", o.samples));
+    if (o.riemann_polar < 1 || o.riemann_azimuth < 1 || o.riemann_polar > 65536 || o.riemann_azimuth > 65536)
+        return option_error("--riemann-steps", "steps are from 1 to 65536");
+    if (o.threads < 0 || o.threads > 1024)
+        return option_error("--threads", fmt::format("{} is not from 0 to 1024", o.threads));
+    return {};
+}
+
+/// Number of levels from the options, or from the target's smallest size.
+Result<int> level_count(const Target& target, const BakeOptions& o, int size) {
+    const std::size_t listed = std::max(o.roughness.size(), o.exponents.size());
+    const char* list = o.exponents.empty() ? "--roughness" : "--exponents";
+    if (listed && o.levels && std::size_t(*o.levels) != listed)
+        return option_error("--levels", fmt::format("{} levels, but {} names {}", *o.levels, list, listed));
+    int levels = listed ? int(listed) : o.levels ? *o.levels : 1;
+    if (!listed && !o.levels)
+        while (levels < most_levels(size) && (size >> levels) >= target.smallest) ++levels;
+    if (levels < 1 || levels > most_levels(size))
+        return option_error(listed ? list : "--levels", fmt::format("{} levels, but a map of size {} has from 1 to {}",
+                                                                    levels, size, most_levels(size)));
+    return levels;
+}
+
+Result<void> plan_encoding(TargetPlan& plan, const BakeOptions& o) {
+    const Target& target = *plan.target;
+    plan.container = o.format.value_or(target.container);
+    // A target's encoding belongs to its container: another container starts from half floats.
+    plan.encoding = o.encoding.value_or(plan.container == target.container ? target.encoding : Encoding::rgba16f);
+    plan.zstd = o.zstd.value_or(plan.container == Container::ktx2 && target.zstd);
+    if (plan.zstd && plan.container != Container::ktx2)
+        return option_error("--zstd", container_name(plan.container) + " has no supercompression",
+                            "Use --format ktx2.");
+    if (plan.container == Container::exr && plan.encoding != Encoding::rgba16f && plan.encoding != Encoding::rgba32f)
+        return option_error("--encoding", encoding_name(plan.encoding) + " cannot be stored as exr",
+                            "exr holds rgba16f (half) and rgba32f (float).");
+    if (plan.container == Container::hdr && o.encoding)
+        return option_error("--encoding", "hdr has only its own encoding (RGBE)", "Leave --encoding out.");
+    return {};
+}
+
+Result<void> plan_environment_only(TargetPlan& plan, const BakeOptions& o) {
+    const std::string& name = plan.target->name;
+    const auto refuse = [&](const char* option) {
+        return option_error(option, "does not apply to --for " + name,
+                            name + " loads one lat-long image and filters it itself.");
+    };
+    if (o.levels && *o.levels != 1) return refuse("--levels");
+    if (!o.roughness.empty()) return refuse("--roughness");
+    if (o.lobe) return refuse("--lobe");
+    if (o.layout && *o.layout == Layout::cube) return refuse("--layout cube");
+    plan.layout = Layout::latlong;
+    plan.specular = {glossy_level(Lobe::ggx, o.size.value_or(2 * plan.target->size), 0)};
+    return {};
+}
+
+}  // namespace
+
+Result<TargetPlan> plan_target(const Target& target, const BakeOptions& o) {
+    if (auto ok = check_values(o); !ok) return ok.error();
+    TargetPlan plan;
+    plan.target = &target;
+    plan.lobe = o.lobe.value_or(Lobe::ggx);
+    plan.brdf_form = o.brdf_form.value_or(target.brdf_form);
+    plan.brdf_size = o.brdf_size.value_or(target.brdf_size);
+    if (auto ok = plan_encoding(plan, o); !ok) return ok.error();
+    if (target.environment_only) {
+        if (auto ok = plan_environment_only(plan, o); !ok) return ok.error();
+    } else {
+        plan.layout = o.layout.value_or(Layout::cube);
+        const int scale =
+            plan.layout == Layout::latlong ? 2 : 1;  // a lat-long map is as fine as a cube when it is twice as high
+        const int size = o.size.value_or(scale * target.size);
+        const auto levels = level_count(target, o, size);
+        if (!levels) return levels.error();
+        const auto exponents = o.exponents.empty() ? default_exponents(*levels) : o.exponents;
+        for (int l = 0; l < *levels; ++l) {
+            const int level_size = size >> l;
+            const double roughness = o.roughness.empty() ? target.roughness(l, *levels, size / scale) : o.roughness[l];
+            plan.specular.push_back(is_phong(plan.lobe) ? phong_level(plan.lobe, level_size, exponents[l])
+                                                        : glossy_level(plan.lobe, level_size, roughness));
+            if (!target.sheen_file.empty() && !o.lobe)
+                plan.sheen.push_back(glossy_level(Lobe::charlie, level_size, roughness));
+        }
+    }
+    plan.irradiance_size =
+        o.irradiance_size.value_or(target.irradiance_size) * (plan.layout == Layout::latlong ? 2 : 1);
+    return plan;
+}
+
+Result<void> check_bake_options(const BakeOptions& options) {
+    if (options.targets.empty()) return option_error("--for", "no target");
+    for (const std::string& name : options.targets) {
+        const auto target = find_target(name);
+        if (!target) return target.error().at("--for");
+        if (std::count(options.targets.begin(), options.targets.end(), name) > 1)
+            return option_error("--for", name + " is given twice");
+        if (auto plan = plan_target(**target, options); !plan) return plan.error();
+    }
+    return {};
+}
+
+}  // namespace domelight

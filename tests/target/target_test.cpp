@@ -1,0 +1,143 @@
+#include "domelight/target.h"
+
+#include "bake/plan.h"
+#include "test.h"
+
+using namespace domelight;
+
+namespace {
+
+TargetPlan plan_of(const char* name, const BakeOptions& options = {}) {
+    const auto plan = plan_target(**find_target(name), options);
+    REQUIRE(plan);
+    return *plan;
+}
+
+std::vector<int> sizes(const TargetPlan& plan) {
+    std::vector<int> out;
+    for (const LevelPlan& level : plan.specular) out.push_back(level.spec.size);
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "target: generic is a cube of 512^2 down to 8^2 with roughness level / (levels - 1), half floats, irradiance E") {
+    const TargetPlan plan = plan_of("generic");
+    CHECK(sizes(plan) == std::vector{512, 256, 128, 64, 32, 16, 8});
+    for (int l = 0; l < 7; ++l) {
+        CHECK(plan.specular[l].roughness == doctest::Approx(l / 6.0));
+        CHECK(plan.specular[l].alpha == doctest::Approx(l * l / 36.0));
+        CHECK(plan.specular[l].spec.mirror == (l == 0));
+    }
+    CHECK(plan.encoding == Encoding::rgba16f);
+    CHECK(plan.container == Container::ktx2);
+    CHECK(plan.target->irradiance_quantity == Quantity::irradiance);
+    CHECK(plan.target->mirror == CubeMirror::none);
+}
+
+TEST_CASE("target: khronos is linear from 256^2 to 16^2 with Charlie beside GGX and E / pi") {
+    const TargetPlan plan = plan_of("khronos");
+    CHECK(sizes(plan) == std::vector{256, 128, 64, 32, 16});
+    CHECK(plan.specular[2].roughness == 0.5);
+    REQUIRE(plan.sheen.size() == 5);
+    CHECK(plan.sheen[4].spec.kernel.lobe == Lobe::charlie);
+    CHECK(plan.sheen[0].roughness == k_charlie_least_roughness);
+    CHECK(plan.target->irradiance_quantity == Quantity::irradiance_over_pi);
+    CHECK(plan.brdf_form == BrdfForm::scale_bias_charlie);
+}
+
+TEST_CASE("target: filament inverts its lookup level = (levels - 1) r (2 - r)") {
+    const TargetPlan plan = plan_of("filament");
+    CHECK(sizes(plan) == std::vector{256, 128, 64, 32, 16});
+    for (int l = 0; l < 5; ++l) {
+        const double r = plan.specular[l].roughness;
+        CHECK(4 * r * (2 - r) == doctest::Approx(l));
+    }
+    CHECK(plan.specular[4].roughness == 1);
+    CHECK(plan.encoding == Encoding::r11g11b10f);
+    CHECK(plan.container == Container::ktx1);
+}
+
+TEST_CASE("target: babylon inverts its lookup level = 0.8 log2(N alpha), every level down to 1^2") {
+    const TargetPlan plan = plan_of("babylon");
+    CHECK(sizes(plan) == std::vector{256, 128, 64, 32, 16, 8, 4, 2, 1});
+    CHECK(plan.specular[0].spec.mirror);
+    for (int l = 1; l < 7; ++l) CHECK(0.8 * std::log2(256 * plan.specular[l].alpha) == doctest::Approx(l));
+    CHECK(plan.specular[7].alpha == 1);
+    CHECK(plan.container == Container::dds);
+    CHECK(plan.encoding == Encoding::rgba16f);
+    CHECK(plan.target->mirror == CubeMirror::x);
+}
+
+TEST_CASE("target: bevy is linear from 512^2 in RGB9E5 with zstd, diffuse 32^2 of E / pi, z negated") {
+    const TargetPlan plan = plan_of("bevy");
+    CHECK(plan.specular[0].spec.size == 512);
+    CHECK(plan.specular[3].roughness == doctest::Approx(0.5));
+    CHECK(plan.encoding == Encoding::rgb9e5);
+    CHECK(plan.zstd);
+    CHECK(plan.irradiance_size == 32);
+    CHECK(plan.target->irradiance_quantity == Quantity::irradiance_over_pi);
+    CHECK(plan.target->mirror == CubeMirror::z);
+}
+
+TEST_CASE("target: three gets one lat-long image four times as wide as the cube it makes") {
+    const TargetPlan plan = plan_of("three");
+    CHECK(plan.layout == Layout::latlong);
+    CHECK(sizes(plan) == std::vector{1024});
+    CHECK(plan.specular[0].spec.mirror);
+    CHECK(plan.container == Container::exr);
+}
+
+TEST_CASE("target: an unknown name lists the known ones") {
+    const auto target = find_target("quake");
+    REQUIRE_FALSE(target);
+    CHECK(target.error().what.find("generic, khronos, filament, babylon, bevy, three") != std::string::npos);
+    for (const Target& t : targets()) CHECK(find_target(t.name));
+}
+
+TEST_CASE("plan: options override the target, level by level") {
+    BakeOptions options;
+    options.size = 100;
+    options.roughness = {0, 0.3, 1};
+    const TargetPlan plan = plan_of("generic", options);
+    CHECK(sizes(plan) == std::vector{100, 50, 25});
+    CHECK(plan.specular[1].spec.kernel.width == doctest::Approx(0.09));
+
+    options = {};
+    options.layout = Layout::latlong;
+    CHECK(sizes(plan_of("generic", options)).front() == 1024);  // as fine as a cube of 512^2
+    CHECK(sizes(plan_of("generic", options)).size() == 8);      // to 8 rows
+
+    options = {};
+    options.lobe = Lobe::phong_brdf;
+    options.exponents = {std::numeric_limits<double>::infinity(), 64, 0};
+    const TargetPlan phong = plan_of("generic", options);
+    CHECK(phong.specular[0].spec.mirror);
+    CHECK(phong.specular[1].spec.kernel.width == 64);
+    CHECK(phong.specular[2].exponent == 0);
+
+    options = {};
+    options.format = Container::ktx2;
+    CHECK(plan_of("filament", options).encoding == Encoding::rgba16f);  // another container, its own default
+}
+
+TEST_CASE("plan: contradictions are errors that name the option") {
+    const auto where = [](auto change) {
+        BakeOptions options;
+        change(options);
+        const auto ok = check_bake_options(options);
+        return ok ? std::string() : ok.error().where;
+    };
+    CHECK(where([](BakeOptions&) {}).empty());
+    CHECK(where([](BakeOptions& o) { o.size = 0; }) == "--size");
+    CHECK(where([](BakeOptions& o) { o.size = 1 << 30; }) == "--size");
+    CHECK(where([](BakeOptions& o) { o.levels = 11; }) == "--levels");
+    CHECK(where([](BakeOptions& o) { o.roughness = {-0.1}; }) == "--roughness");
+    CHECK(where([](BakeOptions& o) { o.exponents = {1}; }) == "--exponents");
+    CHECK(where([](BakeOptions& o) { o.encoding = Encoding::rg16f; }) == "--encoding");
+    CHECK(where([](BakeOptions& o) { o.zstd = true, o.format = Container::dds; }) == "--zstd");
+    CHECK(where([](BakeOptions& o) { o.targets = {"three"}, o.lobe = Lobe::charlie; }) == "--lobe");
+    CHECK(where([](BakeOptions& o) { o.targets = {}; }) == "--for");
+    CHECK(where([](BakeOptions& o) { o.sh_bands = 65; }) == "--sh-bands");
+}
