@@ -1,0 +1,384 @@
+#include "domelight/bake.h"
+
+#include "domelight/image_io.h"
+#include "domelight/parallel.h"
+
+#include "bake/filter_job.h"
+#include "bake/manifest.h"
+#include "bake/outputs.h"
+#include "bake/plan.h"
+#include "bake/preview_sheet.h"
+#include "bake/sh_report.h"
+#include "bake/staging.h"
+#include "core/sha256.h"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <ctime>
+#include <map>
+#include <memory>
+#include <thread>
+
+namespace domelight {
+namespace {
+
+/// Adds the time from its making to its end to a stage.
+class StageClock {
+  public:
+    StageClock(std::vector<StageTime>& stages, const char* stage) : stages_(stages), stage_(stage) {}
+    ~StageClock() {
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        const double cpu = cpu_seconds() - cpu_;
+        for (StageTime& s : stages_)
+            if (s.stage == stage_) {
+                s.seconds += seconds;
+                s.cpu_seconds += cpu;
+                return;
+            }
+        stages_.push_back({stage_, seconds, cpu});
+    }
+
+  private:
+    static double cpu_seconds() {
+        timespec t;
+        clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+        return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+    }
+    std::vector<StageTime>& stages_;
+    const char* stage_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    double cpu_ = cpu_seconds();
+};
+
+/// One number a level, in the text of a texture's key.
+template <typename Number>
+std::string per_level(const std::vector<LevelPlan>& levels, Number number) {
+    std::string text;
+    for (const LevelPlan& level : levels) text += fmt::format("{}{}", text.empty() ? "" : " ", number(level));
+    return text;
+}
+
+/// What a texture file says about itself, whatever becomes of the manifest.
+std::map<std::string, std::string> map_metadata(const TargetPlan& plan, const BakedMap& map,
+                                                const std::vector<LevelPlan>& levels) {
+    std::map<std::string, std::string> metadata{{"domelight.version", version()},
+                                                {"domelight.quantity", quantity_name(map.quantity)}};
+    if (map.layout == Layout::cube) {
+        const CubeMirror mirror = plan.target->mirror;
+        metadata["domelight.convention"] =
+            mirror == CubeMirror::x   ? "texture(cube, (-x, y, z)) is the light from world direction (x, y, z), +Y up"
+            : mirror == CubeMirror::z ? "texture(cube, (x, y, -z)) is the light from world direction (x, y, z), +Y up"
+                                      : "texture(cube, d) is the light from world direction d, +Y up";
+    } else {
+        metadata["domelight.convention"] = "lat-long, centre +X, right +Z, up +Y";
+    }
+    if (map.quantity != Quantity::radiance) return metadata;
+    metadata["domelight.lobe"] = lobe_name(map.lobe);
+    if (map.lobe == Lobe::ggx || map.lobe == Lobe::charlie) {
+        metadata["domelight.roughness"] = per_level(levels, [](const LevelPlan& l) { return l.roughness; });
+        metadata["domelight.alpha"] = per_level(levels, [](const LevelPlan& l) { return l.alpha; });
+    } else {
+        metadata["domelight.exponent"] = per_level(levels, [](const LevelPlan& l) { return l.exponent; });
+    }
+    return metadata;
+}
+
+std::vector<BakedLevel> baked_levels(const std::vector<LevelPlan>& plans) {
+    std::vector<BakedLevel> levels;
+    for (const LevelPlan& plan : plans) {
+        BakedLevel level;
+        level.level = int(levels.size());
+        level.size = plan.spec.size;
+        level.mirror = plan.spec.mirror;
+        level.roughness = plan.roughness;
+        level.alpha = plan.alpha;
+        level.exponent = plan.exponent;
+        levels.push_back(level);
+    }
+    return levels;
+}
+
+/// Bakes one target's folder, after the filtering.
+class TargetBake {
+  public:
+    TargetBake(TargetReport& report, const TargetPlan& plan, const BakeOptions& options, const std::string& stem,
+               Staging staging)
+        : report_(report),
+          plan_(plan),
+          target_(*plan.target),
+          options_(options),
+          stem_(stem),
+          staging_(std::move(staging)),
+          background_(resolve_threads(options.threads)) {
+        report_.maps.reserve(4);  // their addresses must last
+        report_.sh.files.reserve(2);
+    }
+
+    /// Encodes everything and starts the writing.
+    void start(FilterJob::Maps& maps, const FilterResult& result, std::vector<StageTime>& stages) {
+        const StageClock clock(stages, "encode");
+        report_.sh =
+            make_sh_report(result.sh, options_.sh_bands, options_.sh_window, maps.irradiance_over_pi, options_.threads);
+        report_.sh.files.reserve(2);
+        write_light(maps);
+        write_sh();
+        write_brdf();
+    }
+
+    /// The picture, while the maps are being written.
+    void draw(const FilterJob::Maps& maps, const std::string& title, std::vector<StageTime>& stages) {
+        if (!options_.preview) return;
+        const StageClock clock(stages, "preview");
+        preview_ = draw_preview(plan_, maps, report_, title, brdf_, options_.threads);
+        report_.preview = BakedFile{"preview.png", ""};
+        const auto path = staging_.stage("preview.png");
+        background_.start([this, path]() -> Result<void> {
+            if (auto ok = write_png(path, preview_.view()); !ok) return ok;
+            return hash_into(*report_.preview, path, options_.hashes);
+        });
+    }
+
+    Result<void> finish_writing(std::vector<StageTime>& stages) {
+        const StageClock clock(stages, "write");
+        return background_.wait();
+    }
+
+    Result<void> commit(const SourceReport& source, const BakeReport& bake) {
+        report_.manifest = manifest_json(report_, plan_, options_, source, bake);
+        if (auto ok = write_text("manifest.json", report_.manifest); !ok) return ok;
+        return staging_.commit("manifest.json");
+    }
+
+  private:
+    void write_light(FilterJob::Maps& maps) {
+        write(target_.environment_only ? "environment" : "specular", target_.specular_file, plan_.lobe,
+              Quantity::radiance, plan_.layout, plan_.specular, maps.specular, plan_.encoding);
+        if (!plan_.sheen.empty())
+            write("sheen", target_.sheen_file, Lobe::charlie, Quantity::radiance, plan_.layout, plan_.sheen, maps.sheen,
+                  plan_.encoding);
+        if (!target_.skybox_file.empty() && plan_.specular.front().spec.mirror)
+            write("skybox", target_.skybox_file, plan_.lobe, Quantity::radiance, plan_.layout, {plan_.specular.front()},
+                  std::span(maps.specular).first(1), plan_.encoding);
+        if (!target_.irradiance_file.empty()) write_irradiance(maps.irradiance_over_pi);
+    }
+
+    void write_irradiance(const FilteredMap& over_pi) {
+        FilteredMap map = over_pi;
+        if (target_.irradiance_quantity == Quantity::irradiance)
+            for (float& value : map.pixels()) value = float(value * k_pi);
+        LevelPlan level;
+        level.spec.size = plan_.irradiance_size;
+        const bool own_encoding = !options_.encoding && plan_.container == target_.container;
+        write("irradiance", target_.irradiance_file, Lobe::ggx, target_.irradiance_quantity, plan_.layout, {level},
+              {&map, 1}, own_encoding ? target_.irradiance_encoding : plan_.encoding);
+    }
+
+    void write(const char* role, const std::string& name, Lobe lobe, Quantity quantity, Layout layout,
+               const std::vector<LevelPlan>& levels, std::span<FilteredMap> maps, Encoding encoding) {
+        BakedMap& map = report_.maps.emplace_back();
+        map.role = role;
+        map.lobe = lobe;
+        map.quantity = quantity;
+        map.layout = layout;
+        map.levels = baked_levels(levels);
+        MapFormat format;
+        format.encoding = encoding;
+        format.container = plan_.container;
+        format.zstd = plan_.zstd;
+        format.cube_picture = options_.cube_picture;
+        format.mirror = target_.mirror;
+        format.name = expand_stem(name, stem_);
+        format.metadata = map_metadata(plan_, map, levels);
+        if (target_.sh_metadata && map.role == "specular") format.metadata["sh"] = filament_sh_metadata(report_.sh);
+        write_map(map, maps, format, options_, staging_, background_);
+    }
+
+    void write_sh() {
+        write_small(report_.sh.files, "sh.json", sh_json(report_.sh));
+        if (!target_.sh_text_file.empty())
+            write_small(report_.sh.files, target_.sh_text_file, filament_sh_text(report_.sh));
+    }
+
+    void write_small(std::vector<BakedFile>& files, const std::string& name, std::string text) {
+        BakedFile& file = files.emplace_back();
+        file.file = name;
+        if (options_.hashes) file.sha256 = sha256({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+        background_.start([this, name, text = std::move(text)] { return write_text(name, text); });
+    }
+
+    Result<void> write_text(const std::string& name, const std::string& text) {
+        return write_file_atomically(staging_.stage(name),
+                                     {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    }
+
+    void write_brdf() {
+        brdf_ = brdf_image();
+        if (plan_.brdf_form == BrdfForm::none) return;
+        BrdfReport& brdf = report_.brdf;
+        brdf.form = plan_.brdf_form;
+        brdf.g = options_.brdf_g;
+        brdf.size = plan_.brdf_size;
+        const bool three = plan_.brdf_form == BrdfForm::scale_bias_charlie;
+        const Encoding encoding = options_.brdf_float ? (three ? Encoding::rgba32f : Encoding::rg32f)
+                                                      : (three ? Encoding::rgba16f : Encoding::rg16f);
+        brdf.encoding = encoding_name(encoding);
+        brdf.file.file = fmt::format("{}.ktx2", target_.brdf_file.empty() ? "brdf" : target_.brdf_file);
+        auto texture = std::make_shared<Texture>(
+            encode_table(plan_.brdf_form == BrdfForm::multiscatter ? brdf_table_multiscatter(brdf_) : brdf_, encoding));
+        texture->metadata = {
+            {"domelight.version", version()},
+            {"domelight.quantity", fmt::format("brdf {}", brdf_form_name(plan_.brdf_form))},
+            {"domelight.convention", "u = NdotV, v = roughness, texel centres, row 0 is the smoothest"}};
+        const auto path = staging_.stage(brdf.file.file);
+        background_.start([texture, path, &file = brdf.file, hashes = options_.hashes]() -> Result<void> {
+            if (auto ok = write_ktx2(path, *texture); !ok) return ok;
+            return hash_into(file, path, hashes);
+        });
+    }
+
+    ImageF brdf_image() const {
+        BrdfTableOptions table;
+        table.size = plan_.brdf_size;
+        table.g = options_.brdf_g;
+        table.threads = options_.threads;
+        if (options_.method == BakeMethod::montecarlo) return brdf_table_montecarlo(table, options_.samples);
+        const ImageF& embedded = brdf_table_default();
+        return table.size == embedded.width() && table.g == BrdfG::correlated ? embedded : brdf_table(table);
+    }
+
+    TargetReport& report_;
+    const TargetPlan& plan_;
+    const Target& target_;
+    const BakeOptions& options_;
+    const std::string& stem_;
+    Staging staging_;
+    ImageF brdf_;
+    Image<std::uint8_t> preview_;
+    Background background_;  // last: it waits for its tasks before the rest goes
+};
+
+std::vector<std::filesystem::path> source_files(const Environment& environment, const BakeOptions& options) {
+    if (!options.source_files.empty()) return options.source_files;
+    if (environment.file.empty()) return {};
+    return {environment.file};
+}
+
+SourceReport describe_source(const Environment& environment, const std::vector<std::filesystem::path>& files) {
+    SourceReport source;
+    for (const auto& file : files) {
+        if (!source.file.empty()) source.file += ' ';
+        source.file += file.filename().string();
+    }
+    if (files.empty()) source.file = fmt::format("built-in {}", environment.format);
+    source.format = environment.format;
+    source.projection = environment.projection;
+    source.width = environment.width;
+    source.height = environment.height;
+    return source;
+}
+
+/// The environment's name in file names: its file's without the extension.
+std::string stem_of(const std::vector<std::filesystem::path>& files) {
+    return files.empty() ? "sky" : files.front().stem().string();
+}
+
+Result<std::vector<TargetPlan>> plan_all(const BakeOptions& options) {
+    if (auto ok = check_bake_options(options); !ok) return ok.error();
+    std::vector<TargetPlan> plans;
+    for (const std::string& name : options.targets) plans.push_back(*plan_target(**find_target(name), options));
+    return plans;
+}
+
+std::filesystem::path target_folder(const std::filesystem::path& folder, const BakeOptions& options,
+                                    const Target& target) {
+    return options.targets.size() > 1 ? folder / target.name : folder;
+}
+
+void add_warnings(BakeReport& report, const Environment& environment, const BakeOptions& options) {
+    report.warnings = report.repaired.warnings;
+    if (report.repaired.repaired())
+        report.warnings.push_back(fmt::format(
+            "repaired texels: {} not a number, {} infinite, {} negative (down to {:.4g})", report.repaired.not_a_number,
+            report.repaired.infinite, report.repaired.negative, report.repaired.negative_radiance));
+    if (options.method != BakeMethod::exact && !environment.latlong)
+        report.warnings.push_back(
+            fmt::format("--method {} works on lat-long images: the cube was resampled to one first",
+                        bake_method_name(options.method)));
+    for (const TargetReport& target : report.targets)
+        for (const BakedMap& map : target.maps)
+            for (const BakedLevel& level : map.levels)
+                if (level.encoding.clipped_texels)
+                    report.warnings.push_back(fmt::format(
+                        "{}: {} level {}: {} texels exceed what {} holds; {:.3g} % of the level's energy is lost",
+                        target.target, map.role, level.level, level.encoding.clipped_texels, map.encoding,
+                        100 * level.encoding.clipped_energy));
+}
+
+}  // namespace
+
+Result<BakeReport> bake(Environment& environment, const BakeOptions& options, const std::filesystem::path& folder) {
+    auto plans = plan_all(options);
+    if (!plans) return plans.error();
+    if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
+        return Error{"is a file, not a folder", folder.string(), "Name a folder for the results."};
+    BakeReport report;
+    const auto files = source_files(environment, options);
+    SourceReport source = describe_source(environment, files);
+    const std::string stem = stem_of(files);
+
+    Result<std::string> source_hash = std::string();
+    std::jthread hashing;
+    if (options.hashes && !files.empty()) hashing = std::jthread([&] { source_hash = sha256_files(files); });
+
+    FilterJob job(*plans);
+    {
+        const StageClock clock(report.stages, "filter");
+        if (auto ok = job.run(environment, options); !ok) return ok.error().at(environment.file.string());
+    }
+    if (environment.report) report.repaired = source.repaired = *environment.report;
+    report.mean_radiance = job.result().mean;
+    report.clamped = job.result().clamped;
+    report.band_limit = job.result().band_limit;
+
+    report.targets.resize(plans->size());
+    std::vector<std::unique_ptr<TargetBake>> bakes;
+    for (std::size_t t = 0; t < plans->size(); ++t) {
+        const TargetPlan& plan = (*plans)[t];
+        report.targets[t].target = plan.target->name;
+        report.targets[t].folder = target_folder(folder, options, *plan.target);
+        auto staging = Staging::open(report.targets[t].folder);
+        if (!staging) return staging.error();
+        bakes.push_back(std::make_unique<TargetBake>(report.targets[t], plan, options, stem, *std::move(staging)));
+        FilterJob::Maps maps = job.take(t);
+        bakes[t]->start(maps, job.result(), report.stages);
+        bakes[t]->draw(maps, source.file, report.stages);
+        job.give_back(t, std::move(maps));
+        if (auto ok = bakes[t]->finish_writing(report.stages); !ok) return ok.error();
+    }
+    {
+        const StageClock clock(report.stages, "hash");
+        if (hashing.joinable()) hashing.join();
+        if (!source_hash) return source_hash.error();
+        source.sha256 = report.source_sha256 = files.empty() ? job.rows_sha256() : *source_hash;
+    }
+    for (auto& target : bakes)
+        if (auto ok = target->commit(source, report); !ok) return ok.error();
+    add_warnings(report, environment, options);
+    return report;
+}
+
+bool bake_is_up_to_date(const std::vector<std::filesystem::path>& files, const BakeOptions& options,
+                        const std::filesystem::path& folder) {
+    const auto plans = plan_all(options);
+    if (!plans) return false;
+    for (const TargetPlan& plan : *plans)
+        if (!std::filesystem::exists(target_folder(folder, options, *plan.target) / "manifest.json")) return false;
+    const auto hash = sha256_files(files);
+    if (!hash) return false;
+    for (const TargetPlan& plan : *plans)
+        if (!manifest_matches(target_folder(folder, options, *plan.target), plan, options, *hash)) return false;
+    return true;
+}
+
+}  // namespace domelight

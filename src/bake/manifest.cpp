@@ -1,0 +1,246 @@
+#include "bake/manifest.h"
+
+#include "core/sha256.h"
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace domelight {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* const k_cube_convention =
+    "faces +X -X +Y -Y +Z -Z with OpenGL's orientation of each; texture(cube, d) is the light arriving from world "
+    "direction d; right-handed, +Y up";
+const char* const k_latlong_convention =
+    "u = 1/2 + atan2(z, x) / 2 pi, v = theta / pi from +Y; the centre looks along +X, to the right of it lies +Z; "
+    "right-handed, +Y up";
+
+const char* window_name(ShWindow window) {
+    return window == ShWindow::hann ? "hann" : window == ShWindow::lanczos ? "lanczos" : "none";
+}
+const char* g_name(BrdfG g) {
+    return g == BrdfG::smith ? "smith" : g == BrdfG::karis ? "karis" : "correlated";
+}
+
+/// File names may hold bytes that are not UTF-8: those become replacement characters.
+std::string json_text(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json hash_json(const std::string& sha256) {
+    return sha256.empty() ? Json(nullptr) : Json(sha256);
+}
+
+void add_file(Json& json, const BakedFile& file) {
+    json["file"] = file.file;
+    json["sha256"] = hash_json(file.sha256);
+}
+
+/// Infinity (a Phong level that is the environment itself) has no number in JSON.
+Json exponent_json(double exponent) {
+    return std::isfinite(exponent) ? Json(exponent) : Json("inf");
+}
+
+Json environment_json(const EnvironmentOptions& e) {
+    return {{"projection", e.projection},     {"latlong", e.latlong}, {"decode", e.decode},
+            {"rotate_y_deg", e.rotate_y_deg}, {"up", e.up},           {"exposure", e.exposure}};
+}
+
+/// Every option that has a say in the bytes, resolved: two bakes with equal options of equal sources are equal.
+Json options_json(const TargetPlan& plan, const BakeOptions& o) {
+    Json json{{"for", plan.target->name},
+              {"layout", plan.layout == Layout::cube ? "cube" : "latlong"},
+              {"size", plan.specular.front().spec.size},
+              {"levels", plan.specular.size()},
+              {"lobe", lobe_name(plan.lobe)}};
+    Json widths = Json::array();
+    const bool phong = plan.lobe == Lobe::phong_brdf || plan.lobe == Lobe::phong_plain;
+    for (const LevelPlan& level : plan.specular)
+        widths.push_back(phong ? exponent_json(level.exponent) : Json(level.roughness));
+    json[phong ? "exponents" : "roughness"] = widths;
+    json["method"] = bake_method_name(o.method);
+    if (o.method == BakeMethod::montecarlo) json["samples"] = o.samples;
+    if (o.method == BakeMethod::riemann) json["riemann_steps"] = {o.riemann_polar, o.riemann_azimuth};
+    json["encoding"] = plan.container == Container::hdr ? "rgbe" : encoding_name(plan.encoding);
+    json["format"] = container_name(plan.container);
+    json["zstd"] = plan.zstd;
+    if (plan.container == Container::exr || plan.container == Container::hdr)
+        json["cube_picture"] = cube_picture_name(o.cube_picture);
+    json["irradiance_size"] = plan.irradiance_size;
+    json["sh_bands"] = o.sh_bands;
+    json["sh_window"] = window_name(o.sh_window);
+    json["brdf_form"] = brdf_form_name(plan.brdf_form);
+    json["brdf_g"] = g_name(o.brdf_g);
+    json["brdf_size"] = plan.brdf_size;
+    json["brdf_float"] = o.brdf_float;
+    json["preview"] = o.preview;
+    json["hashes"] = o.hashes;
+    json["environment"] = environment_json(o.environment);
+    return json;
+}
+
+Json level_json(const BakedMap& map, const BakedLevel& level) {
+    Json json{{"level", level.level}, {"size", level.size}};
+    if (map.quantity == Quantity::radiance) {
+        if (map.lobe == Lobe::phong_brdf || map.lobe == Lobe::phong_plain) {
+            json["exponent"] = exponent_json(level.exponent);
+        } else {
+            json["roughness"] = level.roughness;
+            json["alpha"] = level.alpha;
+        }
+        json["environment_itself"] = level.mirror;
+    }
+    json["clipped_texels"] = level.encoding.clipped_texels;
+    json["clipped_energy"] = level.encoding.clipped_energy;
+    json["encoding_rms_error"] = level.encoding.rms_error;
+    if (level.files.size() == 1) add_file(json, level.files[0]);
+    if (level.files.size() > 1)
+        for (const BakedFile& file : level.files) {
+            Json face;
+            add_file(face, file);
+            json["faces"].push_back(face);
+        }
+    return json;
+}
+
+Json map_json(const BakedMap& map) {
+    Json json = Json::object();
+    if (!map.file.file.empty()) add_file(json, map.file);
+    json["quantity"] = quantity_name(map.quantity);
+    if (map.quantity == Quantity::radiance) json["lobe"] = lobe_name(map.lobe);
+    if (map.lobe == Lobe::charlie) json["least_roughness"] = k_charlie_least_roughness;
+    json["layout"] = map.layout == Layout::cube ? "cube" : "latlong";
+    json["container"] = map.container;
+    json["encoding"] = map.encoding;
+    json["zstd"] = map.zstd;
+    for (const BakedLevel& level : map.levels) json["levels"].push_back(level_json(map, level));
+    return json;
+}
+
+Json sh_summary(const ShReport& sh) {
+    Json json = Json::object();
+    if (!sh.files.empty()) add_file(json, sh.files[0]);
+    json["quantity"] = "radiance";
+    json["bands"] = sh.bands;
+    json["window"] = window_name(sh.window);
+    json["irradiance_error"] = {{"rms", sh.rms_error}, {"max", sh.max_error}};
+    for (std::size_t i = 1; i < sh.files.size(); ++i) {
+        Json text;
+        add_file(text, sh.files[i]);
+        text["quantity"] = "irradiance_over_pi";
+        json["text"] = text;
+    }
+    return json;
+}
+
+Json brdf_json(const BrdfReport& brdf) {
+    if (brdf.file.file.empty()) return nullptr;
+    Json json = Json::object();
+    add_file(json, brdf.file);
+    json["form"] = brdf_form_name(brdf.form);
+    json["masking"] = g_name(brdf.g);
+    json["size"] = brdf.size;
+    json["encoding"] = brdf.encoding;
+    json["axes"] = "u = NdotV, v = roughness, texel centres, row 0 is the smoothest";
+    return json;
+}
+
+Json convention_json(const TargetPlan& plan) {
+    if (plan.layout == Layout::latlong) return k_latlong_convention;
+    const CubeMirror mirror = plan.target->mirror;
+    if (mirror == CubeMirror::none) return k_cube_convention;
+    return std::string(k_cube_convention) + "; mirrored for " + plan.target->name + ", which reads texture(cube, " +
+           (mirror == CubeMirror::x ? "(-x, y, z)" : "(x, y, -z)") + ")";
+}
+
+Json vectors_json(const std::vector<Vec3d>& vectors) {
+    Json json = Json::array();
+    for (const Vec3d& v : vectors) json.push_back({v.x, v.y, v.z});
+    return json;
+}
+
+/// Every {"file", "sha256"} below `json` names a file in `folder` with that hash, and none lacks its hash.
+bool files_match(const Json& json, const std::filesystem::path& folder, int depth = 0) {
+    if (depth > 16) return false;  // nothing of ours
+    if (json.is_object() && json.contains("file") && json.contains("sha256")) {
+        if (!json["file"].is_string() || !json["sha256"].is_string()) return false;
+        const auto hash = sha256_file(folder / json["file"].get<std::string>());
+        if (!hash || *hash != json["sha256"].get<std::string>()) return false;
+    }
+    if (json.is_structured())
+        for (const auto& [key, value] : json.items())
+            if (!files_match(value, folder, depth + 1)) return false;
+    return true;
+}
+
+}  // namespace
+
+std::string manifest_json(const TargetReport& report, const TargetPlan& plan, const BakeOptions& options,
+                          const SourceReport& source, const BakeReport& bake) {
+    Json json{{"version", version()}};
+    json["source"] = {{"file", source.file},
+                      {"sha256", hash_json(source.sha256)},
+                      {"format", source.format},
+                      {"width", source.width},
+                      {"height", source.height},
+                      {"projection", source.projection},
+                      {"mean_radiance", {bake.mean_radiance.x, bake.mean_radiance.y, bake.mean_radiance.z}},
+                      {"repaired",
+                       {{"not_a_number", source.repaired.not_a_number},
+                        {"infinite", source.repaired.infinite},
+                        {"negative", source.repaired.negative},
+                        {"most_negative", source.repaired.negative_radiance}}}};
+    json["target"] = {{"name", report.target}, {"consumer", plan.target->consumer}, {"note", plan.target->note}};
+    json["convention"] = convention_json(plan);
+    json["options"] = options_json(plan, options);
+    for (const BakedMap& map : report.maps) json[map.role] = map_json(map);
+    if (!json.contains("irradiance")) json["irradiance"] = nullptr;
+    json["sh"] = sh_summary(report.sh);
+    json["brdf"] = brdf_json(report.brdf);
+    json["preview"] = nullptr;
+    if (report.preview) {
+        json["preview"] = Json::object();
+        add_file(json["preview"], *report.preview);
+    }
+    return json_text(json);
+}
+
+std::string sh_json(const ShReport& sh) {
+    Json json{{"bands", sh.bands},
+              {"window", window_name(sh.window)},
+              {"convention",
+               "real orthonormal spherical harmonics without the Condon-Shortley sign, order l^2 + l + m, polar axis "
+               "+Z of a right-handed world "
+               "with +Y up: Y_1 = sqrt(3 / 4 pi) (y, z, x); linear Rec. 709"},
+              {"radiance", vectors_json(sh.radiance)},
+              {"irradiance", vectors_json(sh.irradiance)},
+              {"irradiance_error",
+               {{"rms", sh.rms_error},
+                {"max", sh.max_error},
+                {"against",
+                 "the exact irradiance E, over the irradiance map; the maximum relative to max(E, 1 % of its mean), "
+                 "per channel"}}}};
+    return json_text(json);
+}
+
+bool manifest_matches(const std::filesystem::path& folder, const TargetPlan& plan, const BakeOptions& options,
+                      const std::string& source_sha256) {
+    std::ifstream stream(folder / "manifest.json", std::ios::binary);
+    const Json json = Json::parse(stream, nullptr, false);
+    if (!json.is_object() || !json.contains("version") || !json.contains("source") || !json.contains("options"))
+        return false;
+    if (json["version"] != Json(version()) || !json["source"].is_object() || !json["source"].contains("sha256"))
+        return false;
+    // By their text, in which they were stored.
+    if (json_text(json["options"]) != json_text(options_json(plan, options)) ||
+        json["source"]["sha256"] != Json(source_sha256))
+        return false;
+    for (const auto& [key, value] : json.items())
+        if (key != "source" && !files_match(value, folder)) return false;
+    return true;
+}
+
+}  // namespace domelight

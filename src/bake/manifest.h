@@ -1,0 +1,34 @@
+#pragma once
+// The JSON documents that a bake writes and reads back.
+
+#include "domelight/bake.h"
+
+#include "bake/plan.h"
+
+#include <filesystem>
+#include <string>
+
+namespace domelight {
+
+/// What manifest.json says of the source.
+struct SourceReport {
+    std::string file;  ///< without its folder, so that the bytes do not depend on where it lies; six faces: their names
+    std::string sha256;
+    std::string format, projection;
+    int width = 0, height = 0;
+    RepairReport repaired;
+};
+
+/// manifest.json of one target: no times, nothing that depends on the machine.
+std::string manifest_json(const TargetReport& report, const TargetPlan& plan, const BakeOptions& options,
+                          const SourceReport& source, const BakeReport& bake);
+
+/// sh.json: radiance and irradiance coefficients with the convention spelled out, and their error.
+std::string sh_json(const ShReport& sh);
+
+/// Whether `folder` has a manifest of this version, these options and this source, and every file that it names,
+/// unchanged.
+bool manifest_matches(const std::filesystem::path& folder, const TargetPlan& plan, const BakeOptions& options,
+                      const std::string& source_sha256);
+
+}  // namespace domelight

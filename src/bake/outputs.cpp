@@ -1,0 +1,150 @@
+#include "bake/outputs.h"
+
+#include "domelight/image_io.h"
+
+#include "bake/mirror.h"
+#include "core/sha256.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+
+namespace domelight {
+
+void Background::start(std::function<Result<void>()> task) {
+    if (at_once_) {
+        std::promise<Result<void>> done;
+        tasks_.push_back(done.get_future());
+        done.set_value(task());
+    } else {
+        tasks_.push_back(std::async(std::launch::async, std::move(task)));
+    }
+}
+
+Result<void> Background::wait() {
+    Result<void> first;
+    for (auto& task : tasks_) {
+        Result<void> result = task.get();
+        if (first && !result) first = result;
+    }
+    tasks_.clear();
+    return first;
+}
+
+Result<void> hash_into(BakedFile& file, const std::filesystem::path& written, bool hashes) {
+    if (!hashes) return {};
+    auto hash = sha256_file(written);
+    if (!hash) return hash.error();
+    file.sha256 = *std::move(hash);
+    return {};
+}
+
+std::string expand_stem(std::string name, const std::string& stem) {
+    const auto at = name.find("{stem}");
+    return at == std::string::npos ? name : name.replace(at, 6, stem);
+}
+
+namespace {
+
+const char* const k_face_names[] = {"px", "nx", "py", "ny", "pz", "nz"};
+
+Result<void> write_texture(const std::filesystem::path& file, const Texture& texture, const MapFormat& format) {
+    switch (format.container) {
+        case Container::ktx1:
+            return write_ktx1(file, texture);
+        case Container::dds:
+            return write_dds(file, texture);
+        default:
+            return write_ktx2(file, texture, format.zstd ? Supercompression::zstd : Supercompression::none);
+    }
+}
+
+void write_chain(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
+                 Staging& staging, Background& background) {
+    std::vector<EncodingReport> encoded;
+    auto texture = std::make_shared<Texture>(encode_texture(levels, format.encoding, options.threads, &encoded));
+    texture->metadata = format.metadata;
+    for (std::size_t l = 0; l < encoded.size(); ++l) report.levels[l].encoding = encoded[l];
+    report.file.file = format.name + container_extension(format.container);
+    const auto path = staging.stage(report.file.file);
+    background.start([texture, path, format, &file = report.file, hashes = options.hashes]() -> Result<void> {
+        if (auto ok = write_texture(path, *texture, format); !ok) return ok;
+        return hash_into(file, path, hashes);
+    });
+}
+
+/// One picture, written and hashed in the background.
+void write_picture(BakedFile& file, ImageF picture, const MapFormat& format, const BakeOptions& options,
+                   Staging& staging, Background& background) {
+    const auto path = staging.stage(file.file);
+    auto pixels = std::make_shared<ImageF>(std::move(picture));
+    background.start([pixels, path, format, &file, hashes = options.hashes]() -> Result<void> {
+        if (format.container == Container::hdr) {
+            if (auto ok = write_hdr(path, pixels->view()); !ok) return ok;
+        } else {
+            ExrWriteOptions exr;
+            exr.half = format.encoding == Encoding::rgba16f;
+            exr.attributes = format.metadata;
+            if (auto ok = write_exr(path, pixels->view(), exr); !ok) return ok;
+        }
+        return hash_into(file, path, hashes);
+    });
+}
+
+ImageF copy_face(const Cubemap& cube, int f) {
+    ImageF face(cube.size(), cube.size(), cube.channels());
+    const auto from = cube.face(f);
+    std::copy(from.data, from.data + face.pixels().size(), face.pixels().begin());
+    return face;
+}
+
+/// The pictures that one level becomes, with the suffix of each one's name.
+std::vector<std::pair<std::string, ImageF>> level_pictures(const FilteredMap& level, CubePicture layout) {
+    std::vector<std::pair<std::string, ImageF>> pictures;
+    if (level.cube.empty()) {
+        pictures.emplace_back("", level.latlong);
+    } else if (layout == CubePicture::faces) {
+        for (int f = 0; f < 6; ++f) pictures.emplace_back(std::string("_") + k_face_names[f], copy_face(level.cube, f));
+    } else {
+        pictures.emplace_back("", cube_layout(level.cube, cube_picture_name(layout)));
+    }
+    return pictures;
+}
+
+void write_pictures(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
+                    const BakeOptions& options, Staging& staging, Background& background) {
+    if (format.container == Container::exr && format.encoding == Encoding::rgba16f) {
+        std::vector<EncodingReport> encoded;  // half floats clip alike in every container
+        encode_texture(levels, Encoding::rgba16f, options.threads, &encoded);
+        for (std::size_t l = 0; l < encoded.size(); ++l) report.levels[l].encoding = encoded[l];
+    }
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+        auto pictures = level_pictures(levels[l], format.cube_picture);
+        report.levels[l].files.resize(pictures.size());
+        const std::string number = levels.size() > 1 ? fmt::format("_{}", l) : "";
+        for (std::size_t p = 0; p < pictures.size(); ++p) {
+            BakedFile& file = report.levels[l].files[p];
+            file.file = format.name + number + pictures[p].first + container_extension(format.container);
+            write_picture(file, std::move(pictures[p].second), format, options, staging, background);
+        }
+    }
+}
+
+}  // namespace
+
+void write_map(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
+               Staging& staging, Background& background) {
+    report.encoding = format.container == Container::hdr ? "rgbe" : encoding_name(format.encoding);
+    report.container = container_name(format.container);
+    report.zstd = format.zstd;
+    for (FilteredMap& level : levels) mirror_cube(level.cube, format.mirror);
+    if (format.container == Container::exr || format.container == Container::hdr) {
+        write_pictures(report, levels, format, options, staging, background);
+    } else {
+        write_chain(report, levels, format, options, staging, background);
+    }
+    for (FilteredMap& level : levels)
+        mirror_cube(level.cube, format.mirror);  // back, for the picture and the next target
+}
+
+}  // namespace domelight

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "domelight/bake.h"
+
+#include "bake/plan.h"
+#include "bake/staging.h"
+
+#include <functional>
+#include <future>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace domelight {
+
+/// Writing and hashing that goes on beside the rest of a bake. With one thread each task runs at once.
+class Background {
+  public:
+    explicit Background(int threads) : at_once_(threads == 1) {}
+    ~Background() { (void)!wait(); }
+    /// `task` must not use what it does not own and what may go before wait() returns.
+    void start(std::function<Result<void>()> task);
+    /// Waits for all tasks; their first error in the order they were started.
+    Result<void> wait();
+
+  private:
+    bool at_once_;
+    std::vector<std::future<Result<void>>> tasks_;
+};
+
+/// How one map is to be stored.
+struct MapFormat {
+    Encoding encoding = Encoding::rgba16f;
+    Container container = Container::ktx2;
+    bool zstd = false;
+    CubePicture cube_picture = CubePicture::cross;
+    CubeMirror mirror = CubeMirror::none;
+    std::string name;  ///< without extension
+    std::map<std::string, std::string> metadata;
+};
+
+/// Encodes a map's levels now and starts writing them. Fills in `report`, whose role, lobe, quantity, layout and levels
+/// (one for each of `levels`) are set; its file names are valid at once, its hashes after `background.wait()`. `report`
+/// must stay where it is until then.
+void write_map(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
+               Staging& staging, Background& background);
+
+/// The file's name and, unless hashes are off, its hash.
+Result<void> hash_into(BakedFile& file, const std::filesystem::path& written, bool hashes);
+
+/// "shiny.min/{stem}_ibl" with the environment's name put in.
+std::string expand_stem(std::string name, const std::string& stem);
+
+}  // namespace domelight

@@ -1,0 +1,35 @@
+#include "bake/preview_sheet.h"
+
+#include "domelight/preview.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+namespace domelight {
+namespace {
+
+std::string level_detail(const TargetPlan& plan, const LevelPlan& level) {
+    if (plan.lobe == Lobe::ggx || plan.lobe == Lobe::charlie) return {};
+    return std::isinf(level.exponent) ? "the environment" : fmt::format("exponent {:.4g}", level.exponent);
+}
+
+}  // namespace
+
+Image<std::uint8_t> draw_preview(const TargetPlan& plan, const FilterJob::Maps& maps, const TargetReport& report,
+                                 const std::string& title, const ImageF& brdf, int threads) {
+    PreviewInput input;
+    input.title = title;
+    input.subtitle = fmt::format("{} · {} · {}", lobe_name(plan.lobe), report.maps.front().encoding, plan.target->name);
+    for (std::size_t l = 0; l < maps.specular.size(); ++l) {
+        const LevelPlan& level = plan.specular[l];
+        input.specular.push_back({&maps.specular[l], level.roughness, level.alpha, level_detail(plan, level)});
+    }
+    input.irradiance_over_pi = &maps.irradiance_over_pi;
+    input.sh = report.sh.radiance;
+    if (plan.brdf_form != BrdfForm::none) input.brdf = brdf;
+    input.threads = threads;
+    return contact_sheet(input);
+}
+
+}  // namespace domelight

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "domelight/bake.h"
+
+#include "bake/filter_job.h"
+
+#include <string>
+
+namespace domelight {
+
+/// The contact sheet of a target's maps, 8-bit sRGB.
+Image<std::uint8_t> draw_preview(const TargetPlan& plan, const FilterJob::Maps& maps, const TargetReport& report,
+                                 const std::string& title, const ImageF& brdf, int threads);
+
+}  // namespace domelight

@@ -1,0 +1,64 @@
+#include "bake/staging.h"
+
+#include <unistd.h>
+
+#include <system_error>
+
+namespace domelight {
+
+namespace fs = std::filesystem;
+
+Result<Staging> Staging::open(const fs::path& folder) {
+    Staging staging;
+    staging.folder_ = folder.empty() ? fs::path(".") : folder;
+    std::error_code failure;
+    const fs::path absolute = fs::absolute(staging.folder_, failure).lexically_normal();
+    for (fs::path p = absolute; !p.empty() && !fs::exists(p, failure) && p != p.parent_path(); p = p.parent_path())
+        if (p.has_filename()) staging.created_folders_.insert(staging.created_folders_.begin(), p);
+    if (fs::exists(staging.folder_, failure) && !fs::is_directory(staging.folder_, failure))
+        return Error{"is a file, not a folder", folder.string(), "Name a folder for the results."};
+    fs::create_directories(staging.folder_, failure);
+    if (failure) return Error{"cannot be created: " + failure.message(), folder.string(), ""};
+    return staging;
+}
+
+Staging::~Staging() {
+    std::error_code ignored;
+    for (const File& file : files_) fs::remove(file.temporary, ignored);
+    // Only empty ones go: a folder that got its files stays.
+    for (auto p = created_folders_.rbegin(); p != created_folders_.rend(); ++p) ::rmdir(p->c_str());
+}
+
+fs::path Staging::stage(const std::string& name) {
+    const std::lock_guard lock(*mutex_);
+    // The ending of the name stays: some writers look at it.
+    const fs::path temporary = folder_ / (".domelight-" + std::to_string(::getpid()) + "-" +
+                                          std::to_string(files_.size()) + fs::path(name).extension().string());
+    files_.push_back({name, temporary, std::make_unique<TemporaryFileGuard>(temporary.string())});
+    return temporary;
+}
+
+Result<void> Staging::move_to_place(const File& file) const {
+    std::error_code failure;
+    const fs::path place = folder_ / file.name;
+    fs::create_directories(place.parent_path(), failure);
+    if (!failure) fs::rename(file.temporary, place, failure);
+    if (failure) return Error{"cannot be replaced: " + failure.message(), place.string(), ""};
+    return {};
+}
+
+Result<void> Staging::commit(const std::string& last) {
+    std::error_code ignored;
+    for (const File& file : files_)  // what moving would stumble on half way
+        if (std::filesystem::is_directory(folder_ / file.name, ignored))
+            return Error{"is a folder, but a file of that name is to be written", (folder_ / file.name).string(),
+                         "Move it away, or name another folder."};
+    for (const bool manifest : {false, true})
+        for (const File& file : files_)
+            if ((file.name == last) == manifest)
+                if (auto moved = move_to_place(file); !moved) return moved;
+    files_.clear();
+    return {};
+}
+
+}  // namespace domelight

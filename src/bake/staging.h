@@ -1,0 +1,46 @@
+#pragma once
+
+#include "domelight/result.h"
+
+#include "io/temporary_files.h"
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace domelight {
+
+/// The files of one bake on their way into a folder. Each is first written under a temporary name in that folder (the
+/// same file system, so that moving is instant); commit() moves all of them to their names. What has not been committed
+/// is removed, also on signals the program handles.
+class Staging {
+  public:
+    /// Creates the folder where it is missing. Errors name it.
+    static Result<Staging> open(const std::filesystem::path& folder);
+    Staging(Staging&&) = default;
+    Staging& operator=(Staging&&) = delete;
+    ~Staging();
+
+    /// Where to write what will be called `name` (relative, may contain folders). Safe to call from several threads.
+    std::filesystem::path stage(const std::string& name);
+    /// Moves everything to its place, `last` (the manifest, which vouches for the others) at the end.
+    Result<void> commit(const std::string& last);
+
+  private:
+    struct File {
+        std::string name;
+        std::filesystem::path temporary;
+        std::unique_ptr<TemporaryFileGuard> guard;
+    };
+    Staging() = default;
+    Result<void> move_to_place(const File& file) const;
+
+    std::filesystem::path folder_;
+    std::vector<std::filesystem::path> created_folders_;  ///< outermost first
+    std::vector<File> files_;
+    std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();
+};
+
+}  // namespace domelight

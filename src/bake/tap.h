@@ -1,0 +1,28 @@
+#pragma once
+
+#include "domelight/row_source.h"
+
+#include <functional>
+
+namespace domelight {
+
+/// A RowSource that shows every block of rows to somebody else on its way: one reading serves several uses.
+class TapRowSource : public RowSource {
+  public:
+    using Tap = std::function<void(ImageView<const float> rows)>;
+
+    TapRowSource(RowSource& source, Tap tap) : source_(source), tap_(std::move(tap)) {}
+    int width() const override { return source_.width(); }
+    int height() const override { return source_.height(); }
+    Result<void> read(ImageView<float> rows) override {
+        auto ok = source_.read(rows);
+        if (ok && tap_) tap_(rows);
+        return ok;
+    }
+
+  private:
+    RowSource& source_;
+    Tap tap_;
+};
+
+}  // namespace domelight
