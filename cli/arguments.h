@@ -1,0 +1,62 @@
+#pragma once
+
+#include "domelight/result.h"
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace domelight::cli {
+
+/// A command's options, declared one by one, then read from the command line. What is declared is also what the help
+/// and the errors list.
+///
+/// Wraps CLI11, whose headers stay in arguments.cpp.
+class Arguments {
+  public:
+    /// Examples are whole command lines; the help opens with them and the tests run them.
+    Arguments(std::string command, std::string summary, std::vector<std::string> examples);
+    ~Arguments();
+
+    void positional(const std::string& name, std::vector<std::string>& values, const std::string& help);
+    void flag(const std::string& name, bool& value, const std::string& help);
+    void text(const std::string& name, const std::string& value_name, std::string& value, const std::string& help);
+    void texts(const std::string& name, const std::string& value_name, std::vector<std::string>& values,
+               const std::string& help);
+    void integer(const std::string& name, const std::string& value_name, std::optional<int>& value,
+                 const std::string& help);
+    void number(const std::string& name, const std::string& value_name, double& value, const std::string& help);
+    void numbers(const std::string& name, const std::string& value_name, std::vector<double>& values,
+                 const std::string& help);
+    void choice(const std::string& name, std::string& value, const std::vector<std::string>& accepted,
+                const std::string& help);
+    /// Several of `accepted`, in several options or separated by commas.
+    void choices(const std::string& name, std::vector<std::string>& values, const std::vector<std::string>& accepted,
+                 const std::string& help);
+    /// A heading for the options declared after it.
+    void group(const std::string& heading) { group_ = heading; }
+    /// Whether the option was given.
+    bool given(const std::string& name) const;
+
+    /// Errors are the user's: an unknown option, a value that is not accepted (the hint lists what is), a missing
+    /// value. `--help` sets help_wanted() and is no error.
+    Result<void> parse(const std::vector<std::string>& words);
+    bool help_wanted() const;
+    std::string help() const;
+
+  private:
+    struct Parser;
+    std::unique_ptr<Parser> parser_;
+    std::string command_, summary_, group_ = "Options";
+    std::vector<std::string> examples_;
+};
+
+/// A decimal number without anything after it; "inf" is one.
+Result<double> parse_number(const std::string& text);
+Result<int> parse_integer(const std::string& text);
+std::vector<std::string> split(const std::string& text, char separator);
+std::string join(const std::vector<std::string>& words, const std::string& separator);
+
+}  // namespace domelight::cli

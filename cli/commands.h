@@ -1,0 +1,13 @@
+#pragma once
+// The commands, one a file. Each takes the words after its name and returns the exit code.
+
+#include <string>
+#include <vector>
+
+namespace domelight::cli {
+
+int run_bake(const std::vector<std::string>& words);
+int run_info(const std::vector<std::string>& words);
+int run_sky(const std::vector<std::string>& words);
+
+}  // namespace domelight::cli

@@ -1,0 +1,59 @@
+#include "console.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace domelight::cli {
+
+void add_common_options(Arguments& arguments, CommonOptions& options) {
+    arguments.group("Running");
+    arguments.integer("--threads", "N", options.threads,
+                      "threads to use; 0: all (0). The results are the same bytes on any number");
+    arguments.flag("--json", options.json, "print one JSON document to stdout instead of text");
+    arguments.flag("--quiet", options.quiet, "no progress, no warnings, no summary");
+}
+
+Result<void> check_common_options(const CommonOptions& options) {
+    if (options.threads && (*options.threads < 0 || *options.threads > 1024))
+        return Error{fmt::format("{} is not from 0 to 1024", *options.threads), "--threads", ""};
+    return {};
+}
+
+int print_error(const Error& error, int otherwise) {
+    fmt::print(stderr, "error: {}\n", error.format());
+    return error.where.starts_with("--") ? exit_usage : otherwise;
+}
+
+void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options, const std::string& place) {
+    if (options.quiet) return;
+    for (const std::string& warning : warnings)
+        fmt::print(stderr, "warning: {}{}{}\n", place, place.empty() ? "" : ": ", warning);
+}
+
+ProgressBar::ProgressBar(std::string title, const CommonOptions& options)
+    : title_(std::move(title)), on_(!options.quiet && !options.json && isatty(STDERR_FILENO)) {}
+
+ProgressBar::~ProgressBar() {
+    if (!shown_.empty()) fmt::print(stderr, "\r\033[K");
+}
+
+Progress ProgressBar::callback() {
+    if (!on_) return {};
+    return [this](std::string_view stage, double done) { return update(stage, done); };
+}
+
+bool ProgressBar::update(std::string_view stage, double done) {
+    const int full = int(std::clamp(done, 0.0, 1.0) * 24);
+    const std::string line = fmt::format("{}  {:<8} [{}{}] {:3.0f} %", title_, stage, std::string(full, '#'),
+                                         std::string(24 - full, '.'), 100 * done);
+    if (line == shown_) return true;
+    shown_ = line;
+    fmt::print(stderr, "\r{}\033[K", line);
+    std::fflush(stderr);
+    return true;
+}
+
+}  // namespace domelight::cli

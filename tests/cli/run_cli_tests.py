@@ -1,0 +1,489 @@
+#!/usr/bin/env python3
+"""Tests of the program: what it writes, what it says, how it ends. DOMELIGHT_PROGRAM names it; closes with the line that ./test adds up.
+
+Each function test_... gets a folder of its own, in which small environments lie ready (studio.hdr, evening.hdr).
+"""
+
+import hashlib
+import json
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("DOMELIGHT_PROGRAM", str(ROOT / "build/dev/cli/domelight"))
+SMALL = ["--size", "16", "--irradiance-size", "4", "--brdf-size", "16", "--no-preview"]
+
+
+class Skipped(Exception):
+    pass
+
+
+def run(*words, folder, code=0, env=None, **options):
+    """Runs `domelight WORDS` in `folder`; the exit status must be `code`."""
+    result = subprocess.run([PROGRAM, *map(str, words)], cwd=folder, capture_output=True, text=True, timeout=300,
+                            env={**os.environ, **(env or {})}, **options)
+    assert result.returncode == code, f"{words}: exit {result.returncode}, not {code}\n{result.stdout}{result.stderr}"
+    return result
+
+
+def files_of(folder):
+    """Relative name -> SHA-256 of every file below."""
+    return {str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest() for p in sorted(Path(folder).rglob("*")) if p.is_file()}
+
+
+def manifest_of(folder):
+    return json.loads((Path(folder) / "manifest.json").read_text())
+
+
+def named_files(value):
+    """Every {"file", "sha256"} in a manifest but the source."""
+    if isinstance(value, dict):
+        if "file" in value and "sha256" in value:
+            yield value["file"], value["sha256"]
+        for key, inner in value.items():
+            if key != "source":
+                yield from named_files(inner)
+    elif isinstance(value, list):
+        for inner in value:
+            yield from named_files(inner)
+
+
+# --- help, version, wrong usage ---
+
+
+def test_examples_in_every_help_run(folder):
+    for command in ["bake", "info", "sky"]:
+        text = run(command, "--help", folder=folder).stdout
+        assert text.startswith("Examples:\n"), f"{command} --help does not open with examples"
+        examples = [line.strip() for line in text.split("\n\n")[0].splitlines()[1:]]
+        assert len(examples) >= 2
+        for example in examples:
+            words = example.split()
+            assert words[:2] == ["domelight", command], example
+            run(*words[1:], folder=folder)
+    overview = run("--help", folder=folder).stdout
+    for line in overview.split("\n\n")[0].splitlines()[1:]:
+        run(*line.split()[1:], "--quiet", folder=folder)
+
+
+def test_version(folder):
+    assert re.fullmatch(r"domelight \d+\.\d+\.\d+\n", run("--version", folder=folder).stdout)
+
+
+def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
+    cases = [
+        (["nonsense"], "bake, info, sky"),
+        (["--nonsense"], "bake, info, sky"),
+        (["bake", "-o", "o", "--nonsense"], "--lobe"),
+        (["bake"], "-o DIR"),
+        (["bake", "-o", "o", "--lobe", "blinn"], "ggx, charlie, phong, phong-plain"),
+        (["bake", "-o", "o", "--for", "quake"], "generic, khronos, filament, babylon, bevy, three"),
+        (["bake", "-o", "o", "--encoding", "rgb8"], "rgba16f, rgba32f, rgb9e5, r11g11b10f"),
+        (["bake", "-o", "o", "--format", "tga"], "ktx2, ktx1, dds, exr, hdr"),
+        (["bake", "-o", "o", "--method", "guess"], "exact, bruteforce, riemann, montecarlo"),
+        (["bake", "-o", "o", "--layout", "dome"], "cube, latlong"),
+        (["bake", "-o", "o", "--brdf-g", "ashikhmin"], "correlated, smith, karis"),
+        (["bake", "-o", "o", "--sh-window", "blackman"], "none, hann, lanczos"),
+        (["bake", "-o", "o", "--levels"], "--levels"),
+        (["bake", "-o", "o", "--levels", "many"], "whole number"),
+        (["bake", "-o", "o", "--levels", "40"], "from 1 to 10"),
+        (["bake", "-o", "o", "--size", "0"], "from 1 to"),
+        (["bake", "-o", "o", "--size", "-8"], "from 1 to"),
+        (["bake", "-o", "o", "--size", "99999999999999999999"], "whole number"),
+        (["bake", "-o", "o", "--roughness", "0,1.5"], "from 0 to 1"),
+        (["bake", "-o", "o", "--roughness", "0,,1"], "number"),
+        (["bake", "-o", "o", "--roughness", "0,nan"], "from 0 to 1"),
+        (["bake", "-o", "o", "--levels", "3", "--roughness", "0,1"], "3 levels"),
+        (["bake", "-o", "o", "--exponents", "5"], "--lobe phong"),
+        (["bake", "-o", "o", "--lobe", "phong", "--roughness", "1"], "--exponents"),
+        (["bake", "-o", "o", "--format", "hdr", "--encoding", "rgba16f"], "RGBE"),
+        (["bake", "-o", "o", "--format", "exr", "--encoding", "rgb9e5"], "rgba16f"),
+        (["bake", "-o", "o", "--format", "dds", "--zstd"], "ktx2"),
+        (["bake", "-o", "o", "--zstd", "--no-zstd"], "--zstd"),
+        (["bake", "-o", "o", "--riemann-steps", "12"], "KxJ"),
+        (["bake", "-o", "o", "--sh-bands", "0"], "1 to 64"),
+        (["bake", "-o", "o", "--threads", "-1"], "0 to 1024"),
+        (["bake", "-o", "o", "--exposure", "much"], "number"),
+        (["bake", "-o", "o", "--for", "three", "--levels", "5"], "filters it itself"),
+        (["bake", "-o", "o", "--for", "generic", "--for", "generic"], "twice"),
+        (["bake", "studio.hdr", "-o", "o", "--latlong", "sideways"], "materialx"),
+        (["bake", "studio.hdr", "-o", "o", "--projection", "fisheye"], "cube-cross"),
+        (["bake", "studio.hdr", "-o", "o", "--up", "w"], "--up"),
+        (["sky"], "-o sky.hdr"),
+        (["sky", "-o", "sky.tiff"], ".hdr, .exr, .png"),
+        (["sky", "-o", "sky.hdr", "--turbidity", "50"], "1 to 10"),
+        (["info", "a.hdr", "b.hdr"], "one at a time"),
+    ]
+    for words, text in cases:
+        result = run(*words, folder=folder, code=2)
+        assert result.stderr.startswith("error: "), (words, result.stderr)
+        assert text in result.stderr, (words, result.stderr)
+        assert result.stdout == "", words
+    assert not (folder / "o").exists()
+
+
+def test_failures_exit_1_name_the_file_and_leave_nothing(folder):
+    (folder / "broken.hdr").write_bytes((folder / "studio.hdr").read_bytes()[:700])
+    (folder / "text.exr").write_text("no picture at all")
+    cases = [["missing.hdr"], ["broken.hdr"], ["text.exr"]]
+    for words in cases:
+        for command in [["bake", *words, "-o", "out"], ["info", *words]]:
+            result = run(*command, folder=folder, code=1)
+            assert result.stderr.startswith("error: " + words[0] + ": "), result.stderr
+        assert not (folder / "out").exists(), words
+
+
+def test_output_that_is_a_file_is_refused(folder):
+    (folder / "out").write_text("mine")
+    run("bake", "studio.hdr", "-o", "out", *SMALL, folder=folder, code=1)
+    assert (folder / "out").read_text() == "mine"
+
+
+# --- what a bake writes ---
+
+
+def test_bake_writes_what_its_manifest_says(folder):
+    run("bake", "studio.hdr", "-o", "out", "--size", "32", "--levels", "3", folder=folder)
+    manifest = manifest_of(folder / "out")
+    files = files_of(folder / "out")
+    assert set(files) == {"specular.ktx2", "irradiance.ktx2", "sh.json", "brdf.ktx2", "preview.png", "manifest.json"}
+    named = dict(named_files(manifest))
+    assert set(named) == set(files) - {"manifest.json"}
+    for name, digest in named.items():
+        assert files[name] == digest, name
+    source = manifest["source"]
+    assert source["file"] == "studio.hdr" and (source["width"], source["height"]) == (64, 32) and source["projection"] == "latlong"
+    assert source["sha256"] == hashlib.sha256((folder / "studio.hdr").read_bytes()).hexdigest()
+    assert set(source["repaired"]) >= {"not_a_number", "infinite", "negative"}
+    levels = manifest["specular"]["levels"]
+    assert [l["size"] for l in levels] == [32, 16, 8] and [l["roughness"] for l in levels] == [0, 0.5, 1] and [l["alpha"] for l in levels] == [0, 0.25, 1]
+    assert all("clipped_energy" in l for l in levels)
+    assert manifest["specular"]["lobe"] == "ggx" and manifest["specular"]["encoding"] == "rgba16f"
+    assert manifest["specular"]["quantity"] == "radiance" and manifest["irradiance"]["quantity"] == "irradiance"
+    assert manifest["options"]["size"] == 32 and "version" in manifest
+    assert "second" not in json.dumps(manifest), "a manifest holds no times"
+
+
+def test_sh_json_holds_the_convention_and_the_error(folder):
+    run("bake", "studio.hdr", "-o", "out", *SMALL, "--sh-bands", "4", folder=folder)
+    sh = json.loads((folder / "out/sh.json").read_text())
+    assert sh["bands"] == 4 and len(sh["radiance"]) == 16 and len(sh["irradiance"]) == 16
+    # Band 0 of E is pi times that of the radiance, band 1 two thirds of pi (Ramamoorthi and Hanrahan 2001).
+    for i, factor in [(0, 3.14159265358979), (1, 2.0943951023932), (2, 2.0943951023932), (9, 0)]:
+        for c in range(3):
+            assert abs(sh["irradiance"][i][c] - factor * sh["radiance"][i][c]) < 1e-9 * abs(sh["radiance"][0][c])
+    assert 0 <= sh["irradiance_error"]["rms"] <= sh["irradiance_error"]["max"]
+
+
+def test_roughness_and_alpha_stand_in_the_texture(folder):
+    run("bake", "studio.hdr", "-o", "out", *SMALL, "--roughness", "0,0.5", folder=folder)
+    info = json.loads(run("info", "out/specular.ktx2", "--json", folder=folder).stdout)
+    assert info["faces"] == 6 and info["levels"] == 2 and (info["width"], info["height"]) == (16, 16)
+    keys = info["metadata"]
+    assert keys["domelight.roughness"] == "0 0.5" and keys["domelight.alpha"] == "0 0.25"
+    assert keys["domelight.lobe"] == "ggx" and keys["domelight.quantity"] == "radiance"
+
+
+def test_phong_records_exponents(folder):
+    run("bake", "studio.hdr", "-o", "out", *SMALL, "--lobe", "phong", "--exponents", "inf,64,8", folder=folder)
+    manifest = manifest_of(folder / "out")
+    assert [l["exponent"] for l in manifest["specular"]["levels"]] == ["inf", 64, 8]
+    assert manifest["specular"]["lobe"] == "phong"
+    info = json.loads(run("info", "out/specular.ktx2", "--json", folder=folder).stdout)
+    assert info["metadata"]["domelight.exponent"] == "inf 64 8"
+
+
+def test_charlie_states_its_least_roughness(folder):
+    run("bake", "studio.hdr", "-o", "out", *SMALL, "--lobe", "charlie", "--levels", "2", folder=folder)
+    specular = manifest_of(folder / "out")["specular"]
+    least = specular["least_roughness"]
+    assert [l["roughness"] for l in specular["levels"]] == [least, 1] and not specular["levels"][0]["environment_itself"]
+
+
+def test_targets_share_a_reading_and_get_folders(folder):
+    run("bake", "studio.hdr", "-o", "all", *SMALL, *[w for t in ["generic", "khronos", "filament", "babylon", "bevy", "three"] for w in ("--for", t)],
+        folder=folder)
+    files = set(files_of(folder / "all"))
+    assert files >= {"khronos/ggx/specular.ktx2", "khronos/charlie/sheen.ktx2", "khronos/lambertian/diffuse.ktx2", "filament/studio_ibl.ktx",
+                     "filament/studio_skybox.ktx", "filament/sh.txt", "babylon/studio.dds", "bevy/studio_specular.ktx2", "bevy/studio_diffuse.ktx2",
+                     "three/studio.exr", "generic/specular.ktx2"}, files
+    # The same bytes as each baked on its own.
+    for target in ["khronos", "bevy", "three"]:
+        run("bake", "studio.hdr", "-o", target, *SMALL, "--for", target, folder=folder)
+        assert files_of(folder / target) == files_of(folder / "all" / target), target
+    assert manifest_of(folder / "khronos")["irradiance"]["quantity"] == "irradiance_over_pi"
+    lines = (folder / "all/filament/sh.txt").read_text().splitlines()
+    assert len(lines) == 9 and lines[0].endswith("// L00, irradiance, pre-scaled base")
+
+
+def test_pictures_hold_one_level_a_file(folder):
+    for extension in ["exr", "hdr"]:
+        run("bake", "studio.hdr", "-o", extension, *SMALL, "--levels", "2", "--format", extension, folder=folder)
+        assert {f"specular_0.{extension}", f"specular_1.{extension}", f"irradiance.{extension}"} <= set(files_of(folder / extension))
+    run("bake", "studio.hdr", "-o", "six", *SMALL, "--levels", "1", "--format", "exr", "--cube-picture", "faces", folder=folder)
+    faces = [f"six/specular_{f}.exr" for f in ["px", "nx", "py", "ny", "pz", "nz"]]
+    mean = json.loads(run("info", *faces, "--json", folder=folder).stdout)["mean_radiance"]
+    assert all(abs(a - b) <= 2e-3 * b for a, b in zip(mean, manifest_of(folder / "six")["source"]["mean_radiance"]))
+
+
+def test_latlong_layout(folder):
+    run("bake", "studio.hdr", "-o", "out", *SMALL, "--layout", "latlong", folder=folder)
+    info = json.loads(run("info", "out/specular.ktx2", "--json", folder=folder).stdout)
+    assert info["faces"] == 1 and (info["width"], info["height"]) == (32, 16)
+
+
+def test_plain_methods_agree_with_the_exact_one(folder):
+    run("sky", "-o", "dull.exr", "--exr", "float", "--height", "16", "--no-sun-disc", folder=folder)
+    for method in ["exact", "bruteforce", "riemann", "montecarlo"]:
+        run("bake", "dull.exr", "-o", method, *SMALL, "--levels", "2", "--method", method, folder=folder)
+        mean = manifest_of(folder / method)["source"]["mean_radiance"]
+        if method == "exact":
+            expected = mean
+        assert all(abs(a - b) <= 2e-2 * abs(b) for a, b in zip(mean, expected)), (method, mean, expected)
+
+
+def test_same_bytes_on_any_number_of_threads(folder):
+    expected = None
+    targets = [w for t in ["generic", "khronos", "filament", "babylon", "bevy", "three"] for w in ("--for", t)]
+    for threads in [1, 2, 3, 8]:
+        run("bake", "studio.hdr", "-o", f"t{threads}", *targets, "--size", "32", "--irradiance-size", "8", "--threads", threads, folder=folder)
+        files = files_of(folder / f"t{threads}")
+        expected = expected or files
+        assert files == expected, [name for name in files if files[name] != expected.get(name)]
+
+
+def test_bytes_do_not_depend_on_where_files_lie(folder):
+    (folder / "elsewhere").mkdir()
+    shutil.copy(folder / "studio.hdr", folder / "elsewhere/studio.hdr")
+    run("bake", "studio.hdr", "-o", "a", *SMALL, folder=folder)
+    run("bake", folder / "elsewhere/studio.hdr", "-o", folder / "elsewhere/b", *SMALL, folder="/")
+    assert files_of(folder / "a") == files_of(folder / "elsewhere/b")
+
+
+def test_built_in_sky_where_no_environment_is_named(folder):
+    run("bake", "-o", "out", *SMALL, folder=folder)
+    source = manifest_of(folder / "out")["source"]
+    assert source["file"] == "built-in sky" and re.fullmatch("[0-9a-f]{64}", source["sha256"])
+    run("bake", "-o", "turned", *SMALL, "--rotate-y-deg", "90", folder=folder)
+    assert files_of(folder / "turned")["specular.ktx2"] != files_of(folder / "out")["specular.ktx2"]
+
+
+def test_json_is_one_document(folder):
+    result = run("bake", "studio.hdr", "-o", "out", *SMALL, "--json", folder=folder)
+    document = json.loads(result.stdout)
+    bake = document["bakes"][0]
+    assert bake["status"] == "baked" and bake["targets"][0]["manifest"] == manifest_of(folder / "out")
+    assert {"filter", "encode", "write"} <= {stage["stage"] for stage in bake["stages"]}
+    document = json.loads(run("bake", "missing.hdr", "-o", "out2", "--json", folder=folder, code=1).stdout)
+    assert document["bakes"][0]["status"] == "failed" and "missing.hdr" in document["bakes"][0]["error"]
+    assert json.loads(run("sky", "-o", "s.hdr", "--height", "8", "--json", folder=folder).stdout)["width"] == 16
+
+
+def test_quiet_says_nothing(folder):
+    result = run("bake", "studio.hdr", "-o", "out", *SMALL, "--quiet", folder=folder)
+    assert result.stdout == "" and result.stderr == ""
+
+
+# --- several, and again ---
+
+
+def test_several_are_skipped_when_up_to_date(folder):
+    def statuses(*more, code=0):
+        words = ["bake", "studio.hdr", "evening.hdr", "-o", "lights", *SMALL, "--json", *more]
+        return [b["status"] for b in json.loads(run(*words, folder=folder, code=code).stdout)["bakes"]]
+
+    assert statuses() == ["baked", "baked"]
+    before = files_of(folder / "lights")
+    assert set(n.split("/")[0] for n in before) == {"studio", "evening"}
+    assert statuses() == ["up to date", "up to date"]
+    assert statuses("--force") == ["baked", "baked"] and files_of(folder / "lights") == before
+    assert statuses("--levels", "1") == ["baked", "baked"]
+    assert statuses() == ["baked", "baked"]
+    (folder / "lights/studio/specular.ktx2").unlink()
+    assert statuses() == ["baked", "up to date"]
+    with open(folder / "lights/evening/brdf.ktx2", "ab") as file:
+        file.write(b"x")
+    assert statuses() == ["up to date", "baked"]
+    shutil.copy(folder / "evening.hdr", folder / "studio.hdr")
+    assert statuses() == ["baked", "up to date"]
+    (folder / "lights/studio/manifest.json").write_text("[" * 100000)
+    assert statuses() == ["baked", "up to date"]
+    assert statuses("--no-hashes") == ["baked", "baked"] and statuses("--no-hashes") == ["baked", "baked"]
+
+
+def test_one_bad_environment_does_not_stop_the_others(folder):
+    result = run("bake", "missing.hdr", "studio.hdr", "-o", "lights", *SMALL, folder=folder, code=1)
+    assert "missing.hdr" in result.stderr and (folder / "lights/studio/manifest.json").exists() and not (folder / "lights/missing").exists()
+
+
+def test_equal_names_are_refused(folder):
+    (folder / "b").mkdir()
+    shutil.copy(folder / "studio.hdr", folder / "b/studio.hdr")
+    assert "both go to" in run("bake", "studio.hdr", "b/studio.hdr", "-o", "lights", *SMALL, folder=folder, code=2).stderr
+
+
+# --- whole or not at all ---
+
+
+def test_a_full_disk_leaves_the_old_bake(folder):
+    run("bake", "studio.hdr", "-o", "out", *SMALL, folder=folder)
+    before = files_of(folder / "out")
+    limit = 30000  # bytes a file: less than the chain of 32^2
+
+    def small_files():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    result = run("bake", "evening.hdr", "-o", "out", "--size", "64", "--no-preview", folder=folder, code=1, preexec_fn=small_files)
+    assert result.stderr.startswith("error: "), result.stderr
+    assert files_of(folder / "out") == before
+    run("bake", "evening.hdr", "-o", "new", "--size", "64", "--no-preview", folder=folder, code=1, preexec_fn=small_files)
+    assert not (folder / "new").exists()
+
+
+def test_interruption_leaves_the_old_bake(folder):
+    run("bake", "studio.hdr", "-o", "out", *SMALL, folder=folder)
+    before = files_of(folder / "out")
+    for number in [signal.SIGINT, signal.SIGTERM]:
+        for delay in [0.02, 0.1, 0.3]:
+            process = subprocess.Popen([PROGRAM, "bake", "studio.hdr", "-o", "out", "--method", "bruteforce", "--size", "256"], cwd=folder,
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(delay)
+            process.send_signal(number)
+            assert process.wait(60) == -number
+            assert files_of(folder / "out") == before
+
+
+def test_a_folder_that_cannot_be_written_is_an_error(folder):
+    if os.geteuid() == 0:
+        run("bake", "studio.hdr", "-o", "/proc/nowhere", *SMALL, folder=folder, code=1)
+        return
+    (folder / "closed").mkdir(mode=0o500)
+    run("bake", "studio.hdr", "-o", "closed/out", *SMALL, folder=folder, code=1)
+
+
+def test_stdout_that_is_full_is_an_error(folder):
+    with open("/dev/full", "w") as full:
+        result = subprocess.run([PROGRAM, "info", "studio.hdr"], cwd=folder, stdout=full, stderr=subprocess.PIPE, text=True)
+    assert result.returncode == 1 and "stdout" in result.stderr
+
+
+# --- info and sky ---
+
+
+def test_info_of_an_environment(folder):
+    run("sky", "--axes", "-o", "axes.exr", "--exr", "float", "--height", "64", folder=folder)
+    run("sky", "-o", "sun.exr", "--exr", "float", "--height", "256", "--sun-elevation-deg", "40", "--sun-azimuth-deg", "-70", folder=folder)
+    info = json.loads(run("info", "sun.exr", "--json", folder=folder).stdout)
+    light = info["lights"][0]
+    assert abs(light["elevation_deg"] - 40) < 0.5 and abs(light["azimuth_deg"] + 70) < 0.5 and 0.2 < light["share"] < 1, light
+    assert info["range"][1] > 1e5 and info["irradiance"]["+Y"][1] > info["irradiance"]["-Y"][1] > 0
+    # Turning the light turns the sun from +X towards +Z; E from above stays.
+    turned = json.loads(run("info", "sun.exr", "--rotate-y-deg", "50", "--json", folder=folder).stdout)
+    assert abs(turned["lights"][0]["azimuth_deg"] + 20) < 0.5
+    assert abs(turned["irradiance"]["+Y"][1] / info["irradiance"]["+Y"][1] - 1) < 1e-3
+    brighter = json.loads(run("info", "sun.exr", "--exposure", "1", "--json", folder=folder).stdout)
+    assert abs(brighter["mean_radiance"][0] / info["mean_radiance"][0] - 2) < 1e-6
+    assert "bad texels       none" in run("info", "axes.exr", folder=folder).stdout
+
+
+def test_info_of_a_bake_sees_changes(folder):
+    run("bake", "studio.hdr", "-o", "out", *SMALL, folder=folder)
+    assert "unchanged" in run("info", "out", folder=folder).stdout
+    document = json.loads(run("info", "out/manifest.json", "--json", folder=folder).stdout)
+    assert document["kind"] == "bake" and all(f["state"] == "unchanged" for f in document["files"])
+    with open(folder / "out/brdf.ktx2", "ab") as file:
+        file.write(b"x")
+    (folder / "out/sh.json").unlink()
+    states = {f["file"]: f["state"] for f in json.loads(run("info", "out", "--json", folder=folder, code=1).stdout)["files"]}
+    assert states["brdf.ktx2"] == "changed" and states["sh.json"] == "missing"
+
+
+def test_info_of_other_tools_textures(folder):
+    data = os.environ.get("DOMELIGHT_DATA")
+    if not data:
+        raise Skipped("DOMELIGHT_DATA is not set")
+    texture = Path(data) / "reference/symmetrical_garden/symmetrical_garden_ibl.ktx"
+    info = json.loads(run("info", texture, "--json", folder=folder).stdout)
+    assert info["faces"] == 6 and info["levels"] == 5 and info["width"] == 256 and "sh" in info["metadata"]
+
+
+def test_sky_formats_and_axes(folder):
+    for name in ["a.hdr", "a.exr", "a.png"]:
+        run("sky", "-o", name, "--height", "16", folder=folder)
+        assert (folder / name).stat().st_size > 100
+    run("sky", "--axes", "-o", "axes.png", "--height", "64", folder=folder)
+    assert json.loads(run("info", "axes.png", "--json", folder=folder).stdout)["width"] == 128
+
+
+def test_bad_texels_are_reported(folder):
+    # A flat .pfm would be simpler, but the program reads .hdr, which cannot hold them: an uncompressed float EXR, made here.
+    (folder / "bad.exr").write_bytes(make_exr(8, 4, {5: float("nan"), 9: float("inf"), 11: -3.0}))
+    info = json.loads(run("info", "bad.exr", "--json", folder=folder).stdout)
+    assert info["repaired"] == {"not_a_number": 1, "infinite": 1, "negative": 1, "most_negative": -3.0}
+    result = run("bake", "bad.exr", "-o", "out", *SMALL, folder=folder)
+    assert "repaired" in result.stderr
+    assert manifest_of(folder / "out")["source"]["repaired"]["negative"] == 1
+
+
+def make_exr(width, height, special):
+    """A scanline EXR without compression, float RGB of 0.5, `special` values in the red channel by texel number."""
+    import struct
+
+    def attribute(name, kind, value):
+        return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+
+    channels = b"".join(c.encode() + b"\0" + struct.pack("<iiii", 2, 0, 1, 1) for c in "BGR") + b"\0"
+    window = struct.pack("<iiii", 0, 0, width - 1, height - 1)
+    header = struct.pack("<ii", 20000630, 2) + attribute("channels", "chlist", channels) + attribute("compression", "compression", b"\0")
+    header += attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window) + attribute("lineOrder", "lineOrder", b"\0")
+    header += attribute("pixelAspectRatio", "float", struct.pack("<f", 1)) + attribute("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0))
+    header += attribute("screenWindowWidth", "float", struct.pack("<f", 1)) + b"\0"
+    line = 8 + 12 * width
+    table = b"".join(struct.pack("<Q", len(header) + 8 * height + y * line) for y in range(height))
+    rows = b""
+    for y in range(height):
+        red = [special.get(y * width + x, 0.5) for x in range(width)]
+        rows += struct.pack("<ii", y, 12 * width) + struct.pack(f"<{width}f", *[0.5] * width) * 2 + struct.pack(f"<{width}f", *red)
+    return header + table + rows
+
+
+def main():
+    chosen = sys.argv[1:]
+    tests = [(name, test) for name, test in globals().items() if name.startswith("test_") and (not chosen or any(c in name for c in chosen))]
+    passed = failed = skipped = 0
+    with tempfile.TemporaryDirectory(prefix="domelight-cli-") as base:
+        seeds = Path(base) / "seeds"
+        seeds.mkdir()
+        run("sky", "-o", "studio.hdr", "--height", "32", folder=seeds)
+        run("sky", "-o", "evening.hdr", "--height", "32", "--sun-elevation-deg", "5", folder=seeds)
+        for name, test in tests:
+            folder = Path(base) / name
+            shutil.copytree(seeds, folder)
+            start = time.monotonic()
+            try:
+                test(folder)
+                passed += 1
+                print(f"passed: {name} ({time.monotonic() - start:.1f} s)", flush=True)
+            except Skipped as why:
+                skipped += 1
+                print(f"skipped: {why}", flush=True)
+            except Exception:
+                failed += 1
+                print(f"FAILED: {name}", flush=True)
+                traceback.print_exc(file=sys.stdout)
+            shutil.rmtree(folder, ignore_errors=True)
+    print(f"cli-tests: {passed} passed, {failed} failed, {skipped} skipped")
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()
