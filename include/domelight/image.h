@@ -50,6 +50,15 @@ class Image {
     Image() = default;
     Image(int width, int height, int channels, T value = {})
         : width_(width), height_(height), channels_(channels), data_(std::size_t(width) * height * channels, value) {}
+    /// Pixels of no value yet, for who writes them all: memory is first touched there, perhaps by many threads.
+    static Image uninitialized(int width, int height, int channels) {
+        Image image;
+        image.width_ = width;
+        image.height_ = height;
+        image.channels_ = channels;
+        image.data_ = decltype(image.data_)(std::size_t(width) * height * channels);
+        return image;
+    }
 
     int width() const { return width_; }
     int height() const { return height_; }

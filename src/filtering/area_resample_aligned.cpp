@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <mutex>
 
 namespace domelight::area {
@@ -95,6 +96,7 @@ class AlignedResampler : public AreaResampler {
     ImageF out_;
     std::mutex builders_mutex_;
     std::vector<std::unique_ptr<TileBuilder>> builders_;
+    StencilArena arena_;
 };
 
 AlignedResampler::AlignedResampler(int width, int height, int size, const AlignedOrientation& orientation, int threads)
@@ -104,7 +106,7 @@ AlignedResampler::AlignedResampler(int width, int height, int size, const Aligne
       threads_(resolve_threads(threads)),
       orientation_(orientation),
       grid_(width, height),
-      out_(size, 6 * size, 3) {
+      out_(ImageF::uninitialized(size, 6 * size, 3)) {
     make_groups();
     make_tiles();
     int span = 1;
@@ -265,10 +267,10 @@ void AlignedResampler::copy_rows(ImageView<const float> rows) {
     const auto copy = [&](int y) {
         const float* from = rows.row(y);
         float* to = ring_data_.data() + ((received_ + y) & (ring_.capacity - 1)) * ring_.stride;
-        for (int x = 0; x < width_; ++x) {
-            for (int c = 0; c < 3; ++c) to[4 * x + c] = from[3 * x + c];
-            to[4 * x + 3] = 0;
-        }
+        // The fourth float is the next texel's first, finite like the others.
+        for (int x = 0; x + 1 < width_; ++x) std::memcpy(to + 4 * x, from + 3 * x, 4 * sizeof(float));
+        std::memcpy(to + 4 * (width_ - 1), from + 3 * (width_ - 1), 3 * sizeof(float));
+        to[4 * width_ - 1] = 0;
         for (int x = 0; x < simd::k_ring_padding; ++x) std::copy_n(to + 4 * (x % width_), 4, to + 4 * (width_ + x));
     };
     parallel_ranges(rows.height, 8, std::int64_t(rows.height) * width_ < 1 << 16 ? 1 : threads_,
@@ -301,14 +303,14 @@ void AlignedResampler::process() {
 
 /// The middle texel of a polar face of an odd size is the mean of four quarters, one for each side face below it.
 void AlignedResampler::store_pole_texel(bool south) {
-    TileBuilder builder(grid_, size_);
+    TileBuilder builder(grid_, size_, arena_);
     float quarters[12], *out = out_.pixels().data() + 3 * out_texel(true, 0, false, south, size_ / 2, size_ / 2);
     for (const PhaseGroup& group : groups_) {
         const Tile tile = builder.build_pole_quarter(group.columns);
         for (const PhaseGroup::Member& member : group.members) {
             const simd::StencilInstance place{(member.origin % width_ + width_) % width_, 1, member.quarter, 0, 0};
-            simd::apply_stencils({tile.stencils, tile.weights.data(), 1, 1}, std::span(&place, 1), ring_, south,
-                                 quarters);
+            simd::apply_stencils({tile.stencils, tile.weights, 1, 1, tile.first_column, tile.last_column},
+                                 std::span(&place, 1), ring_, south, quarters);
         }
     }
     for (int c = 0; c < 3; ++c)
@@ -330,20 +332,20 @@ void AlignedResampler::run(const Job& job) {
                 builders_.pop_back();
             }
         }
-        if (!builder) builder = std::make_unique<TileBuilder>(grid_, size_);
+        if (!builder) builder = std::make_unique<TileBuilder>(grid_, size_, arena_);
         tile.stencils = builder->build(tile.shape, groups_[tile.group].columns);
         const std::lock_guard lock(builders_mutex_);
         builders_.push_back(std::move(builder));
     }
     apply(tile, job.south ? tile.south : tile.north, job.south);
-    if (job.south || tile.whole_height) tile.stencils = {};
 }
 
 void AlignedResampler::apply(const PlacedTile& tile, std::span<const simd::StencilInstance> instances, bool south) {
     for ([[maybe_unused]] const simd::Stencil& s : tile.stencils.stencils)
         assert(s.row >= tile.first_row && s.row + s.rows - 1 <= tile.last_row);
-    const simd::StencilBlock block{tile.stencils.stencils, tile.stencils.weights.data(), tile.shape.i1 - tile.shape.i0,
-                                   tile.shape.j1 - tile.shape.j0};
+    const simd::StencilBlock block{tile.stencils.stencils,        tile.stencils.weights,
+                                   tile.shape.i1 - tile.shape.i0, tile.shape.j1 - tile.shape.j0,
+                                   tile.stencils.first_column,    tile.stencils.last_column};
     simd::apply_stencils(block, instances, ring_, south, out_.pixels().data());
 }
 

@@ -9,8 +9,10 @@
 namespace domelight::area {
 
 namespace {
+/// The vector kernel's last, half-empty step may reach this far.
+constexpr std::size_t k_slack = 8;
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
-}
+}  // namespace
 
 SourceGrid::SourceGrid(int width_, int height_)
     : width(width_), height(height_), column_angle(2 * k_pi / width_), row_angle(k_pi / height_) {
@@ -62,13 +64,10 @@ void TileBuilder::clear(int texels) {
     boxes_.assign(texels, Box());
 }
 
-void TileBuilder::reserve_piece() {
-    constexpr std::size_t slack = 8;  // the vector kernel's last, half-empty step
-    if (count_ + slack < from_.size()) return;
+void TileBuilder::grow() {
     const std::size_t size = std::max<std::size_t>(4096, 2 * from_.size());
-    for (auto* a : {&from_, &to_, &column_tan_, &column_cos_, &row_cos_, &row_sin_, &upper_left_, &upper_right_,
-                    &lower_left_, &lower_right_, &left_, &right_})
-        a->resize(size);
+    for (auto* a : {&from_, &to_, &column_tan_, &column_cos_, &row_cos_, &row_sin_}) a->resize(size);
+    for (auto* a : {&upper_, &lower_, &width_}) a->resize(2 * size);
     column_.resize(size);
     row_.resize(size);
 }
@@ -109,10 +108,10 @@ void TileBuilder::add_part(const Line& line, const LineFrame& frame, int first, 
         const double edge = boundary(step > 0 ? k + 1 : k);
         const int offset = (k - line.along0) * line.stride;
         Run run{int(count_), 0, line.plus == k_nobody ? -1 : line.plus + offset,
-                line.minus == k_nobody ? -1 : line.minus + offset, frame.direction};
+                line.minus == k_nobody ? -1 : line.minus + offset};
         const int column_a = column, row_a = row;
         while (t < edge) {
-            reserve_piece();
+            if (count_ + k_slack >= from_.size()) grow();
             const std::size_t p = count_++;
             const double to = std::min(edge, std::min(next_column, next_row));
             from_[p] = t;
@@ -141,10 +140,10 @@ void TileBuilder::add_part(const Line& line, const LineFrame& frame, int first, 
     const double longest =
         std::max({grid_.column_angle, grid_.row_angle, std::sqrt(grid_.column_angle * 2 * line.scale)});
     const auto at = [&](std::vector<double>& a) { return a.data() + start; };
-    simd::integrate_arc_pieces(
-        {at(from_), at(to_), at(column_tan_), at(column_cos_), at(row_cos_), at(row_sin_), at(upper_left_),
-         at(upper_right_), at(lower_left_), at(lower_right_), at(left_), at(right_)},
-        count_ - start, line.kappa, 1 / grid_.column_angle, 1 / grid_.row_angle, longest < 0.02 ? 2 : 3);
+    simd::integrate_arc_pieces({at(from_), at(to_), at(column_tan_), at(column_cos_), at(row_cos_), at(row_sin_),
+                                upper_.data() + 2 * start, lower_.data() + 2 * start, width_.data() + 2 * start},
+                               count_ - start, line.kappa, 1 / grid_.column_angle, 1 / grid_.row_angle,
+                               longest < 0.02 ? 2 : 3, frame.direction < 0);
 }
 
 /// Texels [begin, end) along a line, split where psi = 0.
@@ -197,22 +196,12 @@ void TileBuilder::add_run(const Run& run, int texel, double sign) {
     const int cells = box.columns();
     double* nodes = nodes_.data() + box.nodes;
     double* widths = widths_.data() + box.widths;
-    const bool forward = run.direction > 0;
-    const double *ul = (forward ? upper_left_ : upper_right_).data(),
-                 *ur = (forward ? upper_right_ : upper_left_).data();
-    const double *ll = (forward ? lower_left_ : lower_right_).data(),
-                 *lr = (forward ? lower_right_ : lower_left_).data();
-    const double *l = (forward ? left_ : right_).data(), *r = (forward ? right_ : left_).data();
     for (int p = run.first; p < run.last; ++p) {
         const int c = column_[p] - box.column0, j = row_[p] - box.row0;
-        double* node = nodes + j * (cells + 1) + c;
-        node[0] += sign * ul[p];
-        node[1] += sign * ur[p];
-        node[cells + 1] += sign * ll[p];
-        node[cells + 2] += sign * lr[p];
-        double* width = widths + 2 * (j * cells + c);
-        width[0] += sign * l[p];
-        width[1] += sign * r[p];
+        double *above = nodes + j * (cells + 1) + c, *below = above + cells + 1, *width = widths + 2 * (j * cells + c);
+        for (int side = 0; side < 2; ++side) above[side] += sign * upper_[2 * p + side];
+        for (int side = 0; side < 2; ++side) below[side] += sign * lower_[2 * p + side];
+        for (int side = 0; side < 2; ++side) width[side] += sign * width_[2 * p + side];
     }
 }
 
@@ -233,62 +222,102 @@ void TileBuilder::scatter() {
     }
 }
 
-/// From sums over cells to the weights of source texels. `mirrored`: the texel is this and its mirror image in the
-/// equator. `total`: what the weights sum to (they are scaled to 1), or 0: their own sum.
-void TileBuilder::finish_texel(const Box& box, bool mirrored, double total, Tile& tile) {
+/// The source rows and columns of a texel's weights. `mirrored`: the texel is this and its mirror image in the equator.
+simd::Stencil TileBuilder::shape_of(const Box& box, bool mirrored) const {
+    // Rows -1 and H are rows 0 and H - 1 again: v clamps.
+    const int last_row = grid_.height - 1;
+    int first = std::max(box.row0, 0), last = std::min(box.row1 + 1, last_row);
+    if (mirrored) {
+        first = std::min(first, last_row - last);
+        last = last_row - first;
+    }
+    return {first, box.column0, last - first + 1, (box.columns() + 2) / 2 * 2, 0};
+}
+
+/// Adds to every cell what lies in it above the pieces of lower cells.
+void TileBuilder::sum_cells(const Box& box) {
     const int cells = box.columns(), columns = cells + 1;
     double* nodes = nodes_.data() + box.nodes;
     const double* widths = widths_.data() + box.widths;
-    // What lies in the rows of cells wholly above a piece.
     for (int c = 0; c < cells; ++c) {
         double left = 0, right = 0;
-        for (int j = box.rows() - 1; j >= 0; --j) {
+        for (int j = box.rows() - 2; j >= 0; --j) {
+            left += widths[2 * ((j + 1) * cells + c)];
+            right += widths[2 * ((j + 1) * cells + c) + 1];
             const double upper = grid_.whole_upper[box.row0 + j + 1], lower = grid_.whole_lower[box.row0 + j + 1];
             double* node = nodes + j * columns + c;
             node[0] += upper * left;
             node[1] += upper * right;
             node[columns] += lower * left;
             node[columns + 1] += lower * right;
-            left += widths[2 * (j * cells + c)];
-            right += widths[2 * (j * cells + c) + 1];
         }
     }
-    // Rows -1 and H are rows 0 and H - 1 again: v clamps.
-    const int last_row = grid_.height - 1;
-    const auto clamped = [&](int j) { return std::clamp(box.row0 + j, 0, last_row); };
-    int first = clamped(0), last = clamped(box.rows());
-    if (mirrored) {
-        first = std::min(first, last_row - last);
-        last = last_row - first;
+}
+
+/// The weights of a texel, scaled by 1 / `total`, or (0) to the sum 1.
+void TileBuilder::store_weights(const Box& box, const simd::Stencil& s, bool mirrored, double total, float* to) {
+    const int columns = box.columns() + 1, last_row = grid_.height - 1;
+    const double* from = nodes_.data() + box.nodes;
+    if (mirrored || s.rows != box.rows() + 1) {
+        folded_.assign(std::size_t(s.rows) * columns, 0.0);
+        for (int j = 0; j <= box.rows(); ++j)
+            for (int c = 0; c < columns; ++c) {
+                const int row = std::clamp(box.row0 + j, 0, last_row);
+                folded_[std::size_t(row - s.row) * columns + c] += from[j * columns + c];
+                if (mirrored) folded_[std::size_t(last_row - row - s.row) * columns + c] += from[j * columns + c];
+            }
+        from = folded_.data();
     }
-    folded_.assign(std::size_t(last - first + 1) * columns, 0.0);
-    for (int j = 0; j <= box.rows(); ++j)
-        for (int c = 0; c < columns; ++c) {
-            const double w = nodes[j * columns + c];
-            folded_[std::size_t(clamped(j) - first) * columns + c] += w;
-            if (mirrored) folded_[std::size_t(last_row - clamped(j) - first) * columns + c] += w;
-        }
+    // Below zero only by rounding.
     double sum = 0;
-    for (double& w : folded_) {
-        w = std::max(0.0, w);  // below zero only by rounding
-        sum += w;
-    }
+    for (int k = 0; k < s.rows * columns; ++k) sum += std::max(0.0, from[k]);
     const double scale = 1 / (total > 0 ? total : sum);
-    const int padded = (columns + 1) / 2 * 2;
-    tile.stencils.push_back({first, box.column0, last - first + 1, padded, std::uint32_t(tile.weights.size())});
-    for (int r = 0; r <= last - first; ++r) {
-        for (int c = 0; c < columns; ++c) tile.weights.push_back(float(folded_[std::size_t(r) * columns + c] * scale));
-        if (padded > columns) tile.weights.push_back(0);
+    for (int r = 0; r < s.rows; ++r, from += columns, to += s.columns) {
+        for (int c = 0; c < columns; ++c) to[c] = float(std::max(0.0, from[c]) * scale);
+        if (s.columns > columns) to[columns] = 0;
     }
 }
 
 /// The tile from the collected pieces; texels from `first_mirrored` on are one half of what the equator divides.
-Tile TileBuilder::finish(int first_mirrored) {
+Tile TileBuilder::finish(int first_mirrored, double total) {
     scatter();
-    Tile tile;
-    for (std::size_t k = 0; k < boxes_.size(); ++k) finish_texel(boxes_[k], int(k) >= first_mirrored, 0, tile);
-    tile.weights.shrink_to_fit();
+    std::size_t weights = 0;
+    for (std::size_t k = 0; k < boxes_.size(); ++k) {
+        const simd::Stencil s = shape_of(boxes_[k], int(k) >= first_mirrored);
+        weights += std::size_t(s.rows) * s.columns;
+    }
+    const std::size_t header = boxes_.size() * sizeof(simd::Stencil);
+    std::byte* memory = arena_.allocate(header + weights * sizeof(float));
+    Tile tile{{reinterpret_cast<simd::Stencil*>(memory), boxes_.size()},
+              reinterpret_cast<float*>(memory + header),
+              std::numeric_limits<int>::max(),
+              std::numeric_limits<int>::min()};
+    float* to = reinterpret_cast<float*>(memory + header);
+    std::uint32_t first = 0;
+    for (std::size_t k = 0; k < boxes_.size(); ++k) {
+        const Box& box = boxes_[k];
+        const bool mirrored = int(k) >= first_mirrored;
+        simd::Stencil& s = tile.stencils[k] = shape_of(box, mirrored);
+        s.first = first;
+        sum_cells(box);
+        store_weights(box, s, mirrored, total, to + first);
+        first += s.rows * s.columns;
+        tile.first_column = std::min(tile.first_column, s.column);
+        tile.last_column = std::max(tile.last_column, s.column + s.columns - 1);
+    }
     return tile;
+}
+
+std::byte* StencilArena::allocate(std::size_t bytes) {
+    bytes = (bytes + 63) / 64 * 64;
+    const std::lock_guard lock(mutex_);
+    if (blocks_.empty() || used_ + bytes > blocks_.back().size()) {
+        blocks_.emplace_back(std::max(k_block, bytes), false);
+        used_ = 0;
+    }
+    std::byte* place = blocks_.back().data() + used_;
+    used_ += bytes;
+    return place;
 }
 
 Tile TileBuilder::build(const TileShape& shape, const ColumnPhase& columns) {
@@ -298,10 +327,10 @@ Tile TileBuilder::build(const TileShape& shape, const ColumnPhase& columns) {
         add_polar_lines(shape, columns);
         // Even size: the texel that touches the pole reaches up to it.
         if (2 * shape.i0 == size_ && 2 * shape.j0 == size_) boxes_[0].row0 = -1;
-        return finish(texels);
+        return finish(texels, 0);
     }
     add_side_lines(shape, columns);
-    return finish(size_ % 2 && shape.j1 == (size_ + 1) / 2 ? texels - across : texels);
+    return finish(size_ % 2 && shape.j1 == (size_ + 1) / 2 ? texels - across : texels, 0);
 }
 
 Tile TileBuilder::build_pole_quarter(const ColumnPhase& columns) {
@@ -310,10 +339,7 @@ Tile TileBuilder::build_pole_quarter(const ColumnPhase& columns) {
     // The outer border x = 1 / size: texel `middle` along z.
     add_line({double(size_), 1, 0, k_nobody, 1, middle}, columns.forward, &columns.backward, middle, middle + 1);
     boxes_[0].row0 = -1;
-    scatter();
-    Tile tile;
-    finish_texel(boxes_[0], false, 0.25 * cube_solid_angle(middle, middle, size_), tile);
-    return tile;
+    return finish(1, 0.25 * cube_solid_angle(middle, middle, size_));
 }
 
 }  // namespace domelight::area

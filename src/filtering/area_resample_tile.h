@@ -1,12 +1,15 @@
 #pragma once
 
+#include "core/aligned.h"
 #include "simd/area_apply.h"
 #include "simd/area_pieces.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <mutex>
+#include <span>
 #include <vector>
-
 namespace domelight::area {
 
 /// A lat-long source's rows, for stencils: cell row j = -1 .. H - 1 lies between the centres of rows j and j + 1 (the
@@ -50,10 +53,24 @@ struct TileShape {
     int i0 = 0, i1 = 0, j0 = 0, j1 = 0;
 };
 
-/// A tile's stencils, each summing to 1.
+/// Memory for stencils, taken from large blocks and given back all at once. Safe to use from many threads.
+class StencilArena {
+  public:
+    /// 64-byte aligned.
+    std::byte* allocate(std::size_t bytes);
+
+  private:
+    static constexpr std::size_t k_block = std::size_t(4) << 20;
+    std::mutex mutex_;
+    std::vector<AlignedArray<std::byte>> blocks_;
+    std::size_t used_ = 0;
+};
+
+/// A tile's stencils, each summing to 1, in an arena.
 struct Tile {
-    std::vector<simd::Stencil> stencils;
-    std::vector<float> weights;
+    std::span<simd::Stencil> stencils;
+    const float* weights = nullptr;
+    int first_column = 0, last_column = 0;  ///< of all stencils
 };
 
 /// Computes the weights of output texels: the exact overlap of each with every source texel's tent.
@@ -66,7 +83,7 @@ struct Tile {
 /// opposite sign, and its width dpsi to all cells above. So energy telescopes exactly.
 class TileBuilder {
   public:
-    TileBuilder(const SourceGrid& grid, int size) : grid_(grid), size_(size) {}
+    TileBuilder(const SourceGrid& grid, int size, StencilArena& arena) : grid_(grid), size_(size), arena_(arena) {}
 
     Tile build(const TileShape& shape, const ColumnPhase& columns);
     /// The quarter -45..45 degrees (about the +x axis) of the middle texel of a polar face of odd size, as the stencil
@@ -83,7 +100,6 @@ class TileBuilder {
     };
     struct Run {
         int first, last, plus, minus;
-        int direction;
     };
     struct Box {
         int column0 = std::numeric_limits<int>::max(), column1 = std::numeric_limits<int>::min();
@@ -95,7 +111,7 @@ class TileBuilder {
     };
 
     void clear(int texels);
-    void reserve_piece();
+    void grow();
     void add_side_lines(const TileShape& shape, const ColumnPhase& columns);
     void add_polar_lines(const TileShape& shape, const ColumnPhase& columns);
     void add_line(const Line& line, const LineFrame& outward, const LineFrame* inward, int begin, int end);
@@ -103,14 +119,17 @@ class TileBuilder {
     void include(int texel, int column_a, int column_b, int row_a, int row_b);
     void scatter();
     void add_run(const Run& run, int texel, double sign);
-    void finish_texel(const Box& box, bool mirrored, double total, Tile& tile);
-    Tile finish(int first_mirrored);
+    Tile finish(int first_mirrored, double total);
+    simd::Stencil shape_of(const Box& box, bool mirrored) const;
+    void sum_cells(const Box& box);
+    void store_weights(const Box& box, const simd::Stencil& stencil, bool mirrored, double total, float* to);
 
     const SourceGrid& grid_;
     int size_;
+    StencilArena& arena_;
     std::size_t count_ = 0;
     std::vector<double> from_, to_, column_tan_, column_cos_, row_cos_, row_sin_;
-    std::vector<double> upper_left_, upper_right_, lower_left_, lower_right_, left_, right_;
+    std::vector<double> upper_, lower_, width_;  ///< two each: left and right
     std::vector<std::int32_t> column_, row_;
     std::vector<Run> runs_;
     std::vector<Box> boxes_;

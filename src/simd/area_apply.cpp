@@ -80,36 +80,47 @@ HWY_INLINE void store(V total, float* out) {
 
 #endif
 
-/// The instances' sums over one stencil; all instances run in the same direction.
+/// Offset of the memory of source column `column`, wrapped.
+HWY_INLINE std::ptrdiff_t wrapped(int column, int width) {
+    while (column < 0) column += width;
+    while (column >= width) column -= width;
+    return 4 * std::ptrdiff_t(column);
+}
+
+/// Adds weights * texels of `columns` source columns; `at` is where an instance's stencil column 0 lies, so that in
+/// memory its texels go on from at + 4 * column, or from at - 4 * column leftwards.
 template <int count, bool reverse>
-HWY_INLINE void sum_stencil(const Stencil& s, const float* weights, const StencilInstance* instances,
-                            const RowRing& ring, bool flipped, Sum (&total)[count]) {
+HWY_INLINE void sum_columns(const Stencil& s, int column, int columns, const float* w, const float* const (&at)[count],
+                            const RowRing& ring, bool flipped, Sum (&sum)[count]) {
     const int mask = ring.capacity - 1;
-    for (int i = 0; i < count; ++i) total[i] = zero();
+    for (int r = 0; r < s.rows; ++r, w += s.columns) {
+        const int row = flipped ? ring.height - 1 - (s.row + r) : s.row + r;
+        const std::ptrdiff_t offset = (row & mask) * ring.stride + (reverse ? -4 : 4) * std::ptrdiff_t(column) -
+                                      (reverse ? 4 * (k_texels - 1) : 0);
+        for (int c = 0; c < columns; c += k_texels) {
+            const auto weight = spread<reverse>(w + c);
+            const std::ptrdiff_t place = offset + (reverse ? -4 * c : 4 * c);
+            for (int i = 0; i < count; ++i) sum[i] = multiply_add(weight, at[i] + place, sum[i]);
+        }
+    }
+}
+
+/// A stencil so wide that the padding behind the rows may not hold it: in parts, each wrapped by itself.
+template <int count, bool reverse>
+void sum_wide(const Stencil& s, const float* weights, const StencilInstance* instances, const RowRing& ring,
+              bool flipped, Sum (&total)[count]) {
     for (int c0 = 0; c0 < s.columns; c0 += k_ring_padding) {
-        const int columns = s.columns - c0 < k_ring_padding ? s.columns - c0 : k_ring_padding;
+        const int columns = s.columns - c0 < k_ring_padding ? s.columns - c0 : k_ring_padding, column = s.column + c0;
         const float* at[count];
-        for (int i = 0; i < count; ++i) {
-            // The leftmost texel of these columns, then in memory always rightwards.
-            int column = instances[i].column_origin + (reverse ? -(s.column + c0 + columns - 1) : s.column + c0);
-            if (column < 0) column += ring.width;
-            if (column < 0) column += ring.width;
-            if (column >= ring.width) column -= ring.width;
-            if (column >= ring.width) column -= ring.width;
-            at[i] = ring.data + 4 * std::ptrdiff_t(column);
-        }
         Sum sum[count];
-        for (int i = 0; i < count; ++i) sum[i] = zero();
-        const float* w = weights + s.first + c0;
-        for (int r = 0; r < s.rows; ++r, w += s.columns) {
-            const int row = flipped ? ring.height - 1 - (s.row + r) : s.row + r;
-            const std::ptrdiff_t offset = (row & mask) * ring.stride;
-            for (int c = 0; c < columns; c += k_texels) {
-                const auto weight = spread<reverse>(w + c);
-                const std::ptrdiff_t place = offset + 4 * (reverse ? columns - k_texels - c : c);
-                for (int i = 0; i < count; ++i) sum[i] = multiply_add(weight, at[i] + place, sum[i]);
-            }
+        for (int i = 0; i < count; ++i) {
+            const int origin = instances[i].column_origin;
+            at[i] = ring.data + (reverse ? wrapped(origin - (column + columns - 1), ring.width) +
+                                               4 * std::ptrdiff_t(column + columns - 1)
+                                         : wrapped(origin + column, ring.width) - 4 * std::ptrdiff_t(column));
+            sum[i] = zero();
         }
+        sum_columns<count, reverse>(s, column, columns, weights + s.first + c0, at, ring, flipped, sum);
         for (int i = 0; i < count; ++i) total[i] = add(total[i], sum[i]);
     }
 }
@@ -117,10 +128,24 @@ HWY_INLINE void sum_stencil(const Stencil& s, const float* weights, const Stenci
 template <int count, bool reverse>
 void apply(const StencilBlock& block, const StencilInstance* instances, const RowRing& ring, bool flipped, float* out) {
     const Stencil* s = block.stencils.data();
+    // Where all columns of the block fit into the row and its padding, they are wrapped once for all.
+    const bool narrow = block.last_column - block.first_column < k_ring_padding;
+    const float* at[count];
+    for (int i = 0; i < count; ++i) {
+        const int origin = instances[i].column_origin;
+        at[i] = ring.data +
+                (reverse ? wrapped(origin - block.last_column, ring.width) + 4 * std::ptrdiff_t(block.last_column)
+                         : wrapped(origin + block.first_column, ring.width) - 4 * std::ptrdiff_t(block.first_column));
+    }
     for (int j = 0; j < block.rows; ++j)
         for (int i = 0; i < block.columns; ++i, ++s) {
             Sum total[count];
-            sum_stencil<count, reverse>(*s, block.weights, instances, ring, flipped, total);
+            for (int k = 0; k < count; ++k) total[k] = zero();
+            if (narrow)
+                sum_columns<count, reverse>(*s, s->column, s->columns, block.weights + s->first, at, ring, flipped,
+                                            total);
+            else
+                sum_wide<count, reverse>(*s, block.weights, instances, ring, flipped, total);
             for (int k = 0; k < count; ++k)
                 store(total[k], out + 3 * (instances[k].out + i * instances[k].out_i + j * instances[k].out_j));
         }

@@ -37,6 +37,7 @@ struct StencilBlock {
     std::span<const Stencil> stencils;
     const float* weights = nullptr;
     int columns = 0, rows = 0;
+    int first_column = 0, last_column = 0;  ///< the least and the greatest source column of all stencils
 };
 
 /// Writes sum weight * source of every texel of the block and every instance. `flipped`: the source upside down.

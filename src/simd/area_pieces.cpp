@@ -27,7 +27,8 @@ HWY_INLINE V small_asin(V x) {
 }
 
 template <int nodes>
-HWY_INLINE void integrate(const ArcPieces& pieces, std::size_t count, double kappa_, double columns, double rows) {
+HWY_INLINE void integrate(const ArcPieces& pieces, std::size_t count, double kappa_, double columns, double rows,
+                          bool reversed) {
     const D d;
     const double node2 = 0.5773502691896258, node3 = 0.7745966692414834;
     const V kappa = hn::Set(d, kappa_), kappa2 = hn::Set(d, kappa_ * kappa_), one = hn::Set(d, 1.0);
@@ -63,21 +64,24 @@ HWY_INLINE void integrate(const ArcPieces& pieces, std::size_t count, double kap
             left = hn::Add(left, to_left);
             right = hn::Add(right, to_right);
         }
-        hn::StoreU(ul, d, pieces.upper_left + k);
-        hn::StoreU(ur, d, pieces.upper_right + k);
-        hn::StoreU(ll, d, pieces.lower_left + k);
-        hn::StoreU(lr, d, pieces.lower_right + k);
-        hn::StoreU(left, d, pieces.left + k);
-        hn::StoreU(right, d, pieces.right + k);
+        if (reversed) {
+            V swap = ul;
+            ul = ur, ur = swap;
+            swap = ll, ll = lr, lr = swap;
+            swap = left, left = right, right = swap;
+        }
+        hn::StoreInterleaved2(ul, ur, d, pieces.upper + 2 * k);
+        hn::StoreInterleaved2(ll, lr, d, pieces.lower + 2 * k);
+        hn::StoreInterleaved2(left, right, d, pieces.width + 2 * k);
     }
 }
 
 void integrate_arc_pieces(const ArcPieces& pieces, std::size_t count, double kappa, double columns, double rows,
-                          int nodes) {
+                          int nodes, bool reversed) {
     if (nodes == 2)
-        integrate<2>(pieces, count, kappa, columns, rows);
+        integrate<2>(pieces, count, kappa, columns, rows, reversed);
     else
-        integrate<3>(pieces, count, kappa, columns, rows);
+        integrate<3>(pieces, count, kappa, columns, rows, reversed);
 }
 
 }  // namespace domelight::simd::HWY_NAMESPACE
@@ -89,8 +93,9 @@ namespace domelight::simd {
 HWY_EXPORT(integrate_arc_pieces);
 
 void integrate_arc_pieces(const ArcPieces& pieces, std::size_t count, double kappa, double columns_per_radian,
-                          double rows_per_radian, int nodes) {
-    HWY_DYNAMIC_DISPATCH(integrate_arc_pieces)(pieces, count, kappa, columns_per_radian, rows_per_radian, nodes);
+                          double rows_per_radian, int nodes, bool reversed) {
+    HWY_DYNAMIC_DISPATCH(integrate_arc_pieces)(pieces, count, kappa, columns_per_radian, rows_per_radian, nodes,
+                                               reversed);
 }
 
 }  // namespace domelight::simd
