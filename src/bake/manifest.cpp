@@ -51,7 +51,10 @@ Json environment_json(const EnvironmentOptions& e) {
 
 /// Every option that has a say in the bytes, resolved: two bakes with equal options of equal sources are equal.
 Json options_json(const TargetPlan& plan, const BakeOptions& o) {
+    // The targets of one run share its analysis, whose band limit is the widest that any of their levels needs: the
+    // last digits of a map depend on its company.
     Json json{{"for", plan.target->name},
+              {"targets", o.targets},
               {"layout", plan.layout == Layout::cube ? "cube" : "latlong"},
               {"size", plan.specular.front().spec.size},
               {"levels", plan.specular.size()},
