@@ -7,7 +7,7 @@ cd -- "$here/../build" || exit 1
 mkdir -p "corpus/$name" crashes
 seeds=$(mktemp -d)
 trap 'rm -rf "$seeds"' EXIT
-python3 "$here/seeds.py" "$name" "$seeds/in"
+python3 "$here/seeds.py" "$name" "$seeds/in" || exit
 if "$program" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2560 -malloc_limit_mb=1100 -max_len=262144 -fork="$(nproc)" \
     -artifact_prefix="crashes/$name-" "corpus/$name" "$seeds/in"; then
     echo "$name: 1 passed, 0 failed, 0 skipped"

@@ -6,7 +6,7 @@ program=$1 name=$(basename "$1")
 shift
 seeds=$(mktemp -d)
 trap 'rm -rf "$seeds"' EXIT
-python3 "$here/seeds.py" "$name" "$seeds/in"
+python3 "$here/seeds.py" "$name" "$seeds/in" || exit
 cd -- "$here/../build" || exit 1
 ulimit -c 0
 export ASAN_OPTIONS=${ASAN_OPTIONS:-allocator_may_return_null=1:max_allocation_size_mb=2048:detect_leaks=1}

@@ -26,6 +26,7 @@ MAGIC = {
     "exr": [b"\x76\x2f\x31\x01"],
     "png": [b"\x89PNG"],
     "jpeg": [b"\xff\xd8"],
+    "ldr": [b"\x89PNG", b"\xff\xd8"],
     "jpg": [b"\xff\xd8"],
     "ktx2": [b"\xabKTX 20"],
     "ktx1": [b"\xabKTX 11"],
@@ -34,30 +35,48 @@ MAGIC = {
 }
 
 
-def made_by(program, folder):
-    """Small valid files of every kind the program writes."""
+def make(program, folder):
+    """Small valid files of every kind the program writes. What this program cannot write yet is left out."""
     def run(*arguments):
-        subprocess.run([program, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=60, check=False)
+        subprocess.run([program, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+
+    def bake(name, *options):
+        run("bake", folder / "sky.hdr", "-o", folder / name, "--no-preview", "--no-hashes", "--brdf-size", "8", "--irradiance-size", "8", *options)
 
     run("sky", "--height", "16", "-o", folder / "sky.hdr")
-    run("sky", "--height", "16", "-o", folder / "sky.exr")
+    for kind in ("half", "float"):
+        run("sky", "--height", "16", "--exr", kind, "-o", folder / f"sky-{kind}.exr")
+    run("sky", "--axes", "--height", "16", "-o", folder / "axes.png")
     for encoding in ("rgba16f", "rgba32f", "rgb9e5", "r11g11b10f"):
-        run("bake", folder / "sky.hdr", "-o", folder / encoding, "--size", "8", "--levels", "2", "--encoding", encoding)
-    for target in ("filament", "babylon", "three", "bevy", "khronos"):
-        run("bake", folder / "sky.hdr", "-o", folder / target, "--for", target, "--size", "16")
+        bake(encoding, "--size", "8", "--levels", "2", "--encoding", encoding)
+    for container in ("ktx1", "dds", "exr", "hdr"):
+        bake(container, "--size", "8", "--levels", "2", "--format", container)
+    bake("zstd", "--size", "8", "--levels", "2", "--zstd")
+
+
+def made_by(program):
+    """The folder of the files that `program` makes, made once for each build of it."""
+    folder = HERE.parent / "build" / "seeds"
+    stamp, state = folder / "stamp", f"{program} {os.stat(program).st_mtime_ns}"
+    if not stamp.exists() or stamp.read_text() != state:
+        shutil.rmtree(folder, ignore_errors=True)
+        (folder / "made").mkdir(parents=True)
+        make(program, folder / "made")
+        stamp.write_text(state)
+    return folder / "made"
 
 
 def main():
     target, out = sys.argv[1].split("_")[0], pathlib.Path(sys.argv[2])
     out.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
-        made = pathlib.Path(folder)
+        places = [pathlib.Path(folder)]
         for name, data in hostile_files():
-            (made / f"hostile-{name}").write_bytes(data)
-        program = os.environ.get("DOMELIGHT_PROGRAM")
-        if program and os.access(program, os.X_OK):
-            made_by(program, made)
-        places = [made, *(pathlib.Path(d, "malformed") for d in [os.environ.get("DOMELIGHT_DATA")] if d)]
+            (places[0] / f"hostile-{name}").write_bytes(data)
+        if "DOMELIGHT_PROGRAM" in os.environ:
+            places.append(made_by(os.environ["DOMELIGHT_PROGRAM"]))
+        if "DOMELIGHT_DATA" in os.environ:
+            places.append(pathlib.Path(os.environ["DOMELIGHT_DATA"], "malformed"))
         for number, file in enumerate(f for place in places for f in sorted(place.rglob("*")) if f.is_file()):
             with open(file, "rb") as opened:
                 head = opened.read(16)
