@@ -1,8 +1,10 @@
 #include "domelight/spherical_harmonics.h"
 
+#include "domelight/environment.h"
 #include "domelight/projection.h"
 #include "domelight/zonal_kernel.h"
 
+#include "filtering/reference_source.h"
 #include "math/gauss_legendre.h"
 #include "test.h"
 
@@ -108,4 +110,27 @@ TEST_CASE("spherical_harmonics: windows leave the mean and damp the highest band
     std::vector<Vec3d> same(4, Vec3d{1, 2, 3});
     sh_window(same, ShWindow::none);
     CHECK(same[3].z == 3);
+}
+
+TEST_CASE("spherical_harmonics: Filament's nine numbers of a real environment are those that its own tool wrote") {
+    DOMELIGHT_DATA_FILE(file, "reference/symmetrical_garden/symmetrical_garden_1k.hdr");
+    auto environment = open_environment({file});
+    REQUIRE(environment);
+    const auto image = read_latlong(*environment->latlong);
+    REQUIRE(image);
+    // Key "sh" of symmetrical_garden_ibl.ktx.
+    const Vec3d theirs[9] = {
+        {0.744558, 0.773899, 0.911555},    {0.949531, 0.990914, 1.25601},     {-0.211972, -0.20181, -0.24574},
+        {0.558717, 0.573824, 0.681412},    {0.810173, 0.821786, 0.932482},    {-0.262837, -0.281018, -0.315964},
+        {-0.145663, -0.145209, -0.162459}, {-0.154947, -0.161729, -0.184412}, {-0.236724, -0.236824, -0.268643}};
+    // Their world looks along +Z at the picture's centre and has -X to its right.
+    const Mat3 world_to_source{{Vec3d{0, 0, 1}, Vec3d{0, 1, 0}, Vec3d{-1, 0, 0}}};
+    const std::vector<Vec3d> ours = sh_filament(ReferenceSource(*image).spherical_harmonics(3, world_to_source, 0));
+    // The tool damps the higher bands with a window of its own, and the mean of whatever source it was given is 1.2 %
+    // brighter.
+    const double damped[3] = {1.012, 0.975, 0.862};
+    for (int i = 0; i < 9; ++i) {
+        const Vec3d expected = ours[i] * damped[i == 0 ? 0 : i < 4 ? 1 : 2];
+        CHECK_MESSAGE(length(expected - theirs[i]) < 0.02, i, ": ", expected.x, " for ", theirs[i].x);
+    }
 }
