@@ -59,6 +59,15 @@ TEST_CASE("brdf_table: the default agrees with a far finer quadrature to 1e-5, t
     }
 }
 
+TEST_CASE("brdf_table: each G is the one its name says") {
+    // alpha = NdotL = NdotV = 1/2: sqrt(alpha^2 + (1 - alpha^2) c^2) = sqrt(7) / 4.
+    const double root = std::sqrt(7.0) / 4;
+    CHECK(brdf_visibility(0.5, 0.5, 0.5, BrdfG::correlated) == doctest::Approx(0.5 / root));
+    CHECK(brdf_visibility(0.5, 0.5, 0.5, BrdfG::smith) == doctest::Approx(1 / ((0.5 + root) * (0.5 + root))));
+    CHECK(brdf_visibility(0.5, 0.5, 0.5, BrdfG::karis) ==
+          doctest::Approx(0.64));  // k = 1/4: G1 = 4/5, over 4 NdotL NdotV = 1
+}
+
 TEST_CASE("brdf_table: half vectors and light directions integrate to the same, for each G") {
     for (BrdfG g : {BrdfG::correlated, BrdfG::smith, BrdfG::karis})
         for (double NdotV : {0.1, 0.5, 0.95})
