@@ -1,10 +1,10 @@
 #include "domelight/parallel.h"
 #include "domelight/preview.h"
 #include "domelight/projection.h"
+#include "domelight/spherical_harmonics.h"
 
 #include "image/draw.h"
 #include "preview/preview_map.h"
-#include "preview/preview_sh.h"
 #include "preview/tonemap.h"
 
 #include <fmt/format.h>
@@ -38,6 +38,24 @@ struct Text {
 
 std::string number(double v) {
     return fmt::format("{:.3g}", v);
+}
+
+/// E / pi of radiance coefficients as a lat-long map. Negative lobes are kept; bands from the 17th on are too fine for
+/// the sheet.
+FilteredMap irradiance_picture(std::span<const Vec3d> radiance) {
+    const std::vector<Vec3d> sh = sh_irradiance_over_pi(radiance.first(std::min<std::size_t>(radiance.size(), 256)));
+    const int rows = sh.size() > 25 ? 96 : 48;
+    FilteredMap picture;
+    picture.latlong = ImageF(2 * rows, rows, 3);
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < 2 * rows; ++x) {
+            const Vec3d v = sh_evaluate(sh, latlong_direction({(x + 0.5) / (2 * rows), (y + 0.5) / rows}));
+            float* p = picture.latlong.at(x, y);
+            p[0] = float(v.x);
+            p[1] = float(v.y);
+            p[2] = float(v.z);
+        }
+    return picture;
 }
 
 /// Lays the sheet out from the top down, collecting panels and texts, and draws them at the end.
@@ -100,15 +118,7 @@ Sheet::Sheet(const PreviewInput& input) : in_(input), width_(std::max(input.widt
             if (in_.irradiance_over_pi) irradiance_ = PreviewMap(*in_.irradiance_over_pi, 64);
         } else if (i == 2) {
             if (in_.sh.empty()) return;
-            const int rows = in_.sh.size() > 25 ? 96 : 48;
-            FilteredMap picture;
-            picture.latlong = ImageF(2 * rows, rows, 3);
-            const auto values = sh_irradiance_picture(in_.sh, rows);
-            for (std::size_t k = 0; k < values.size(); ++k) {
-                const double v[3] = {values[k].x, values[k].y, values[k].z};
-                std::copy(v, v + 3, picture.latlong.pixels().begin() + std::ptrdiff_t(3 * k));
-            }
-            sh_ = PreviewMap(picture, 128);
+            sh_ = PreviewMap(irradiance_picture(in_.sh), 128);
         } else {
             levels_[i - 3] = PreviewMap(*in_.specular[i - 3].map, 128);
         }

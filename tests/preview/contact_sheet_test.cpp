@@ -3,7 +3,6 @@
 #include "domelight/sky.h"
 
 #include "preview/preview_map.h"
-#include "preview/preview_sh.h"
 #include "preview/tonemap.h"
 #include "test.h"
 
@@ -149,21 +148,4 @@ TEST_CASE("PreviewMap: a constant stays constant across edges, and a direction f
     const PreviewMap latlong(axes.view(), 64);
     const Vec3d d = latlong_direction({10.5 / 128, 20.5 / 64});
     CHECK(latlong.sample(Vec3f(d)).x == doctest::Approx(axes.at(10, 20)[0]).epsilon(1e-3));
-}
-
-TEST_CASE("sh_irradiance_picture: a constant and a cosine by their closed forms") {
-    // Radiance 1: a_00 = sqrt(4 pi), E / pi = 1. Radiance d.y: a_1,-1 = sqrt(4 pi / 3), E / pi = 2/3 d.y. Radiance
-    // P_2(z): E / pi = P_2 / 4.
-    std::vector<Vec3d> sh(9);
-    sh[0] = Vec3d(1, 1, 1) * std::sqrt(4 * k_pi);
-    sh[1] = Vec3d(1, 0, 0) * std::sqrt(4 * k_pi / 3);
-    sh[6] = Vec3d(0, 1, 0) * std::sqrt(4 * k_pi / 5);
-    const auto picture = sh_irradiance_picture(sh, 16);
-    for (int y = 0; y < 16; ++y)
-        for (int x = 0; x < 32; ++x) {
-            const Vec3d d = latlong_direction({(x + 0.5) / 32, (y + 0.5) / 16}), v = picture[y * 32 + x];
-            CHECK(v.x == doctest::Approx(1 + 2.0 / 3 * d.y));
-            CHECK(v.y == doctest::Approx(1 + 0.25 * (1.5 * d.z * d.z - 0.5)));
-            CHECK(v.z == doctest::Approx(1));
-        }
 }
