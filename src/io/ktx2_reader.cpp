@@ -137,8 +137,10 @@ constexpr std::uint64_t k_zstd_max_ratio = 32768;
 Result<Bytes> inflate(std::span<const std::uint8_t> packed, std::uint64_t bytes) {
     const unsigned long long stated = ZSTD_getFrameContentSize(packed.data(), packed.size());
     if (stated == ZSTD_CONTENTSIZE_ERROR) return Error{"is not zstd data", "", "the file is damaged"};
-    if ((stated != ZSTD_CONTENTSIZE_UNKNOWN && stated > bytes) || bytes / k_zstd_max_ratio > packed.size())
+    if (stated != ZSTD_CONTENTSIZE_UNKNOWN && stated != bytes)
         return Error{"holds another number of bytes than its size needs", "", "the file is damaged"};
+    if (bytes / k_zstd_max_ratio > packed.size())
+        return Error{"is packed into fewer bytes than its size can need", "", "the file is damaged"};
     Bytes out(static_cast<std::size_t>(bytes));
     const std::size_t n = ZSTD_decompress(out.data(), out.size(), packed.data(), packed.size());
     if (ZSTD_isError(n)) return Error{std::string("zstd: ") + ZSTD_getErrorName(n), "", "the file is damaged"};

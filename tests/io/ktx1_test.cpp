@@ -61,6 +61,7 @@ TEST_CASE("ktx1: a file of the other endianness and padded RGB16F rows") {
     const auto texture = ktx1_texture(source);
     REQUIRE(texture);
     CHECK(texture->encoding == Encoding::rgba16f);
+    CHECK((texture->levels[0][6] | texture->levels[0][7] << 8) == 0x3c00);  // alpha is filled in as 1
     const ImageF image = decode_texture(*texture, 0, 0);
     CHECK(image.at(0, 0)[0] == 1.0f);
     CHECK(image.at(1, 0)[0] == 1.1875f);
