@@ -9,6 +9,8 @@
 
 #include "domelight/domelight.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -48,7 +50,7 @@ std::vector<Cubemap> read_chain(const std::filesystem::path& place, int levels) 
     for (int l = 0; l < levels; ++l) {
         std::vector<std::filesystem::path> faces;
         for (const char* name : {"px", "nx", "py", "ny", "pz", "nz"}) {
-            faces.push_back(place / ("m" + std::to_string(l) + "_" + name + ".exr"));
+            faces.push_back(place / fmt::format("m{}_{}.exr", l, name));
         }
         chain.push_back(take(open_environment(faces)).cube);
     }
@@ -152,7 +154,8 @@ std::string matrix_name(const Mat3& m) {
     std::string name;
     for (const Vec3d& row : m.row) {
         const int axis = row.x != 0 ? 0 : row.y != 0 ? 1 : 2;
-        name += (row.x + row.y + row.z > 0 ? "+" : "-") + std::string(1, "xyz"[axis]);
+        name += row.x + row.y + row.z > 0 ? '+' : '-';
+        name += "xyz"[axis];
     }
     return name;
 }
