@@ -114,7 +114,7 @@ AlignedResampler::AlignedResampler(int width, int height, int size, const Aligne
     ring_.capacity = int(std::bit_ceil(unsigned(span + batch_)));
     ring_.width = width;
     ring_.height = height;
-    ring_.stride = 4 * (std::ptrdiff_t(width) + simd::k_ring_padding);
+    ring_.stride = 4 * ring_.quarter_stride() + 16 * 7;
     ring_data_ = AlignedArray<float>(ring_.stride * ring_.capacity, false);
     ring_.data = ring_data_.data();
 }
@@ -267,11 +267,17 @@ void AlignedResampler::copy_rows(ImageView<const float> rows) {
     const auto copy = [&](int y) {
         const float* from = rows.row(y);
         float* to = ring_data_.data() + ((received_ + y) & (ring_.capacity - 1)) * ring_.stride;
-        // The fourth float is the next texel's first, finite like the others.
-        for (int x = 0; x + 1 < width_; ++x) std::memcpy(to + 4 * x, from + 3 * x, 4 * sizeof(float));
-        std::memcpy(to + 4 * (width_ - 1), from + 3 * (width_ - 1), 3 * sizeof(float));
-        to[4 * width_ - 1] = 0;
-        for (int x = 0; x < simd::k_ring_padding; ++x) std::copy_n(to + 4 * (x % width_), 4, to + 4 * (width_ + x));
+        const int quarter = ring_.quarter();
+        for (int q = 0; q * quarter < width_; ++q, to += ring_.quarter_stride()) {
+            const int first = q * quarter, count = std::min(quarter, width_ - first);
+            // A texel's fourth float is the next one's first, finite like the others.
+            const int whole = first + count < width_ ? count : count - 1;
+            for (int x = 0; x < whole; ++x) std::memcpy(to + 4 * x, from + 3 * (first + x), 4 * sizeof(float));
+            for (int x = whole; x < count + simd::k_ring_padding; ++x) {
+                std::memcpy(to + 4 * x, from + 3 * ((first + x) % width_), 3 * sizeof(float));
+                to[4 * x + 3] = 0;
+            }
+        }
     };
     parallel_ranges(rows.height, 8, std::int64_t(rows.height) * width_ < 1 << 16 ? 1 : threads_,
                     [&](int begin, int end) {
@@ -309,8 +315,9 @@ void AlignedResampler::store_pole_texel(bool south) {
         const Tile tile = builder.build_pole_quarter(group.columns);
         for (const PhaseGroup::Member& member : group.members) {
             const simd::StencilInstance place{(member.origin % width_ + width_) % width_, 1, member.quarter, 0, 0};
-            simd::apply_stencils({tile.stencils, tile.weights, 1, 1, tile.first_column, tile.last_column},
-                                 std::span(&place, 1), ring_, south, quarters);
+            simd::apply_stencils(
+                {tile.stencils, tile.weights, 1, 1, tile.first_row, tile.last_row, tile.first_column, tile.last_column},
+                std::span(&place, 1), ring_, south, quarters);
         }
     }
     for (int c = 0; c < 3; ++c)
@@ -343,9 +350,15 @@ void AlignedResampler::run(const Job& job) {
 void AlignedResampler::apply(const PlacedTile& tile, std::span<const simd::StencilInstance> instances, bool south) {
     for ([[maybe_unused]] const simd::Stencil& s : tile.stencils.stencils)
         assert(s.row >= tile.first_row && s.row + s.rows - 1 <= tile.last_row);
-    const simd::StencilBlock block{tile.stencils.stencils,        tile.stencils.weights,
-                                   tile.shape.i1 - tile.shape.i0, tile.shape.j1 - tile.shape.j0,
-                                   tile.stencils.first_column,    tile.stencils.last_column};
+    const Tile& t = tile.stencils;
+    const simd::StencilBlock block{t.stencils,
+                                   t.weights,
+                                   tile.shape.i1 - tile.shape.i0,
+                                   tile.shape.j1 - tile.shape.j0,
+                                   t.first_row,
+                                   t.last_row,
+                                   t.first_column,
+                                   t.last_column};
     simd::apply_stencils(block, instances, ring_, south, out_.pixels().data());
 }
 

@@ -193,12 +193,12 @@ void TileBuilder::add_polar_lines(const TileShape& shape, const ColumnPhase& col
 /// Adds a run's pieces to one of its texels.
 void TileBuilder::add_run(const Run& run, int texel, double sign) {
     const Box& box = boxes_[texel];
-    const int cells = box.columns();
+    const int cells = box.columns(), columns = box.node_columns();
     double* nodes = nodes_.data() + box.nodes;
     double* widths = widths_.data() + box.widths;
     for (int p = run.first; p < run.last; ++p) {
         const int c = column_[p] - box.column0, j = row_[p] - box.row0;
-        double *above = nodes + j * (cells + 1) + c, *below = above + cells + 1, *width = widths + 2 * (j * cells + c);
+        double *above = nodes + j * columns + c, *below = above + columns, *width = widths + 2 * (j * cells + c);
         for (int side = 0; side < 2; ++side) above[side] += sign * upper_[2 * p + side];
         for (int side = 0; side < 2; ++side) below[side] += sign * lower_[2 * p + side];
         for (int side = 0; side < 2; ++side) width[side] += sign * width_[2 * p + side];
@@ -211,7 +211,7 @@ void TileBuilder::scatter() {
         b.nodes = nodes;
         b.widths = widths;
         if (b.empty()) continue;
-        nodes += std::size_t(b.columns() + 1) * (b.rows() + 1);
+        nodes += std::size_t(b.node_columns()) * (b.rows() + 1);
         widths += std::size_t(b.columns()) * b.rows() * 2;
     }
     nodes_.assign(nodes, 0.0);
@@ -231,12 +231,12 @@ simd::Stencil TileBuilder::shape_of(const Box& box, bool mirrored) const {
         first = std::min(first, last_row - last);
         last = last_row - first;
     }
-    return {first, box.column0, last - first + 1, (box.columns() + 2) / 2 * 2, 0};
+    return {first, box.column0, last - first + 1, box.node_columns(), 0};
 }
 
 /// Adds to every cell what lies in it above the pieces of lower cells.
 void TileBuilder::sum_cells(const Box& box) {
-    const int cells = box.columns(), columns = cells + 1;
+    const int cells = box.columns(), columns = box.node_columns();
     double* nodes = nodes_.data() + box.nodes;
     const double* widths = widths_.data() + box.widths;
     for (int c = 0; c < cells; ++c) {
@@ -256,26 +256,27 @@ void TileBuilder::sum_cells(const Box& box) {
 
 /// The weights of a texel, scaled by 1 / `total`, or (0) to the sum 1.
 void TileBuilder::store_weights(const Box& box, const simd::Stencil& s, bool mirrored, double total, float* to) {
-    const int columns = box.columns() + 1, last_row = grid_.height - 1;
+    const int columns = s.columns, count = s.rows * columns, last_row = grid_.height - 1;
     const double* from = nodes_.data() + box.nodes;
     if (mirrored || s.rows != box.rows() + 1) {
-        folded_.assign(std::size_t(s.rows) * columns, 0.0);
+        folded_.assign(count, 0.0);
         for (int j = 0; j <= box.rows(); ++j)
             for (int c = 0; c < columns; ++c) {
                 const int row = std::clamp(box.row0 + j, 0, last_row);
-                folded_[std::size_t(row - s.row) * columns + c] += from[j * columns + c];
-                if (mirrored) folded_[std::size_t(last_row - row - s.row) * columns + c] += from[j * columns + c];
+                folded_[(row - s.row) * columns + c] += from[j * columns + c];
+                if (mirrored) folded_[(last_row - row - s.row) * columns + c] += from[j * columns + c];
             }
         from = folded_.data();
     }
     // Below zero only by rounding.
-    double sum = 0;
-    for (int k = 0; k < s.rows * columns; ++k) sum += std::max(0.0, from[k]);
-    const double scale = 1 / (total > 0 ? total : sum);
-    for (int r = 0; r < s.rows; ++r, from += columns, to += s.columns) {
-        for (int c = 0; c < columns; ++c) to[c] = float(std::max(0.0, from[c]) * scale);
-        if (s.columns > columns) to[columns] = 0;
+    const auto weight = [&](int k) { return from[k] > 0 ? from[k] : 0; };
+    double even = 0, odd = 0;
+    for (int k = 0; k < count; k += 2) {
+        even += weight(k);
+        odd += weight(k + 1);
     }
+    const double scale = 1 / (total > 0 ? total : even + odd);
+    for (int k = 0; k < count; ++k) to[k] = float(weight(k) * scale);
 }
 
 /// The tile from the collected pieces; texels from `first_mirrored` on are one half of what the equator divides.
@@ -288,10 +289,13 @@ Tile TileBuilder::finish(int first_mirrored, double total) {
     }
     const std::size_t header = boxes_.size() * sizeof(simd::Stencil);
     std::byte* memory = arena_.allocate(header + weights * sizeof(float));
+    constexpr int least = std::numeric_limits<int>::min(), greatest = std::numeric_limits<int>::max();
     Tile tile{{reinterpret_cast<simd::Stencil*>(memory), boxes_.size()},
               reinterpret_cast<float*>(memory + header),
-              std::numeric_limits<int>::max(),
-              std::numeric_limits<int>::min()};
+              greatest,
+              least,
+              greatest,
+              least};
     float* to = reinterpret_cast<float*>(memory + header);
     std::uint32_t first = 0;
     for (std::size_t k = 0; k < boxes_.size(); ++k) {
@@ -302,6 +306,8 @@ Tile TileBuilder::finish(int first_mirrored, double total) {
         sum_cells(box);
         store_weights(box, s, mirrored, total, to + first);
         first += s.rows * s.columns;
+        tile.first_row = std::min(tile.first_row, s.row);
+        tile.last_row = std::max(tile.last_row, s.row + s.rows - 1);
         tile.first_column = std::min(tile.first_column, s.column);
         tile.last_column = std::max(tile.last_column, s.column + s.columns - 1);
     }

@@ -70,7 +70,7 @@ class StencilArena {
 struct Tile {
     std::span<simd::Stencil> stencils;
     const float* weights = nullptr;
-    int first_column = 0, last_column = 0;  ///< of all stencils
+    int first_row = 0, last_row = 0, first_column = 0, last_column = 0;  ///< the part of the source that they touch
 };
 
 /// Computes the weights of output texels: the exact overlap of each with every source texel's tent.
@@ -107,6 +107,7 @@ class TileBuilder {
         std::size_t nodes = 0, widths = 0;
         int columns() const { return column1 - column0 + 1; }
         int rows() const { return row1 - row0 + 1; }
+        int node_columns() const { return (columns() + 2) / 2 * 2; }  ///< one more than cells, made even
         bool empty() const { return column1 < column0; }
     };
 

@@ -4,6 +4,7 @@
 #define HWY_TARGET_INCLUDE "simd/area_apply.cpp"
 #include "simd/area_apply.h"
 
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -30,6 +31,9 @@ HWY_INLINE float spread(const float* w) {
 }
 HWY_INLINE Sum add(Sum a, Sum b) {
     return {{a.rgb[0] + b.rgb[0], a.rgb[1] + b.rgb[1], a.rgb[2] + b.rgb[2]}};
+}
+HWY_INLINE Sum subtract(Sum a, Sum b) {
+    return {{a.rgb[0] - b.rgb[0], a.rgb[1] - b.rgb[1], a.rgb[2] - b.rgb[2]}};
 }
 HWY_INLINE Sum multiply_add(float weight, const float* texel, Sum sum) {
     for (int c = 0; c < 3; ++c) sum.rgb[c] += weight * texel[c];
@@ -61,6 +65,9 @@ HWY_INLINE Sum spread(const float* w) {
     else
         return hn::Set(d, w[0]);
 }
+HWY_INLINE Sum subtract(Sum a, Sum b) {
+    return hn::Sub(a, b);
+}
 HWY_INLINE Sum add(Sum a, Sum b) {
     return hn::Add(a, b);
 }
@@ -81,48 +88,74 @@ HWY_INLINE void store(V total, float* out) {
 #endif
 
 /// Offset of the memory of source column `column`, wrapped.
-HWY_INLINE std::ptrdiff_t wrapped(int column, int width) {
-    while (column < 0) column += width;
-    while (column >= width) column -= width;
-    return 4 * std::ptrdiff_t(column);
+HWY_INLINE std::ptrdiff_t wrapped(int column, const RowRing& ring) {
+    while (column < 0) column += ring.width;
+    while (column >= ring.width) column -= ring.width;
+    return ring.place(column);
 }
 
-/// Adds weights * texels of `columns` source columns; `at` is where an instance's stencil column 0 lies, so that in
+/// The sums of up to four instances, by name: arrays would end up in memory.
+struct Sums {
+    Sum a, b, c, d;
+};
+
+/// Sums weights * texels of `columns` source columns; `at` is where an instance's stencil column 0 lies, so that in
 /// memory its texels go on from at + 4 * column, or from at - 4 * column leftwards.
 template <int count, bool reverse>
-HWY_INLINE void sum_columns(const Stencil& s, int column, int columns, const float* w, const float* const (&at)[count],
-                            const RowRing& ring, bool flipped, Sum (&sum)[count]) {
+HWY_INLINE Sums sum_columns(const Stencil& s, int column, int columns, const float* w, const float* const (&at)[count],
+                            const RowRing& ring, bool flipped) {
     const int mask = ring.capacity - 1;
+    Sum a = zero(), b = a, c = a, d = a;
+    const std::ptrdiff_t start = (reverse ? -4 : 4) * std::ptrdiff_t(column) - (reverse ? 4 * (k_texels - 1) : 0);
     for (int r = 0; r < s.rows; ++r, w += s.columns) {
         const int row = flipped ? ring.height - 1 - (s.row + r) : s.row + r;
-        const std::ptrdiff_t offset = (row & mask) * ring.stride + (reverse ? -4 : 4) * std::ptrdiff_t(column) -
-                                      (reverse ? 4 * (k_texels - 1) : 0);
-        for (int c = 0; c < columns; c += k_texels) {
-            const auto weight = spread<reverse>(w + c);
-            const std::ptrdiff_t place = offset + (reverse ? -4 * c : 4 * c);
-            for (int i = 0; i < count; ++i) sum[i] = multiply_add(weight, at[i] + place, sum[i]);
+        std::ptrdiff_t place = (row & mask) * ring.stride + start;
+        for (int x = 0; x < columns; x += k_texels, place += reverse ? -4 * k_texels : 4 * k_texels) {
+            const auto weight = spread<reverse>(w + x);
+            a = multiply_add(weight, at[0] + place, a);
+            if constexpr (count > 1) b = multiply_add(weight, at[1] + place, b);
+            if constexpr (count > 2) c = multiply_add(weight, at[2] + place, c);
+            if constexpr (count > 3) d = multiply_add(weight, at[3] + place, d);
         }
     }
+    return {a, b, c, d};
 }
 
-/// A stencil so wide that the padding behind the rows may not hold it: in parts, each wrapped by itself.
+/// A long sum and what its rounding lost.
+struct LongSum {
+    Sum total, lost;
+};
+
+/// Adds with compensation (Knuth's exact sum of two).
+HWY_INLINE LongSum add_part(LongSum sum, Sum part) {
+    const Sum next = add(sum.total, part), of_part = subtract(next, sum.total);
+    const Sum error = add(subtract(sum.total, subtract(next, of_part)), subtract(part, of_part));
+    return {next, add(sum.lost, error)};
+}
+
+/// A wide stencil, as the texels near a pole have: in parts, each wrapped by itself, and summed so that thousands of
+/// floats still make a constant to 1e-6.
 template <int count, bool reverse>
-void sum_wide(const Stencil& s, const float* weights, const StencilInstance* instances, const RowRing& ring,
-              bool flipped, Sum (&total)[count]) {
-    for (int c0 = 0; c0 < s.columns; c0 += k_ring_padding) {
-        const int columns = s.columns - c0 < k_ring_padding ? s.columns - c0 : k_ring_padding, column = s.column + c0;
+Sums sum_wide(const Stencil& s, const float* weights, const StencilInstance* instances, const RowRing& ring,
+              bool flipped) {
+    constexpr int part_columns = 16;
+    LongSum a{zero(), zero()}, b = a, c = a, d = a;
+    for (int c0 = 0; c0 < s.columns; c0 += part_columns) {
+        const int columns = s.columns - c0 < part_columns ? s.columns - c0 : part_columns, column = s.column + c0;
         const float* at[count];
-        Sum sum[count];
         for (int i = 0; i < count; ++i) {
             const int origin = instances[i].column_origin;
-            at[i] = ring.data + (reverse ? wrapped(origin - (column + columns - 1), ring.width) +
-                                               4 * std::ptrdiff_t(column + columns - 1)
-                                         : wrapped(origin + column, ring.width) - 4 * std::ptrdiff_t(column));
-            sum[i] = zero();
+            at[i] = ring.data +
+                    (reverse ? wrapped(origin - (column + columns - 1), ring) + 4 * std::ptrdiff_t(column + columns - 1)
+                             : wrapped(origin + column, ring) - 4 * std::ptrdiff_t(column));
         }
-        sum_columns<count, reverse>(s, column, columns, weights + s.first + c0, at, ring, flipped, sum);
-        for (int i = 0; i < count; ++i) total[i] = add(total[i], sum[i]);
+        const Sums part = sum_columns<count, reverse>(s, column, columns, weights + s.first + c0, at, ring, flipped);
+        a = add_part(a, part.a);
+        b = add_part(b, part.b);
+        c = add_part(c, part.c);
+        d = add_part(d, part.d);
     }
+    return {add(a.total, a.lost), add(b.total, b.lost), add(c.total, c.lost), add(d.total, d.lost)};
 }
 
 template <int count, bool reverse>
@@ -133,21 +166,33 @@ void apply(const StencilBlock& block, const StencilInstance* instances, const Ro
     const float* at[count];
     for (int i = 0; i < count; ++i) {
         const int origin = instances[i].column_origin;
-        at[i] = ring.data +
-                (reverse ? wrapped(origin - block.last_column, ring.width) + 4 * std::ptrdiff_t(block.last_column)
-                         : wrapped(origin + block.first_column, ring.width) - 4 * std::ptrdiff_t(block.first_column));
+        at[i] =
+            ring.data + (reverse ? wrapped(origin - block.last_column, ring) + 4 * std::ptrdiff_t(block.last_column)
+                                 : wrapped(origin + block.first_column, ring) - 4 * std::ptrdiff_t(block.first_column));
     }
+    // The rows are short and far apart: no hardware guesses them.
+    if (narrow)
+        for (int row = block.first_row; row <= block.last_row; ++row) {
+            const std::ptrdiff_t offset = ((flipped ? ring.height - 1 - row : row) & (ring.capacity - 1)) * ring.stride;
+            for (int i = 0; i < count; ++i) {
+                const float* from =
+                    at[i] + offset + 4 * std::ptrdiff_t(reverse ? -block.last_column : block.first_column);
+                for (int x = 0; x < 4 * (block.last_column - block.first_column + 1) + 16; x += 16)
+                    hwy::Prefetch(from + x);
+            }
+        }
     for (int j = 0; j < block.rows; ++j)
         for (int i = 0; i < block.columns; ++i, ++s) {
-            Sum total[count];
-            for (int k = 0; k < count; ++k) total[k] = zero();
-            if (narrow)
-                sum_columns<count, reverse>(*s, s->column, s->columns, block.weights + s->first, at, ring, flipped,
-                                            total);
-            else
-                sum_wide<count, reverse>(*s, block.weights, instances, ring, flipped, total);
-            for (int k = 0; k < count; ++k)
-                store(total[k], out + 3 * (instances[k].out + i * instances[k].out_i + j * instances[k].out_j));
+            const Sums total = narrow ? sum_columns<count, reverse>(*s, s->column, s->columns, block.weights + s->first,
+                                                                    at, ring, flipped)
+                                      : sum_wide<count, reverse>(*s, block.weights, instances, ring, flipped);
+            const auto put = [&](int k, const Sum& sum) {
+                store(sum, out + 3 * (instances[k].out + i * instances[k].out_i + j * instances[k].out_j));
+            };
+            put(0, total.a);
+            if constexpr (count > 1) put(1, total.b);
+            if constexpr (count > 2) put(2, total.c);
+            if constexpr (count > 3) put(3, total.d);
         }
 }
 

@@ -6,16 +6,31 @@
 
 namespace domelight::simd {
 
-/// Source rows in memory: four floats a texel (RGB and one of no meaning), the first `padding` texels again behind the
-/// last.
+/// Source rows in memory: four floats a texel (RGB and one of no meaning). A row lies in quarters of ceil(width / 4)
+/// columns (the last one shorter), each followed by the first `k_ring_padding` columns beyond it, wrapping: so short
+/// runs of columns lie together, and the same place in each quarter does not fall on the same lines of a cache.
 struct RowRing {
     const float* data = nullptr;
     std::ptrdiff_t stride = 0;  ///< floats from one row to the next
     int capacity = 0;           ///< rows, a power of two: row j is at j & (capacity - 1)
     int width = 0;
     int height = 0;  ///< of the whole source
+
+    int quarter() const { return (width + 3) / 4; }
+    std::ptrdiff_t quarter_stride() const;
+    /// Offset of column 0 .. width - 1 in a row.
+    std::ptrdiff_t place(int column) const {
+        std::ptrdiff_t offset = 0;
+        for (; column >= quarter(); column -= quarter()) offset += quarter_stride();
+        return offset + 4 * std::ptrdiff_t(column);
+    }
 };
 inline constexpr int k_ring_padding = 64;
+
+inline std::ptrdiff_t RowRing::quarter_stride() const {
+    // Some lines more than a multiple of 4 KB (1024 floats).
+    return (4 * std::ptrdiff_t(quarter() + k_ring_padding) + 1023) / 1024 * 1024 + 16 * 11;
+}
 
 /// The weights of one output texel: rows x columns source texels, the columns counted from an instance's own origin.
 struct Stencil {
@@ -37,7 +52,7 @@ struct StencilBlock {
     std::span<const Stencil> stencils;
     const float* weights = nullptr;
     int columns = 0, rows = 0;
-    int first_column = 0, last_column = 0;  ///< the least and the greatest source column of all stencils
+    int first_row = 0, last_row = 0, first_column = 0, last_column = 0;  ///< the part of the source that they touch
 };
 
 /// Writes sum weight * source of every texel of the block and every instance. `flipped`: the source upside down.
