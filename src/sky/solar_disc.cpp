@@ -44,20 +44,35 @@ double half_width(double e, double centre) {
 }
 
 /// Calls f(elevation, weight) for quadrature nodes over the part [from, to] of the disc at `centre` (weights include
-/// cos e, for solid angles). With e = middle + half sin(pi s / 2) on each piece, the square roots at the disc's ends
-/// become smooth in s.
+/// cos e, for solid angles).
+///
+/// Piece by piece of the extinction table, which is straight between its nodes: near the horizon it falls so steeply
+/// that nodes across them would give each grid of texels another sum. Pieces at the disc's ends, where its width goes
+/// as a square root, take e = middle + half sin(pi s / 2), which makes that smooth in s.
 template <typename F>
 void for_each_latitude(double centre, double from, double to, F f) {
-    // Above k_pi - centre - radius the whole circle of latitude is on the disc (the zenith is): another kink.
+    const double first = centre - k_sun_radius, step = 2 * k_sun_radius / (k_extinction_nodes - 1);
+    // Above k_pi - centre - radius the whole circle of latitude is on the disc (the zenith is): another root.
     const double full = k_pi - centre - k_sun_radius;
-    std::array<double, 3> edge{from, std::clamp(full, from, to), to};
-    for (int piece = 0; piece < 2; ++piece) {
-        const double middle = 0.5 * (edge[piece] + edge[piece + 1]), half = 0.5 * (edge[piece + 1] - edge[piece]);
-        if (half <= 0) continue;
-        for (const Node& n : k_gauss_12) {
-            const double e = middle + half * std::sin(k_pi / 2 * n.at);
-            f(e, n.weight * half * (k_pi / 2) * std::cos(k_pi / 2 * n.at) * std::cos(e));
-        }
+    const auto between = [&](double low, double high, bool rooted) {
+        const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
+        if (half <= 0) return;
+        if (!rooted)
+            for (const Node& n : k_gauss_3) f(middle + half * n.at, n.weight * half * std::cos(middle + half * n.at));
+        else
+            for (const Node& n : k_gauss_12) {
+                const double e = middle + half * std::sin(k_pi / 2 * n.at);
+                f(e, n.weight * half * (k_pi / 2) * std::cos(k_pi / 2 * n.at) * std::cos(e));
+            }
+    };
+    const int begin = std::clamp(int((from - first) / step), 0, k_extinction_nodes - 2);
+    for (int i = begin; i < k_extinction_nodes - 1 && first + i * step < to; ++i) {
+        const double low = std::max(from, first + i * step),
+                     high = i == k_extinction_nodes - 2 ? to : std::min(to, first + (i + 1) * step);
+        const double split = std::clamp(full, low, high);
+        const bool rooted = i < 2 || i >= k_extinction_nodes - 3 || std::abs(0.5 * (low + high) - full) < 2.5 * step;
+        between(low, split, rooted);
+        between(split, high, rooted);
     }
 }
 

@@ -135,10 +135,10 @@ TEST_CASE("sun disc: coverage by brute force") {
     const int height = 360, width = 720, n = 400;
     std::vector<float> row(3 * width);
     const double azimuth = 0.4 / 180 * k_pi;
-    for (int y : {77, 78}) {
+    for (int y : {154, 155}) {
         std::fill(row.begin(), row.end(), 0.0f);
         disc.add_to_row(y, width, height, azimuth, row.data());
-        for (int x : {359, 360, 361}) {
+        for (int x : {360, 361}) {
             double sum = 0, weight = 0;
             for (int j = 0; j < n; ++j)
                 for (int i = 0; i < n; ++i) {
