@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "domelight/large_allocator.h"
@@ -88,6 +89,8 @@ class Cubemap {
   public:
     Cubemap() = default;
     explicit Cubemap(int size, int channels = 3) : faces_(size, 6 * size, channels) {}
+    /// From a strip, size x 6 size.
+    explicit Cubemap(Image<float> strip) : faces_(std::move(strip)) { assert(faces_.height() == 6 * faces_.width()); }
 
     int size() const { return faces_.width(); }
     int channels() const { return faces_.channels(); }

@@ -11,6 +11,8 @@ namespace domelight {
 /// which takes longer than filling it. Free it with the same size. Throws std::bad_alloc.
 void* allocate_large(std::size_t bytes);
 void free_large(void* memory, std::size_t bytes) noexcept;
+/// Whether what allocate_large returns is zero already.
+extern const bool k_large_is_zero;
 
 /// An allocator for pixels: large arrays by allocate_large, and elements without a given value are not written (their values are undefined).
 template <typename T>

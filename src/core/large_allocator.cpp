@@ -19,14 +19,18 @@ namespace domelight {
 
 #ifdef DOMELIGHT_PLAIN_MEMORY
 
+const bool k_large_is_zero = false;
+
 void* allocate_large(std::size_t bytes) {
-    return ::operator new(bytes);
+    return ::operator new(bytes, std::align_val_t(64));
 }
 void free_large(void* memory, std::size_t) noexcept {
-    ::operator delete(memory);
+    ::operator delete(memory, std::align_val_t(64));
 }
 
 #else
+
+const bool k_large_is_zero = true;
 
 namespace {
 

@@ -9,6 +9,13 @@
 
 namespace domelight {
 
+namespace {
+
+/// A texel smaller than this part of 1 / L is a point to degrees around L: its tent's second moment, (tau L)^2 / 12, is below 1 %.
+constexpr double k_point_like = 0.3;
+
+}  // namespace
+
 BrightTexels::BrightTexels(int width, int height, int most) : width_(width), height_(height), most_(most) { heap_.reserve(most + 1); }
 
 void BrightTexels::add_rows(ImageView<const float> rows) {
@@ -42,7 +49,14 @@ BrightPoints BrightTexels::points(const Vec3d& mean, double least_share, int ban
     const int nodes = 1 + int(k_pi / height_ * band_limit);
     if (nodes > 16) return {};
     BrightPoints points;
-    for (const Texel& t : texels) add_tent_nodes(points, width_, height_, t.x, t.y, t.rgb, nodes);
+    for (const Texel& t : texels) {
+        if (k_pi / height_ * band_limit < k_point_like) {
+            const double theta = k_pi * (t.y + 0.5) / height_, s = std::sin(theta), phi = 2 * k_pi * (t.x + 0.5) / width_ - k_pi;
+            points.add({s * std::cos(phi), std::cos(theta), s * std::sin(phi)}, latlong_solid_angle(t.y, width_, height_), t.rgb);
+        } else {
+            add_tent_nodes(points, width_, height_, t.x, t.y, t.rgb, nodes);
+        }
+    }
     return points;
 }
 

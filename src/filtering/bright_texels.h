@@ -31,7 +31,7 @@ struct BrightPoints {
 /// texels exactly, is what the expansion is still short of (ResidualKernel).
 class BrightTexels {
   public:
-    BrightTexels(int width, int height, int most = 256);
+    BrightTexels(int width, int height, int most = 1024);
 
     void add_rows(ImageView<const float> rows);
     /// The texels with more than `least_share` of the power of all, each as the nodes of a Gauss-Legendre rule over its tent, fine enough for

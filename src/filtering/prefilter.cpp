@@ -21,7 +21,7 @@ constexpr int k_chunk_rows = 64;
 const Error k_cancelled{"cancelled", "", ""};
 
 /// A texel with less than this part of all power leaves nothing that can be seen.
-constexpr double k_least_share = 2e-5;
+constexpr double k_least_share = 1e-4;
 
 std::vector<std::unique_ptr<AreaResampler>> make_mirrors(const FilterOptions& options, int width, int height) {
     std::vector<std::unique_ptr<AreaResampler>> mirrors(options.specular.size());
@@ -40,8 +40,7 @@ FilteredMap as_map(Layout layout, ImageF image) {
     if (layout == Layout::latlong) {
         map.latlong = std::move(image);
     } else {
-        map.cube = Cubemap(image.width());
-        std::copy(image.pixels().begin(), image.pixels().end(), map.cube.pixels().begin());
+        map.cube = Cubemap(std::move(image));
     }
     return map;
 }
