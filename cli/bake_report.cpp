@@ -15,6 +15,11 @@ std::string shown_name(const BakedMap& map) {
     return first.empty() ? "" : first.front().file + (map.levels.size() > 1 || first.size() > 1 ? ", ..." : "");
 }
 
+/// Two digits, but never 1.5e+03.
+std::string percent(double part) {
+    return part < 1 ? fmt::format("{:.2g} %", 100 * part) : fmt::format("{:.0f} %", 100 * part);
+}
+
 void print_map(const BakedMap& map) {
     const int size = map.levels.front().size;
     const std::string shape =
@@ -36,8 +41,8 @@ void print_summary(const BakeOutcome& outcome) {
         fmt::print("{}: {} for {}\n", target.folder.string(),
                    outcome.environment.empty() ? "the built-in sky" : outcome.environment.front(), target.target);
         for (const BakedMap& map : target.maps) print_map(map);
-        fmt::print("  {:<28}harmonics: {} bands; E is off by {:.2g} % RMS, {:.2g} % at most\n",
-                   target.sh.files.front().file, target.sh.bands, 100 * target.sh.rms_error, 100 * target.sh.max_error);
+        fmt::print("  {:<28}harmonics: {} bands; E is off by {} RMS, {} at most\n", target.sh.files.front().file,
+                   target.sh.bands, percent(target.sh.rms_error), percent(target.sh.max_error));
         if (!target.brdf.file.file.empty())
             fmt::print("  {:<28}BRDF table: {}^2, {}, {}\n", target.brdf.file.file, target.brdf.size,
                        target.brdf.encoding, brdf_form_name(target.brdf.form));

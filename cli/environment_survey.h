@@ -16,7 +16,7 @@ struct BrightLight {
     double azimuth_deg = 0;  ///< from +X towards +Z
     double elevation_deg = 0;
     double share = 0;       ///< of the sphere's radiant power (luminance)
-    double radius_deg = 0;  ///< of a disc of its solid angle
+    double radius_deg = 0;  ///< of a disc as large as what is at least half as bright as its peak
 };
 
 /// What `info` says of an environment.
@@ -24,7 +24,7 @@ struct EnvironmentSurvey {
     float least = 0, largest = 0;     ///< over all channels
     Vec3d mean_radiance;              ///< over the sphere, weighted by solid angle
     std::array<Vec3d, 6> irradiance;  ///< E on a surface that faces +X -X +Y -Y +Z -Z
-    std::vector<BrightLight> lights;  ///< brightest first
+    std::vector<BrightLight> lights;  ///< strongest first
 };
 
 /// Reads the environment to its end.
