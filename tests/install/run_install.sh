@@ -26,7 +26,7 @@ same_version() {
 names_no_build_folder() { ! grep -rnF -e "$(cd -- "$here/../.." && pwd)" "$work/prefix/lib" --include='*.cmake'; }
 refuses_another_version() { ! cmake -S "$work/project" -B "$work/other" -DCMAKE_PREFIX_PATH="$work/moved"; }
 
-no_file() { "$work/build/bake_minimal" "$work/none.hdr" "$work/none.ktx2" 2>&1 | grep -q '^error: .*none\.hdr'; }
+no_file() { ! "$work/build/bake_minimal" "$work/none.hdr" "$work/none.ktx2" 2>"$work/said" && grep '^error: .*none\.hdr' "$work/said"; }
 
 claim "the library, headers, package and program install" cmake --install "$build" --prefix "$work/prefix"
 claim "the installed program runs and tells the project's version" same_version
