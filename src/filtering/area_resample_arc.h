@@ -14,8 +14,14 @@ struct Arc {
     Vec3d centre, e1, e2;
     double s0 = 0, s1 = 0;
 
-    Vec3d at(double s) const { return centre + e1 * std::cos(s) + e2 * std::sin(s); }
-    Vec3d derivative(double s) const { return e2 * std::cos(s) - e1 * std::sin(s); }
+    struct Place {
+        Vec3d point, derivative;
+    };
+    Place place(double s) const {
+        const double c = std::cos(s), t = std::sin(s);
+        return {centre + e1 * c + e2 * t, e2 * c - e1 * t};
+    }
+    Vec3d at(double s) const { return place(s).point; }
     bool is_great() const { return centre == Vec3d{}; }
     double radius() const { return length(e1); }
 };

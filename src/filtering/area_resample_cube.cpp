@@ -144,7 +144,7 @@ void CubeIntegrator::add_piece(int face, const Arc& arc, double a, double b, Cel
     const GaussRule& rule = size < 0.02 ? k_gauss3 : k_gauss5;
     for (int k = 0; k < rule.count; ++k) {
         const double at = middle + half * rule.node[k];
-        const Vec3d p = arc.at(at), d = arc.derivative(at);
+        const auto [p, d] = arc.place(at);
         const double depth = dot(p, plane.normal), s = dot(p, plane.right) / depth, t = dot(p, plane.down) / depth;
         const double dt = half * rule.weight[k] * (dot(d, plane.down) - t * dot(d, plane.normal)) / depth;
         const Flux f = along_row(face, s, cell, (t - centre(cell.row)) * 0.5 * size_, t, reference);

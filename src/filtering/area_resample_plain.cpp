@@ -98,7 +98,7 @@ void LatlongIntegrator::cuts(const Arc& arc, std::vector<double>& out) const {
         // A hair inside, in case the end is a pole.
         const double inside = 1e-7 * (places[k + 1] - places[k]), middle = 0.5 * (places[k] + places[k + 1]);
         const Vec3d a = arc.at(places[k] + inside), b = arc.at(places[k + 1] - inside);
-        const double sign = turn(arc.at(middle), arc.derivative(middle)) < 0 ? -1 : 1;
+        const double sign = turn(arc.place(middle).point, arc.place(middle).derivative) < 0 ? -1 : 1;
         const double start = std::atan2(a.z, a.x);
         double sweep = sign * (std::atan2(b.z, b.x) - start);
         sweep -= 2 * k_pi * std::floor(sweep / (2 * k_pi));
@@ -115,11 +115,8 @@ void LatlongIntegrator::cuts(const Arc& arc, std::vector<double>& out) const {
 void LatlongIntegrator::add_piece(const Arc& arc, double a, double b, Cell cell, int reference, Flux& sum) const {
     // dphi/ds has poles at the distance of the source's poles: keep pieces short against it.
     const double half = 0.5 * (b - a), middle = 0.5 * (a + b), size = 2 * half * arc.radius();
-    const auto sine = [&](double s) {
-        const Vec3d p = arc.at(s);
-        return std::hypot(p.x, p.z);
-    };
-    const double near = std::min({sine(a), sine(middle), sine(b)});
+    const Vec3d m = arc.at(middle);
+    const double near = std::sqrt(m.x * m.x + m.z * m.z) - 0.5 * size;
     if (size > 0.25 * near && size > 1e-10) {
         add_piece(arc, a, middle, cell, reference, sum);
         add_piece(arc, middle, b, cell, reference, sum);
@@ -129,7 +126,7 @@ void LatlongIntegrator::add_piece(const Arc& arc, double a, double b, Cell cell,
     const double column_phi = (cell.column + 0.5) * column_angle_ - k_pi;
     for (int k = 0; k < rule.count; ++k) {
         const double s = middle + half * rule.node[k];
-        const Vec3d p = arc.at(s), d = arc.derivative(s);
+        const auto [p, d] = arc.place(s);
         const double rho2 = p.x * p.x + p.z * p.z;
         if (!(rho2 > 0)) continue;  // F is 0 at a pole
         const double dphi = half * rule.weight[k] * (p.x * d.z - p.z * d.x) / rho2;

@@ -4,6 +4,7 @@
 
 #include "filtering/area_resample_cube.h"
 #include "filtering/area_resample_plain.h"
+#include "simd/instruction_set.h"
 #include "test.h"
 
 #include <algorithm>
@@ -343,4 +344,60 @@ TEST_CASE("area_resample: the fast version is the plain one") {
                  " x ", at % s.size);
             CHECK(worst < 1e-6);
         }
+}
+
+TEST_CASE("area_resample: to a lat-long image, the separable version is the plain one") {
+    const Mat3 upside_down{{Vec3d{1, 0, 0}, Vec3d{0, -1, 0}, Vec3d{0, 0, 1}}};
+    for (const Shape s : {Shape{5, 3, 4}, {64, 32, 7}, {64, 32, 40}, {9, 40, 3}, {30, 1, 5}})
+        for (const Mat3& m : {k_identity, rotation_y(0.3), rotation_y(-2.1), k_mirror, upside_down}) {
+            const ImageF image = random_image(s.width, s.height);
+            const ImageF fast = resample_to_latlong(image, s.size, m);
+            auto plain = area::plain_to_latlong(s.width, s.height, s.size, m, 2);
+            plain->add_rows(image);
+            const ImageF truth = plain->finish();
+            double worst = 0;
+            for (int k = 0; k < int(truth.pixels().size()); ++k)
+                worst = std::max(worst, std::abs(fast.pixels()[k] - truth.pixels()[k]) / (truth.pixels()[k] + 0.1));
+            INFO(s.width, "x", s.height, " to ", s.size);
+            CHECK(worst < 1e-6);
+        }
+}
+
+TEST_CASE("area_resample: large sources keep a constant and the light of one texel, near the poles too") {
+    // Near a pole an output texel averages thousands of source texels: sums of floats must not drift.
+    for (const auto& [s, angle] : std::vector<std::pair<Shape, double>>{
+             {{4096, 2048, 256}, 0}, {{4095, 2047, 255}, 0.5}, {{2048, 1024, 8}, 0}}) {
+        const Mat3 m = rotation_y(angle);
+        INFO(s.width, "x", s.height, " to ", s.size);
+        std::vector<float> row(std::size_t(s.width) * 3, 0.7f);
+        auto resampler = area_resample_to_cube(s.width, s.height, s.size, m, 2);
+        for (int y = 0; y < s.height; ++y) resampler->add_rows({row.data(), s.width, 1, 3});
+        const ImageF constant = resampler->finish();
+        double worst = 0;
+        for (float p : constant.pixels()) worst = std::max(worst, std::abs(p / 0.7 - 1));
+        CHECK(worst < 1e-6);
+        ImageF image(s.width, s.height, 3);
+        // One channel each: the pole row, the seam, elsewhere.
+        image.at(s.width / 3, 0)[0] = image.at(s.width - 1, s.height / 3)[1] = image.at(s.width / 7, s.height - 40)[2] =
+            1e5f;
+        const Vec3d light = cube_light(resample_to_cube(image, s.size, m, 2)), truth = total_light(image);
+        CHECK(std::abs(light.x / truth.x - 1) < 1e-5);
+        CHECK(std::abs(light.y / truth.y - 1) < 1e-5);
+        CHECK(std::abs(light.z / truth.z - 1) < 1e-5);
+    }
+}
+
+TEST_CASE("area_resample: every instruction set gives the same to 1e-6") {
+    const ImageF image = random_image(512, 256);
+    const ImageF best = resample_to_cube(image, 65, rotation_y(0.2));
+    for (const char* set : {"AVX2", "SSE4", "EMU128"}) {
+        simd::limit_instruction_set(set);
+        const ImageF other = resample_to_cube(image, 65, rotation_y(0.2));
+        double worst = 0;
+        for (int k = 0; k < int(best.pixels().size()); ++k)
+            worst = std::max(worst, double(std::abs(other.pixels()[k] - best.pixels()[k])) / best.pixels()[k]);
+        INFO(set);
+        CHECK(worst < 1e-6);
+    }
+    simd::limit_instruction_set("");
 }
