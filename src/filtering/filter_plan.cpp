@@ -23,10 +23,10 @@ int required_band_limit(const ZonalKernel& kernel, bool split) {
             const double alpha = kernel.width, b = alpha < 1 ? 2 * alpha / std::sqrt(1 - alpha * alpha) : 1e9;
             return std::clamp(int(std::ceil((split ? k_decay_split : k_decay) / b)), alpha > 0.05 ? k_least_degrees : 64, k_most_degrees);
         }
-        case Lobe::charlie: return 2 * k_least_degrees;
+        case Lobe::charlie: return kernel.width > 0.06 ? 768 : 1024;
         default:
             // cos^n ~ e^{-n theta^2 / 2}: the spectrum is e^{-l^2 / 2n}.
-            return std::clamp(int(std::ceil(6 * std::sqrt(kernel.width + 1))), k_least_degrees, k_most_degrees);
+            return std::clamp(int(std::ceil(7 * std::sqrt(kernel.width + 1))), k_least_degrees, k_most_degrees);
     }
 }
 
