@@ -92,7 +92,7 @@ class AlignedResampler : public AreaResampler {
     std::size_t next_job_ = 0;
     AlignedArray<float> ring_data_;
     simd::RowRing ring_;
-    int batch_ = 64, received_ = 0, processed_ = 0;
+    int batch_ = 0, received_ = 0, processed_ = 0;
     ImageF out_;
     std::mutex builders_mutex_;
     std::vector<std::unique_ptr<TileBuilder>> builders_;
@@ -111,7 +111,9 @@ AlignedResampler::AlignedResampler(int width, int height, int size, const Aligne
     make_tiles();
     int span = 1;
     for (const Job& j : jobs_) span = std::max(span, j.last_row - j.first_row + 1);
-    ring_.capacity = int(std::bit_ceil(unsigned(span + batch_)));
+    // Work starts when the ring is full. A small one stays in the caches.
+    ring_.capacity = int(std::bit_ceil(unsigned(span + 24)));
+    batch_ = ring_.capacity - span;
     ring_.width = width;
     ring_.height = height;
     ring_.stride = 4 * ring_.quarter_stride() + 16 * 7;
@@ -166,7 +168,7 @@ void AlignedResampler::add_tiles(bool polar, int group, int i0, int j0, int j1, 
     // Small enough for a short window of source rows, large enough that the lines a tile shares with the next cost
     // little.
     const double rows_per_texel = 1.5 * 2 / size_ / grid_.row_angle;
-    const int edge = std::clamp(int(96 / rows_per_texel), 1, 16);
+    const int edge = std::clamp(int(96 / rows_per_texel), 1, simd::k_block_side);
     // The middle row of an odd size needs its own tiles: its stencils hold both hemispheres.
     const bool middle_row = !polar && size_ % 2;
     const int regular = middle_row ? j1 - 1 : j1;

@@ -158,6 +158,50 @@ Sums sum_wide(const Stencil& s, const float* weights, const StencilInstance* ins
     return {add(a.total, a.lost), add(b.total, b.lost), add(c.total, c.lost), add(d.total, d.lost)};
 }
 
+/// A block's texels of one instance, as they will lie in the output: written there at the end, in whole lines and past
+/// the caches. (Three floats at a time to 75 MB of cold memory take as long as computing them.)
+struct BlockPixels {
+    static constexpr int k_floats = 3 * k_block_side * k_block_side;
+    float* out;
+    std::ptrdiff_t row_step;  ///< floats
+    int row_floats, rows;
+    int first, step_i, step_j;  ///< floats, in the block
+};
+
+BlockPixels block_pixels(const StencilBlock& block, const StencilInstance& instance, float* out) {
+    // One of i and j runs along the output's rows.
+    const bool i_along = block.columns == 1 || instance.out_i == 1 || instance.out_i == -1;
+    const int along = i_along ? block.columns : block.rows, across = i_along ? block.rows : block.columns;
+    const std::ptrdiff_t along_step = i_along ? instance.out_i : instance.out_j,
+                         across_step = i_along ? instance.out_j : instance.out_i;
+    const bool left = along_step < 0, up = across_step < 0;
+    std::ptrdiff_t texel = instance.out;
+    if (left) texel += (along - 1) * along_step;
+    if (up) texel += (across - 1) * across_step;
+    const int step = left ? -3 : 3, stride = (up ? -3 : 3) * along;
+    return {out + 3 * texel,
+            3 * (up ? -across_step : across_step),
+            3 * along,
+            across,
+            (left ? 3 * (along - 1) : 0) + (up ? 3 * along * (across - 1) : 0),
+            i_along ? step : stride,
+            i_along ? stride : step};
+}
+
+HWY_INLINE void write_block(const BlockPixels& b, const float* pixels) {
+    for (int y = 0; y < b.rows; ++y, pixels += b.row_floats) {
+        float* to = b.out + y * b.row_step;
+#if HWY_TARGET != HWY_SCALAR
+        if (reinterpret_cast<std::uintptr_t>(to) % 64 == 0 && b.row_floats % 16 == 0) {
+            const D4 d;
+            for (int x = 0; x < b.row_floats; x += 4) hn::Stream(hn::LoadU(d, pixels + x), d, to + x);
+            continue;
+        }
+#endif
+        std::memcpy(to, pixels, b.row_floats * sizeof(float));
+    }
+}
+
 template <int count, bool reverse>
 void apply(const StencilBlock& block, const StencilInstance* instances, const RowRing& ring, bool flipped, float* out) {
     const Stencil* s = block.stencils.data();
@@ -181,19 +225,23 @@ void apply(const StencilBlock& block, const StencilInstance* instances, const Ro
                     hwy::Prefetch(from + x);
             }
         }
+    HWY_ALIGN float pixels[count][BlockPixels::k_floats];
+    BlockPixels places[count];
+    for (int i = 0; i < count; ++i) places[i] = block_pixels(block, instances[i], out);
     for (int j = 0; j < block.rows; ++j)
         for (int i = 0; i < block.columns; ++i, ++s) {
             const Sums total = narrow ? sum_columns<count, reverse>(*s, s->column, s->columns, block.weights + s->first,
                                                                     at, ring, flipped)
                                       : sum_wide<count, reverse>(*s, block.weights, instances, ring, flipped);
             const auto put = [&](int k, const Sum& sum) {
-                store(sum, out + 3 * (instances[k].out + i * instances[k].out_i + j * instances[k].out_j));
+                store(sum, pixels[k] + places[k].first + i * places[k].step_i + j * places[k].step_j);
             };
             put(0, total.a);
             if constexpr (count > 1) put(1, total.b);
             if constexpr (count > 2) put(2, total.c);
             if constexpr (count > 3) put(3, total.d);
         }
+    for (int i = 0; i < count; ++i) write_block(places[i], pixels[i]);
 }
 
 void apply_stencils(const StencilBlock& block, std::span<const StencilInstance> instances, const RowRing& ring,
@@ -214,6 +262,7 @@ void apply_stencils(const StencilBlock& block, std::span<const StencilInstance> 
             k += 1;
         }
     }
+    hwy::FlushStream();
 }
 
 }  // namespace domelight::simd::HWY_NAMESPACE

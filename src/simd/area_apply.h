@@ -47,6 +47,9 @@ struct StencilInstance {
                    out_j = 0;  ///< output texel (of 3 floats) of the tile's texel (0, 0), and its steps
 };
 
+/// Largest side of a block.
+inline constexpr int k_block_side = 16;
+
 /// A block of output texels, stencils row by row (i fastest).
 struct StencilBlock {
     std::span<const Stencil> stencils;

@@ -232,12 +232,20 @@ TEST_CASE("area_resample: the light of a single texel is kept, wherever it is") 
 }
 
 TEST_CASE("area_resample: the same bytes on any number of threads and in any chunks of rows") {
-    const ImageF image = random_image(64, 32);
-    for (const Mat3& m : {k_identity, rotation_y(0.3), tilted()}) {
-        const ImageF cube = resample_to_cube(image, 13, m), latlong = resample_to_latlong(image, 13, m);
-        for (const auto& [threads, chunk] : std::vector<std::pair<int, int>>{{2, 1}, {3, 7}, {8, 32}}) {
-            CHECK(std::ranges::equal(resample_to_cube(image, 13, m, threads, chunk).pixels(), cube.pixels()));
-            CHECK(std::ranges::equal(resample_to_latlong(image, 13, m, threads, chunk).pixels(), latlong.pixels()));
+    for (const auto& [s, m] : std::vector<std::pair<Shape, Mat3>>{{{64, 32, 13}, k_identity},
+                                                                  {{64, 32, 13}, tilted()},
+                                                                  {{512, 256, 64}, k_identity},
+                                                                  {{512, 256, 65}, rotation_y(0.3)},
+                                                                  {{514, 257, 48}, k_z_up}}) {
+        const ImageF image = random_image(s.width, s.height);
+        const ImageF cube = resample_to_cube(image, s.size, m);
+        const bool plain = m == tilted() || m == k_z_up;  // slow to a lat-long image
+        const int latlong_height = plain ? 3 : s.size;
+        const ImageF latlong = resample_to_latlong(image, latlong_height, m);
+        for (const auto& [threads, chunk] : std::vector<std::pair<int, int>>{{2, 1}, {3, 7}, {8, s.height}}) {
+            CHECK(std::ranges::equal(resample_to_cube(image, s.size, m, threads, chunk).pixels(), cube.pixels()));
+            CHECK(std::ranges::equal(resample_to_latlong(image, latlong_height, m, threads, chunk).pixels(),
+                                     latlong.pixels()));
         }
     }
 }
