@@ -62,40 +62,10 @@ struct CubeIntegrator::Cell {
     int column, row;
 };
 
-CubeIntegrator::CubeIntegrator(const Cubemap& source)
-    : size_(source.size()), texels_(std::size_t(18) * (size_ + 2) * (size_ + 2)) {
-    const int n = size_;
-    const auto at = [&](int f, int x, int y) {
-        return texels_.data() + 3 * ((std::size_t(f) * (n + 2) + y + 1) * (n + 2) + x + 1);
-    };
-    // The texel across the edge from texel (x, y), one step outside: a step's thousandth outside the edge is already on
-    // the neighbour.
-    const auto across = [&](int f, int x, int y) {
-        const auto coordinate = [&](int i) { return std::clamp((i + 0.5) / n, -1e-3 / n, 1 + 1e-3 / n); };
-        const CubePoint p = cube_point(cube_direction(f, {coordinate(x), coordinate(y)}));
-        const auto index = [&](double u) { return std::clamp(int(u * n), 0, n - 1); };
-        return source.face(p.face).at(index(p.uv.u), index(p.uv.v));
-    };
-    for (int f = 0; f < 6; ++f) {
-        for (int y = -1; y <= n; ++y)
-            for (int x = -1; x <= n; ++x) {
-                const bool outside_x = x < 0 || x == n, outside_y = y < 0 || y == n;
-                if (outside_x && outside_y) continue;
-                const float* from = outside_x || outside_y ? across(f, x, y) : source.face(f).at(x, y);
-                std::copy(from, from + 3, at(f, x, y));
-            }
-        for (int y : {-1, n})
-            for (int x : {-1, n}) {
-                const int inside_x = std::clamp(x, 0, n - 1), inside_y = std::clamp(y, 0, n - 1);
-                for (int c = 0; c < 3; ++c)
-                    at(f, x, y)[c] =
-                        (at(f, inside_x, inside_y)[c] + at(f, x, inside_y)[c] + at(f, inside_x, y)[c]) * (1.0f / 3);
-            }
-    }
-}
+CubeIntegrator::CubeIntegrator(const Cubemap& source) : size_(source.size()), source_(source) {}
 
 Vec3d CubeIntegrator::texel(int face, int column, int row) const {
-    const float* p = texels_.data() + 3 * ((std::size_t(face) * (size_ + 2) + row + 1) * (size_ + 2) + column + 1);
+    const float* p = source_.texel(face, column, row);
     return {p[0], p[1], p[2]};
 }
 

@@ -3,12 +3,13 @@
 #include "domelight/area_resample.h"
 
 #include "filtering/area_resample_arc.h"
+#include "image/bordered_cube.h"
 
 #include <span>
 
 namespace domelight::area {
 
-/// int g d omega over regions of the sphere, g the bilinear reconstruction of a cubemap that continues across edges:
+/// int g d omega over regions of the sphere, g the reconstruction of a cubemap that continues across edges (BorderedCube):
 /// between the centres of a face's texels bilinear on the face's plane; past the outermost centres towards the texels
 /// of the neighbouring face that lie across the edge; and towards each of the cube's corners to the mean of the three
 /// texels that meet there. g is continuous everywhere.
@@ -37,7 +38,7 @@ class CubeIntegrator {
     double centre(int index) const { return (2 * index + 1.0) / size_ - 1; }
 
     int size_;
-    std::vector<float> texels_;  ///< six faces of (size + 2)^2 RGB
+    BorderedCube source_;
 };
 
 }  // namespace domelight::area
