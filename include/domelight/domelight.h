@@ -16,5 +16,6 @@
 #include "domelight/sky.h"
 #include "domelight/spherical_harmonics.h"
 #include "domelight/texture.h"
+#include "domelight/unit_point.h"
 #include "domelight/vec.h"
 #include "domelight/zonal_kernel.h"
