@@ -1,9 +1,15 @@
-// How exact the exact filter is: every level of the chains that matter, on real environments and a hard sun, against the kernel integrated in double
-// over the bilinear reconstruction.
+// How exact the exact filter is: every level of the chains that matter, on real environments and a hard sun, against
+// the kernel integrated in double over the bilinear reconstruction.
 //
-//   accuracy_bench [--full] [FILE.hdr ...]
+//   accuracy_bench [--full] [--chain TEXT] [FILE.hdr ...]
 //
-// Without files: the environments under DOMELIGHT_DATA (four; --full: all, and 4096 x 2048 ones) and a synthetic 100000:1 half-degree sun.
+// --chain TEXT: only chains with TEXT in their names.
+// Without files: the environments under DOMELIGHT_DATA (four; --full: all, and 4096 x 2048 ones) and a synthetic
+// 100000:1 half-degree sun.
+
+#include "domelight/environment.h"
+
+#include "accuracy.h"
 
 #include <fmt/core.h>
 
@@ -11,9 +17,6 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
-
-#include "accuracy.h"
-#include "domelight/environment.h"
 
 using namespace domelight;
 using namespace domelight::test;
@@ -28,7 +31,9 @@ struct Chain {
 
 std::vector<Chain> chains() {
     const auto linear = [](int count) { return [count](int l) { return double(l) / (count - 1); }; };
-    const auto quadratic = [](int count) { return [count](int l) { return 1 - std::sqrt(1 - double(l) / (count - 1)); }; };
+    const auto quadratic = [](int count) {
+        return [count](int l) { return 1 - std::sqrt(1 - double(l) / (count - 1)); };
+    };
     std::vector<Chain> list;
     const auto add = [&](std::string name, std::vector<LevelSpec> levels, double rmse, double largest) {
         FilterOptions options;
@@ -43,7 +48,8 @@ std::vector<Chain> chains() {
     std::vector<LevelSpec> charlie, sheen_narrow, phong;
     for (double roughness : {0.25, 0.5, 0.75, 1.0}) charlie.push_back({128, false, ZonalKernel::charlie(roughness)});
     for (double roughness : {0.1, 0.15, 0.2}) sheen_narrow.push_back({128, false, ZonalKernel::charlie(roughness)});
-    for (double exponent : {1.0, 2.0, 8.0, 32.0, 256.0, 2048.0}) phong.push_back({128, false, {Lobe::phong_brdf, exponent}});
+    for (double exponent : {1.0, 2.0, 8.0, 32.0, 256.0, 2048.0})
+        phong.push_back({128, false, {Lobe::phong_brdf, exponent}});
     add("Charlie, roughness 0.25 to 1", std::move(charlie), 1e-4, 2e-3);
     add("Charlie, roughness 0.1 to 0.2", std::move(sheen_narrow), 1e-3, 2e-2);
     add("modified Phong, exponents 1 to 2048", std::move(phong), 1e-4, 2e-3);
@@ -51,11 +57,13 @@ std::vector<Chain> chains() {
 }
 
 /// Prints one environment's table; returns how many figures fall short.
-int report(const std::string& name, const ImageF& image, int random, std::map<std::string, std::pair<double, double>>& worst, int& figures) {
+int report(const std::string& name, const ImageF& image, const std::string& only, int random,
+           std::map<std::string, std::pair<double, double>>& worst, int& figures) {
     fmt::print("\n{} ({} x {})\n", name, image.width(), image.height());
     fmt::print("  {:<36} {:>14} {:>5} {:>9} {:>9} {:>9}\n", "chain", "map", "size", "width", "RMSE", "max");
     int short_of = 0;
-    for (const Chain& chain : chains())
+    for (const Chain& chain : chains()) {
+        if (chain.name.find(only) == std::string::npos) continue;
         for (const Accuracy& row : measure_levels(image, chain.options, random)) {
             const bool irradiance = row.name == "irradiance";
             const bool reached = row.rmse <= chain.rmse && row.largest <= (irradiance ? 1e-3 : chain.largest);
@@ -64,9 +72,10 @@ int report(const std::string& name, const ImageF& image, int random, std::map<st
             auto& [rmse, largest] = worst[irradiance ? "irradiance" : chain.name];
             rmse = std::max(rmse, row.rmse);
             largest = std::max(largest, row.largest);
-            fmt::print("  {:<36} {:>14} {:>5} {:>9.4f} {:>9.1e} {:>9.1e}{}\n", chain.name, row.name, row.size, row.width, row.rmse, row.largest,
-                       reached ? "" : "  short of its aim");
+            fmt::print("  {:<36} {:>14} {:>5} {:>9.4f} {:>9.1e} {:>9.1e}{}\n", chain.name, row.name, row.size,
+                       row.width, row.rmse, row.largest, reached ? "" : "  short of its aim");
         }
+    }
     return short_of;
 }
 
@@ -74,10 +83,15 @@ int report(const std::string& name, const ImageF& image, int random, std::map<st
 
 int main(int argc, char** argv) {
     bool full = false;
+    std::string only;
     std::vector<std::filesystem::path> files;
     for (int i = 1; i < argc; ++i) {
-        if (!std::strcmp(argv[i], "--full")) full = true;
-        else files.emplace_back(argv[i]);
+        if (!std::strcmp(argv[i], "--full"))
+            full = true;
+        else if (!std::strcmp(argv[i], "--chain") && i + 1 < argc)
+            only = argv[++i];
+        else
+            files.emplace_back(argv[i]);
     }
     const char* data = std::getenv("DOMELIGHT_DATA");
     if (files.empty() && data) {
@@ -85,11 +99,12 @@ int main(int argc, char** argv) {
         if (full) {
             for (const char* sub : {"env_latlong", "env_latlong_blender", "env_highres"})
                 for (const auto& entry : std::filesystem::directory_iterator(folder / sub))
-                    if (entry.path().extension() == ".hdr" || entry.path().extension() == ".exr") files.push_back(entry.path());
+                    if (entry.path().extension() == ".hdr" || entry.path().extension() == ".exr")
+                        files.push_back(entry.path());
             std::sort(files.begin(), files.end());
         } else {
-            for (const char* name : {"env_highres/spruit_sunrise_1k.hdr", "env_latlong/potsdamer_platz_1k.hdr", "env_latlong/vestibule_1k.hdr",
-                                     "env_latlong/noon_grass_1k.hdr"})
+            for (const char* name : {"env_highres/spruit_sunrise_1k.hdr", "env_latlong/potsdamer_platz_1k.hdr",
+                                     "env_latlong/vestibule_1k.hdr", "env_latlong/noon_grass_1k.hdr"})
                 files.push_back(folder / name);
         }
     }
@@ -98,18 +113,21 @@ int main(int argc, char** argv) {
     const int random = full ? 200 : 60;
     int short_of = 0, figures = 0;
     std::map<std::string, std::pair<double, double>> worst;
-    short_of += report("100000:1 half-degree sun", sun_image(full ? 1024 : 512, 1e5, 0.4, 1.0), random, worst, figures);
+    short_of +=
+        report("100000:1 half-degree sun", sun_image(full ? 1024 : 512, 1e5, 0.4, 1.0), only, random, worst, figures);
     for (const auto& file : files) {
         auto environment = open_environment({file});
-        auto image = environment && environment->latlong ? read_latlong(*environment->latlong) : Result<ImageF>(Error{"not a lat-long", "", ""});
+        auto image = environment && environment->latlong ? read_latlong(*environment->latlong)
+                                                         : Result<ImageF>(Error{"not a lat-long", "", ""});
         if (!image) {
             fmt::print("\n{}: {}\n", file.filename().string(), image.error().format());
             continue;
         }
-        short_of += report(file.filename().string(), *image, random, worst, figures);
+        short_of += report(file.filename().string(), *image, only, random, worst, figures);
     }
     fmt::print("\nworst of all\n");
-    for (const auto& [chain, largest] : worst) fmt::print("  {:<36} RMSE {:.1e}  max {:.1e}\n", chain, largest.first, largest.second);
+    for (const auto& [chain, largest] : worst)
+        fmt::print("  {:<36} RMSE {:.1e}  max {:.1e}\n", chain, largest.first, largest.second);
     fmt::print("accuracy: {} passed, {} failed, 0 skipped\n", figures - short_of, short_of);
     return short_of == 0 ? 0 : 1;
 }

@@ -1,24 +1,24 @@
 #pragma once
 
-#include <map>
-#include <vector>
-
 #include "domelight/image.h"
 #include "domelight/zonal_kernel.h"
+
 #include "filtering/bright_texels.h"
 #include "simd/direct_lights.h"
 
+#include <vector>
+
 namespace domelight {
 
-/// Takes the few texels that outshine everything else by far out of a lat-long image before it is expanded; their exact kernel is added to each
-/// output texel instead. For narrow lobes only, where a sun is 10^7 times the darkest places beside it: rounding of the float expansion, harmless
-/// anywhere else, would show there.
+/// Takes the few texels that outshine everything else by far out of a lat-long image before it is expanded; their exact
+/// kernel is added to each output texel instead. For narrow lobes only, where a sun is 10^7 times the darkest places
+/// beside it: rounding of the float expansion, harmless anywhere else, would show there.
 class BrightSplit {
   public:
     BrightSplit(int width, int height) : width_(width), height_(height) {}
 
-    /// Sets the bright texels of the next rows to 0 and keeps them. Any choice is exact; which ones are taken (over 300 times the mean of what was
-    /// left in the rows so far) does not depend on how rows are handed over.
+    /// Sets the bright texels of the next rows to 0 and keeps them. Any choice is exact; which ones are taken (over 300
+    /// times the mean of what was left in the rows so far, k_most at most) does not depend on how rows are handed over.
     void take_from(ImageView<float> rows);
     bool empty() const { return texels_.empty(); }
     /// The power taken out: int g d omega.
@@ -26,9 +26,9 @@ class BrightSplit {
     /// Adds its real coefficients in world space (basis of spherical_harmonics.h).
     void add_to_sh(std::vector<Vec3d>& coefficients, int bands, const Mat3& world_to_source) const;
 
-    /// The texels as lights for lobes down to `angular_width`, in clusters.
+    /// The texels as a tree of lights for a kernel.
     struct Lights {
-        std::vector<simd::LightCluster> clusters;  ///< and one more that closes the last ranges
+        std::vector<simd::LightNode> nodes;
         BrightPoints points;
     };
     Lights lights(const ZonalKernel& kernel) const;
@@ -41,17 +41,21 @@ class BrightSplit {
     static constexpr int k_most = 4096;
     static constexpr double k_outshine = 300;
 
+    class TreeBuilder;
+
     BrightPoints points(int nodes) const;
 
     int width_, height_, next_row_ = 0;
-    double sum_ = 0, weight_ = 0;  ///< of the strongest channel over the rows so far, without what was taken
+    double sum_ = 0, weight_ = 0;  ///< of the channels' mean over the rows so far, without what was taken
     std::vector<Texel> texels_;
 };
 
 /// A kernel in the form that the sum over lights takes, with its table if it needs one.
 struct DirectKernelTable {
     explicit DirectKernelTable(const ZonalKernel& kernel);
-    simd::DirectKernel view() const { return {scale, alpha2, {values.empty() ? nullptr : values.data(), int(values.size()) - 2}}; }
+    simd::DirectKernel view() const {
+        return {scale, alpha2, {values.empty() ? nullptr : values.data(), int(values.size()) - 2}};
+    }
     float scale = 0, alpha2 = 0;
     std::vector<float> values;
 };

@@ -1,34 +1,41 @@
 #include "filtering/bright_texels.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "domelight/projection.h"
+
 #include "filtering/tent_nodes.h"
 #include "simd/row_kernels.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace domelight {
 
 namespace {
 
-/// A texel smaller than this part of 1 / L is a point to degrees around L: its tent's second moment, (tau L)^2 / 12, is below 1 %.
+/// A texel smaller than this part of 1 / L is a point to degrees around L: its tent's second moment, (tau L)^2 / 12, is
+/// below 1 %.
 constexpr double k_point_like = 0.3;
 
 }  // namespace
 
-BrightTexels::BrightTexels(int width, int height, int most) : width_(width), height_(height), most_(most) { heap_.reserve(most + 1); }
+BrightTexels::BrightTexels(int width, int height, int most) : width_(width), height_(height), most_(most) {
+    heap_.reserve(most + 1);
+}
 
 void BrightTexels::add_rows(ImageView<const float> rows) {
     for (int y = 0; y < rows.height; ++y, ++next_row_) {
         const float* row = rows.row(y);
         const double solid_angle = latlong_solid_angle(next_row_, width_, height_);
-        const auto weakest = [&] { return int(heap_.size()) < most_ ? 0.0 : heap_.front().power; };
-        constexpr int block = 64;  // texels looked at together: nearly all of them are passed over
+        const simd::Summary summary = simd::summarize(row, 3 * width_);
+        sum_ += summary.sum / 3 * solid_angle;
+        // What is too weak for the rows so far is too weak for all of them. (Half, for the mean that points() will be
+        // given: of the reconstruction.)
+        const double too_weak = 0.5 * k_least_share * sum_;
+        const auto weakest = [&] {
+            return int(heap_.size()) < most_ ? too_weak : std::max(too_weak, heap_.front().power);
+        };
+        if (summary.largest * solid_angle <= weakest()) continue;
         for (int x = 0; x < width_; ++x) {
-            if (x % block == 0 && simd::largest(row + 3 * x, 3 * std::min(block, width_ - x)) * solid_angle <= weakest()) {
-                x += block - 1;
-                continue;
-            }
             const float* p = row + 3 * x;
             const double power = std::max({p[0], p[1], p[2]}) * solid_angle;
             if (power <= weakest()) continue;
@@ -42,11 +49,11 @@ void BrightTexels::add_rows(ImageView<const float> rows) {
     }
 }
 
-BrightPoints BrightTexels::points(const Vec3d& mean, double least_share, int band_limit) const {
+BrightPoints BrightTexels::points(const Vec3d& mean, int band_limit) const {
     const double total = 4 * k_pi * std::max({mean.x, mean.y, mean.z});
     std::vector<Texel> texels;
     for (const Texel& t : heap_)
-        if (t.power > least_share * total) texels.push_back(t);
+        if (t.power > k_least_share * total) texels.push_back(t);
     std::sort(texels.begin(), texels.end(), stronger);
 
     // A texel wider than a few waves is no point: its own tent has smoothed it beyond what truncation could show.
@@ -55,8 +62,10 @@ BrightPoints BrightTexels::points(const Vec3d& mean, double least_share, int ban
     BrightPoints points;
     for (const Texel& t : texels) {
         if (k_pi / height_ * band_limit < k_point_like) {
-            const double theta = k_pi * (t.y + 0.5) / height_, s = std::sin(theta), phi = 2 * k_pi * (t.x + 0.5) / width_ - k_pi;
-            points.add({s * std::cos(phi), std::cos(theta), s * std::sin(phi)}, latlong_solid_angle(t.y, width_, height_), t.rgb);
+            const double theta = k_pi * (t.y + 0.5) / height_, s = std::sin(theta),
+                         phi = 2 * k_pi * (t.x + 0.5) / width_ - k_pi;
+            points.add({s * std::cos(phi), std::cos(theta), s * std::sin(phi)},
+                       latlong_solid_angle(t.y, width_, height_), t.rgb);
         } else {
             add_tent_nodes(points, width_, height_, t.x, t.y, t.rgb, nodes);
         }

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <utility>
-#include <vector>
-
 #include "domelight/image.h"
 #include "domelight/vec.h"
+
 #include "simd/zonal_sum.h"
+
+#include <utility>
+#include <vector>
 
 namespace domelight {
 
@@ -16,27 +17,33 @@ struct BrightPoints {
     /// A light of radiance `rgb` over `solid_angle` in a unit direction.
     void add(const Vec3d& direction, double solid_angle, const float* rgb) {
         x.push_back(float(direction.x)), y.push_back(float(direction.y)), z.push_back(float(direction.z));
-        r.push_back(float(solid_angle * rgb[0])), g.push_back(float(solid_angle * rgb[1])), b.push_back(float(solid_angle * rgb[2]));
+        r.push_back(float(solid_angle * rgb[0])), g.push_back(float(solid_angle * rgb[1])),
+            b.push_back(float(solid_angle * rgb[2]));
     }
-    void append(const BrightPoints& p) {
-        for (auto [to, from] : {std::pair{&x, &p.x}, {&y, &p.y}, {&z, &p.z}, {&r, &p.r}, {&g, &p.g}, {&b, &p.b}})
-            to->insert(to->end(), from->begin(), from->end());
+    /// Those of `p` from `from` up to `to`.
+    void append(const BrightPoints& p, int from, int to) {
+        for (auto [mine, theirs] : {std::pair{&x, &p.x}, {&y, &p.y}, {&z, &p.z}, {&r, &p.r}, {&g, &p.g}, {&b, &p.b}})
+            mine->insert(mine->end(), theirs->begin() + from, theirs->begin() + to);
     }
+    Vec3d place(int i) const { return {x[i], y[i], z[i]}; }
     simd::PointSet view() const { return {x.data(), y.data(), z.data(), r.data(), g.data(), b.data(), count()}; }
 };
 
+/// A texel with less than this part of all power leaves nothing that can be seen.
+constexpr double k_least_share = 1e-4;
+
 /// Finds the texels that carry the most power (radiance times solid angle) as the rows of a lat-long image pass by.
 ///
-/// A sun is the worst case of a truncated spectrum: its coefficients do not fall off. What the truncation leaves out of a kernel, summed over these
-/// texels exactly, is what the expansion is still short of (ResidualKernel).
+/// A sun is the worst case of a truncated spectrum: its coefficients do not fall off. What the truncation leaves out of
+/// a kernel, summed over these texels exactly, is what the expansion is still short of (ResidualKernel).
 class BrightTexels {
   public:
     BrightTexels(int width, int height, int most = 1024);
 
     void add_rows(ImageView<const float> rows);
-    /// The texels with more than `least_share` of the power of all, each as the nodes of a Gauss-Legendre rule over its tent, fine enough for
-    /// degrees around `band_limit`. `mean`: mean radiance.
-    BrightPoints points(const Vec3d& mean, double least_share, int band_limit) const;
+    /// The texels with more than k_least_share of the power of all, each as the nodes of a Gauss-Legendre rule over its
+    /// tent, fine enough for degrees around `band_limit`. `mean`: mean radiance.
+    BrightPoints points(const Vec3d& mean, int band_limit) const;
 
   private:
     struct Texel {
@@ -44,12 +51,14 @@ class BrightTexels {
         int x, y;
         float rgb[3];
     };
-    /// Order of the heap: weakest first; ties by place, so that the result does not depend on how rows were handed over.
+    /// Order of the heap: weakest first; ties by place, so that the result does not depend on how rows were handed
+    /// over.
     static bool stronger(const Texel& a, const Texel& b) {
         return a.power != b.power ? a.power > b.power : a.y != b.y ? a.y < b.y : a.x < b.x;
     }
 
     int width_, height_, most_, next_row_ = 0;
+    double sum_ = 0;  ///< power so far, of the channels' mean
     std::vector<Texel> heap_;
 };
 

@@ -10,9 +10,9 @@ namespace {
 constexpr int k_most_degrees = 3072;
 constexpr int k_least_degrees = 256;
 /// b L at the band limit L.
-constexpr double k_decay = 16.6, k_decay_split = 12.5;
+constexpr double k_decay = 16.6, k_decay_split = 11;
 /// From here on a lobe counts as narrow.
-constexpr int k_split_degrees = 1000;
+constexpr int k_split_degrees = 600;
 
 }  // namespace
 

@@ -20,9 +20,6 @@ constexpr int k_chunk_rows = 64;
 
 const Error k_cancelled{"cancelled", "", ""};
 
-/// A texel with less than this part of all power leaves nothing that can be seen.
-constexpr double k_least_share = 1e-4;
-
 std::vector<std::unique_ptr<AreaResampler>> make_mirrors(const FilterOptions& options, int width, int height) {
     std::vector<std::unique_ptr<AreaResampler>> mirrors(options.specular.size());
     for (std::size_t l = 0; l < mirrors.size(); ++l) {
@@ -163,7 +160,7 @@ Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) 
         mirrors[l].reset();
     }
     const Spectrum spectrum = analysis.finish();
-    const auto points = [&](int band_limit) { return bright.points(result.mean, k_least_share, band_limit); };
+    const auto points = [&](int band_limit) { return bright.points(result.mean, band_limit); };
     if (auto done = finish(spectrum, points, &split, plan, options, result); !done) return done.error();
     return result;
 }

@@ -1,10 +1,11 @@
 #include "filtering/sphere_grid.h"
 
-#include <algorithm>
-
 #include "domelight/parallel.h"
 #include "domelight/projection.h"
+
 #include "simd/row_kernels.h"
+
+#include <algorithm>
 
 namespace domelight {
 namespace {
@@ -25,7 +26,8 @@ int clamp_texels(float* rgb, int width) {
 
 /// Fills `out`; direction(x, y) is the world direction of a texel.
 template <typename Direction>
-std::int64_t lookup_rows(const SphereGrid& grid, ImageView<float> out, const LookupOptions& options, const Direction& direction) {
+std::int64_t lookup_rows(const SphereGrid& grid, ImageView<float> out, const LookupOptions& options,
+                         const Direction& direction) {
     const simd::TapTable table(InterpolationTaps(8, options.band, k_decay));
     const simd::GridView view = grid.view();
     std::vector<std::int64_t> clamped(out.height);
@@ -45,10 +47,11 @@ std::int64_t lookup_rows(const SphereGrid& grid, ImageView<float> out, const Loo
                     const double n = 1 / std::sqrt(x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
                     ux[i] = float(x[i] * n), uy[i] = float(y[i] * n), uz[i] = float(z[i] * n);
                 }
-                if (options.bright) simd::add_zonal_sum(options.bright->view(), options.residual, ux, uy, uz, out.width, rgb);
+                if (options.bright)
+                    simd::add_zonal_sum(options.bright->view(), options.residual, ux, uy, uz, out.width, rgb);
                 if (options.lights)
-                    simd::add_direct_lights(options.lights->clusters.data(), int(options.lights->clusters.size()) - 1, options.lights->points.view(),
-                                            options.kernel, ux, uy, uz, out.width, rgb);
+                    simd::add_direct_lights(options.lights->nodes.data(), int(options.lights->nodes.size()),
+                                            options.lights->points.view(), options.kernel, ux, uy, uz, out.width, rgb);
             }
             clamped[row] = clamp_texels(rgb, out.width);
         }
@@ -61,7 +64,9 @@ std::int64_t lookup_rows(const SphereGrid& grid, ImageView<float> out, const Loo
 }  // namespace
 
 SphereGrid::SphereGrid(RingGrid grid)
-    : grid_(grid), stride_(4 * (std::ptrdiff_t(grid.width) + 3 * k_pad)), data_(std::size_t(grid.rings + 2 * k_pad) * stride_) {}
+    : grid_(grid),
+      stride_(4 * (std::ptrdiff_t(grid.width) + 3 * k_pad)),
+      data_(std::size_t(grid.rings + 2 * k_pad) * stride_) {}
 
 void SphereGrid::wrap() {
     const int w = grid_.width, h = grid_.rings;
@@ -74,7 +79,8 @@ void SphereGrid::wrap() {
     const auto beyond = [&](int to, int from) {
         const float* source = ring(from);
         float* row = ring(to);
-        for (int i = -k_pad; i < w + 2 * k_pad; ++i) std::copy_n(source + 4 * ((i + w + w / 2) % w), 4, row + 4 * std::ptrdiff_t(i));
+        for (int i = -k_pad; i < w + 2 * k_pad; ++i)
+            std::copy_n(source + 4 * ((i + w + w / 2) % w), 4, row + 4 * std::ptrdiff_t(i));
     };
     for (int k = 0; k < k_pad; ++k) {
         beyond(-1 - k, k);

@@ -2,14 +2,16 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/direct_lights.cpp"
+// clang-format off: the order is Highway's
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 #include <hwy/contrib/math/math-inl.h>
-
-#include "simd/direct_lights.h"
+// clang-format on
 
 #include <algorithm>
 #include <numbers>
+
+#include "simd/direct_lights.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {
@@ -36,14 +38,15 @@ struct TableKernel {
         const V c = hn::Max(hn::Sub(hn::Set(d, 1.f), half_chord2), hn::Set(d, -1.f));
         const V at = hn::Mul(hn::Acos(d, c), hn::Set(d, float(kernel.table.steps / std::numbers::pi)));
         const auto index = hn::ConvertTo(hn::RebindToSigned<D>(), at);
-        const V low = hn::GatherIndex(d, kernel.table.values, index), high = hn::GatherIndex(d, kernel.table.values + 1, index);
+        const V low = hn::GatherIndex(d, kernel.table.values, index),
+                high = hn::GatherIndex(d, kernel.table.values + 1, index);
         return hn::MulAdd(hn::Sub(at, hn::ConvertTo(d, index)), hn::Sub(high, low), low);
     }
 };
 
 template <typename Kernel>
-HWY_INLINE void add_lights(const LightCluster* clusters, int cluster_count, const PointSet& points, const Kernel& kernel, const float* x,
-                           const float* y, const float* z, int count, float* rgb) {
+HWY_INLINE void add_lights(const LightNode* nodes, int node_count, const PointSet& points, const Kernel& kernel,
+                           const float* x, const float* y, const float* z, int count, float* rgb) {
     const D d;
     const int lanes = int(hn::Lanes(d));
     constexpr int block_size = 16;  // on every instruction set, so that all choose the same detail
@@ -54,21 +57,30 @@ HWY_INLINE void add_lights(const LightCluster* clusters, int cluster_count, cons
             const int from = i + std::min(k, n - 1);
             block[0][k] = x[from], block[1][k] = y[from], block[2][k] = z[from];
         }
-        for (int cluster = 0; cluster < cluster_count; ++cluster) {
-            const LightCluster& c = clusters[cluster];
-            float nearest = -1, farthest = 1;
-            for (int k = 0; k < block_size; ++k) {
-                const float cosine = block[0][k] * c.x + block[1][k] * c.y + block[2][k] * c.z;
-                nearest = std::max(nearest, cosine);
-                farthest = std::min(farthest, cosine);
+        for (int n_at = 0; n_at < node_count;) {
+            const LightNode& node = nodes[n_at];
+            if (node.cos_far <= 1) {
+                float nearest = -1, farthest = 1;
+                for (int lane = 0; lane < block_size; lane += lanes) {
+                    const V cosine = hn::MulAdd(hn::Load(d, block[0] + lane), hn::Set(d, node.x),
+                                                hn::MulAdd(hn::Load(d, block[1] + lane), hn::Set(d, node.y),
+                                                           hn::Mul(hn::Load(d, block[2] + lane), hn::Set(d, node.z))));
+                    nearest = std::max(nearest, hn::GetLane(hn::MaxOfLanes(d, cosine)));
+                    farthest = std::min(farthest, hn::GetLane(hn::MinOfLanes(d, cosine)));
+                }
+                const bool on_horizon = farthest < node.radius && nearest > -node.radius;
+                if (on_horizon || nearest >= node.cos_far) {
+                    ++n_at;
+                    continue;
+                }
             }
-            const bool on_horizon = farthest < c.spread && nearest > -c.spread;
-            const LightCluster& next = clusters[cluster + 1];
-            const bool coarse = !on_horizon && nearest < c.cos_coarse, middle = !on_horizon && nearest < c.cos_middle;
-            const int begin = coarse ? c.coarse : middle ? c.middle : c.fine, end = coarse ? next.coarse : middle ? next.middle : next.fine;
+            n_at = node.skip;
+            const int begin = node.first, end = node.first + node.count;
             for (int lane = 0; lane < block_size; lane += lanes) {
-                const V vx = hn::Load(d, block[0] + lane), vy = hn::Load(d, block[1] + lane), vz = hn::Load(d, block[2] + lane);
-                V r = hn::Load(d, block[3] + lane), g = hn::Load(d, block[4] + lane), b = hn::Load(d, block[5] + lane);
+                const V vx = hn::Load(d, block[0] + lane), vy = hn::Load(d, block[1] + lane),
+                        vz = hn::Load(d, block[2] + lane);
+                // Summed for each node first: thousands of small terms on one large sum would lose their last digits.
+                V r = hn::Zero(d), g = hn::Zero(d), b = hn::Zero(d);
                 for (int p = begin; p < end; ++p) {
                     const V dx = hn::Sub(vx, hn::Set(d, points.x[p])), dy = hn::Sub(vy, hn::Set(d, points.y[p])),
                             dz = hn::Sub(vz, hn::Set(d, points.z[p]));
@@ -78,9 +90,9 @@ HWY_INLINE void add_lights(const LightCluster* clusters, int cluster_count, cons
                     g = hn::MulAdd(f, hn::Set(d, points.g[p]), g);
                     b = hn::MulAdd(f, hn::Set(d, points.b[p]), b);
                 }
-                hn::Store(r, d, block[3] + lane);
-                hn::Store(g, d, block[4] + lane);
-                hn::Store(b, d, block[5] + lane);
+                hn::Store(hn::Add(hn::Load(d, block[3] + lane), r), d, block[3] + lane);
+                hn::Store(hn::Add(hn::Load(d, block[4] + lane), g), d, block[4] + lane);
+                hn::Store(hn::Add(hn::Load(d, block[5] + lane), b), d, block[5] + lane);
             }
         }
         for (int k = 0; k < n; ++k)
@@ -88,10 +100,12 @@ HWY_INLINE void add_lights(const LightCluster* clusters, int cluster_count, cons
     }
 }
 
-void add_direct_lights(const LightCluster* clusters, int cluster_count, const PointSet& points, const DirectKernel& kernel, const float* x,
-                       const float* y, const float* z, int count, float* rgb) {
-    if (kernel.table.values) add_lights(clusters, cluster_count, points, TableKernel{kernel}, x, y, z, count, rgb);
-    else add_lights(clusters, cluster_count, points, GgxKernel{kernel}, x, y, z, count, rgb);
+void add_direct_lights(const LightNode* nodes, int node_count, const PointSet& points, const DirectKernel& kernel,
+                       const float* x, const float* y, const float* z, int count, float* rgb) {
+    if (kernel.table.values)
+        add_lights(nodes, node_count, points, TableKernel{kernel}, x, y, z, count, rgb);
+    else
+        add_lights(nodes, node_count, points, GgxKernel{kernel}, x, y, z, count, rgb);
 }
 
 }  // namespace domelight::simd::HWY_NAMESPACE
@@ -102,9 +116,9 @@ namespace domelight::simd {
 
 HWY_EXPORT(add_direct_lights);
 
-void add_direct_lights(const LightCluster* clusters, int cluster_count, const PointSet& points, const DirectKernel& kernel, const float* x,
-                       const float* y, const float* z, int count, float* rgb) {
-    HWY_DYNAMIC_DISPATCH(add_direct_lights)(clusters, cluster_count, points, kernel, x, y, z, count, rgb);
+void add_direct_lights(const LightNode* nodes, int node_count, const PointSet& points, const DirectKernel& kernel,
+                       const float* x, const float* y, const float* z, int count, float* rgb) {
+    HWY_DYNAMIC_DISPATCH(add_direct_lights)(nodes, node_count, points, kernel, x, y, z, count, rgb);
 }
 
 }  // namespace domelight::simd

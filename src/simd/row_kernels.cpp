@@ -2,8 +2,12 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/row_kernels.cpp"
+// clang-format off: the order is Highway's
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+// clang-format on
+
+#include <algorithm>
 
 #include "simd/batch_fft.h"
 #include "simd/row_kernels.h"
@@ -31,14 +35,16 @@ void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* we
     constexpr int vectors = 4;
     const int lanes = int(hn::Lanes(D()));
     int i = 0;
-    for (; i + vectors * lanes <= n; i += vectors * lanes) add_columns<vectors>(rows + i, stride, weights, count, sum + i);
+    for (; i + vectors * lanes <= n; i += vectors * lanes)
+        add_columns<vectors>(rows + i, stride, weights, count, sum + i);
     for (; i + lanes <= n; i += lanes) add_columns<1>(rows + i, stride, weights, count, sum + i);
     // The tail through the same instructions, so that a column's bits do not depend on where it lies.
     if (i < n) {
         const hn::CappedTag<float, 1> one;
         for (; i < n; ++i) {
             auto total = hn::LoadU(one, sum + i);
-            for (int j = 0; j < count; ++j) total = hn::MulAdd(hn::Set(one, weights[j]), hn::LoadU(one, rows + j * stride + i), total);
+            for (int j = 0; j < count; ++j)
+                total = hn::MulAdd(hn::Set(one, weights[j]), hn::LoadU(one, rows + j * stride + i), total);
             hn::StoreU(total, one, sum + i);
         }
     }
@@ -67,6 +73,35 @@ float largest(const float* values, int n) {
     return result;
 }
 
+Summary summarize(const float* values, int n) {
+    // Sixteen partial sums whatever the vectors' width.
+    constexpr int partial = 16;
+    const hn::CappedTag<float, partial> d;
+    const int lanes = int(hn::Lanes(d));
+    alignas(64) float sum[partial] = {}, most[partial] = {};
+    int i = 0;
+    constexpr int block = 64 * partial;  // partial sums of long rows in blocks keep the digits
+    float total = 0, largest = 0;
+    while (i + partial <= n) {
+        const int end = std::min(i + block, n / partial * partial);
+        for (int lane = 0; lane < partial; lane += lanes) {
+            auto s = hn::Zero(d), m = hn::Load(d, most + lane);
+            for (int k = i; k < end; k += partial) {
+                const auto v = hn::LoadU(d, values + k + lane);
+                s = hn::Add(s, v);
+                m = hn::Max(m, v);
+            }
+            hn::Store(s, d, sum + lane);
+            hn::Store(m, d, most + lane);
+        }
+        for (const float s : sum) total += s;
+        i = end;
+    }
+    for (const float m : most) largest = std::max(largest, m);
+    for (; i < n; ++i) total += values[i], largest = std::max(largest, values[i]);
+    return {largest, total};
+}
+
 bool clamp_negative(float* values, int n) {
     const D d;
     const int lanes = int(hn::Lanes(d));
@@ -92,6 +127,7 @@ namespace domelight::simd {
 HWY_EXPORT(add_weighted_rows);
 HWY_EXPORT(gather_fft_rows);
 HWY_EXPORT(largest);
+HWY_EXPORT(summarize);
 HWY_EXPORT(clamp_negative);
 
 void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* weights, int count, float* sum, int n) {
@@ -100,8 +136,15 @@ void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* we
 void gather_fft_rows(const float* rows, std::ptrdiff_t stride, int texel, int width, float* out) {
     HWY_DYNAMIC_DISPATCH(gather_fft_rows)(rows, stride, texel, width, out);
 }
-float largest(const float* values, int n) { return HWY_DYNAMIC_DISPATCH(largest)(values, n); }
-bool clamp_negative(float* values, int n) { return HWY_DYNAMIC_DISPATCH(clamp_negative)(values, n); }
+float largest(const float* values, int n) {
+    return HWY_DYNAMIC_DISPATCH(largest)(values, n);
+}
+Summary summarize(const float* values, int n) {
+    return HWY_DYNAMIC_DISPATCH(summarize)(values, n);
+}
+bool clamp_negative(float* values, int n) {
+    return HWY_DYNAMIC_DISPATCH(clamp_negative)(values, n);
+}
 
 }  // namespace domelight::simd
 #endif

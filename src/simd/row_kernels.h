@@ -4,8 +4,8 @@
 
 namespace domelight::simd {
 
-/// sum[i] += weights[0] rows[i] + weights[1] rows[i + stride] + ..., `count` rows, i < n. In the order of the rows: the same bits however they are
-/// handed over.
+/// sum[i] += weights[0] rows[i] + weights[1] rows[i + stride] + ..., `count` rows, i < n. In the order of the rows: the
+/// same bits however they are handed over.
 void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* weights, int count, float* sum, int n);
 
 /// One channel of 32 rows into the layout of BatchFft: out[x * 32 + i] = rows[i * stride + x * texel].
@@ -13,6 +13,12 @@ void gather_fft_rows(const float* rows, std::ptrdiff_t stride, int texel, int wi
 
 /// The largest of n values (at least 0).
 float largest(const float* values, int n);
+
+/// The largest (at least 0) and the sum of n values, the same bits on every instruction set.
+struct Summary {
+    float largest, sum;
+};
+Summary summarize(const float* values, int n);
 
 /// Sets negative values of n to 0; returns whether there was one.
 bool clamp_negative(float* values, int n);
