@@ -281,7 +281,7 @@ void AlignedResampler::copy_rows(ImageView<const float> rows) {
             }
         }
     };
-    parallel_ranges(rows.height, 8, std::int64_t(rows.height) * width_ < 1 << 16 ? 1 : threads_,
+    parallel_ranges(rows.height, 4, std::int64_t(rows.height) * width_ < 1 << 16 ? 1 : threads_,
                     [&](int begin, int end) {
                         for (int y = begin; y < end; ++y) copy(y);
                     });

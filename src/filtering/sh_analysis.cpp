@@ -10,6 +10,7 @@ namespace domelight {
 namespace {
 
 constexpr int k_batch = RingAnalysis::k_batch;
+constexpr int k_batches_at_once = 4;
 /// The least decay of a filtered spectrum at the band limit: see InterpolationTaps.
 constexpr double k_decay = 16;
 
@@ -66,6 +67,8 @@ void ShAnalysis::transform_finished(int next_row) {
         if (!finished) break;
     }
     const int first = next_batch_;
+    // Three channels a batch: several batches at once leave no thread without work.
+    if (end - first < k_batches_at_once && end < rings_.batch_count()) return;
     parallel_for(3 * (end - first), threads_, [&](int task) {
         const int index = first + task / 3;
         const auto batch = open_.find(index);
