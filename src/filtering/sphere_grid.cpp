@@ -6,12 +6,17 @@
 #include "simd/row_kernels.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
 
 namespace domelight {
 namespace {
 
 /// How far a filtered spectrum has fallen at its band limit: see InterpolationTaps.
 constexpr double k_decay = 16;
+
+constexpr int k_all_faces[6] = {0, 1, 2, 3, 4, 5};
 
 /// Sets negative values of a row to 0; returns how many texels had one.
 int clamp_texels(float* rgb, int width) {
@@ -24,41 +29,82 @@ int clamp_texels(float* rgb, int width) {
     return count;
 }
 
-/// Fills `out`; direction(x, y) is the world direction of a texel.
-template <typename Direction>
-std::int64_t lookup_rows(const SphereGrid& grid, ImageView<float> out, const LookupOptions& options,
-                         const Direction& direction) {
-    const simd::TapTable table(InterpolationTaps(8, options.band, k_decay));
-    const simd::GridView view = grid.view();
-    std::vector<std::int64_t> clamped(out.height);
-    parallel_ranges(out.height, 4, options.threads, [&](int begin, int end) {
-        std::vector<double> x(out.width), y(out.width), z(out.width);
-        std::vector<float> unit(3 * std::size_t(out.width));
-        for (int row = begin; row < end; ++row) {
-            for (int i = 0; i < out.width; ++i) {
-                const Vec3d d = options.world_to_source * direction(i, row);
-                x[i] = d.x, y[i] = d.y, z[i] = d.z;
-            }
-            float* rgb = out.row(row);
-            simd::lookup_directions(view, table, x.data(), y.data(), z.data(), out.width, rgb);
-            if (options.bright || options.lights) {
-                float *ux = unit.data(), *uy = ux + out.width, *uz = uy + out.width;
-                for (int i = 0; i < out.width; ++i) {
-                    const double n = 1 / std::sqrt(x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
-                    ux[i] = float(x[i] * n), uy[i] = float(y[i] * n), uz[i] = float(z[i] * n);
-                }
-                if (options.bright)
-                    simd::add_zonal_sum(options.bright->view(), options.residual, ux, uy, uz, out.width, rgb);
-                if (options.lights)
-                    simd::add_direct_lights(options.lights->nodes.data(), int(options.lights->nodes.size()),
-                                            options.lights->points.view(), options.kernel, ux, uy, uz, out.width, rgb);
-            }
-            clamped[row] = clamp_texels(rgb, out.width);
+/// Looks rows of texels up, adds what the expansion is short of, and clamps.
+class RowLookup {
+  public:
+    RowLookup(const SphereGrid& grid, const LookupOptions& options)
+        : view_(grid.view()), table_(InterpolationTaps(8, options.band, k_decay)), options_(options) {}
+
+    /// A row of texels at directions in the world; returns how many had a negative value.
+    int row(std::span<const Vec3d> directions, float* rgb) const {
+        Row r(directions, options_.world_to_source);
+        simd::lookup_directions(view_, table_, r.x(), r.y(), r.z(), r.count, rgb);
+        return complete(r, rgb);
+    }
+    /// The same for a row and its turns by one, two and three quarters about the source's polar axis.
+    int quarter_turns(std::span<const Vec3d> directions, float* const (&rgb)[4]) const {
+        Row r(directions, options_.world_to_source);
+        simd::lookup_quarter_turns(view_, table_, r.x(), r.y(), r.z(), r.count, rgb);
+        int clamped = 0;
+        for (int k = 0; k < 4; ++k) {
+            clamped += complete(r, rgb[k]);
+            r.turn();
         }
+        return clamped;
+    }
+
+  private:
+    /// Directions in the source's frame.
+    struct Row {
+        Row(std::span<const Vec3d> directions, const Mat3& world_to_source)
+            : count(int(directions.size())), values(3 * directions.size()) {
+            for (int i = 0; i < count; ++i) {
+                const Vec3d d = world_to_source * directions[i];
+                x()[i] = d.x, y()[i] = d.y, z()[i] = d.z;
+            }
+        }
+        double* x() { return values.data(); }
+        double* y() { return x() + count; }
+        double* z() { return y() + count; }
+        void turn() {
+            for (int i = 0; i < count; ++i) {
+                std::swap(x()[i], z()[i]);
+                x()[i] = -x()[i];
+            }
+        }
+        int count;
+        std::vector<double> values;
+    };
+
+    int complete(Row& r, float* rgb) const {
+        if (options_.bright || options_.lights) {
+            const int n = r.count;
+            std::vector<float> unit(3 * std::size_t(n));
+            float *x = unit.data(), *y = x + n, *z = y + n;
+            for (int i = 0; i < n; ++i) {
+                const double dx = r.x()[i], dy = r.y()[i], dz = r.z()[i], scale = 1 / std::sqrt(dx * dx + dy * dy + dz * dz);
+                x[i] = float(dx * scale), y[i] = float(dy * scale), z[i] = float(dz * scale);
+            }
+            if (options_.bright) simd::add_zonal_sum(options_.bright->view(), options_.residual, x, y, z, n, rgb);
+            if (const auto* lights = options_.lights)
+                simd::add_direct_lights(lights->nodes.data(), int(lights->nodes.size()), lights->points.view(), options_.kernel, x, y, z, n, rgb);
+        }
+        return clamp_texels(rgb, r.count);
+    }
+
+    simd::GridView view_;
+    simd::TapTable table_;
+    const LookupOptions& options_;
+};
+
+/// Calls row(y), which returns a count, for each of `rows`; returns the sum.
+template <typename Row>
+std::int64_t for_rows(int rows, int threads, const Row& row) {
+    std::vector<int> counts(rows);
+    parallel_ranges(rows, 4, threads, [&](int begin, int end) {
+        for (int y = begin; y < end; ++y) counts[y] = row(y);
     });
-    std::int64_t sum = 0;
-    for (const std::int64_t c : clamped) sum += c;
-    return sum;
+    return std::accumulate(counts.begin(), counts.end(), std::int64_t(0));
 }
 
 }  // namespace
@@ -89,20 +135,43 @@ void SphereGrid::wrap() {
 }
 
 Cubemap grid_to_cube(const SphereGrid& grid, int size, const LookupOptions& options, std::int64_t& clamped) {
-    Cubemap cube(size);
-    clamped += lookup_rows(grid, cube.strip(), options, [size](int x, int row) {
-        return cube_direction(row / size, {(x + 0.5) / size, (row % size + 0.5) / size});
+    Cubemap cube(ImageF::uninitialized(size, 6 * size, 3));
+    const RowLookup lookup(grid, options);
+    const auto directions = [size](int face, int y) {
+        std::vector<Vec3d> row(size);
+        for (int x = 0; x < size; ++x) row[x] = cube_direction(face, {(x + 0.5) / size, (y + 0.5) / size});
+        return row;
+    };
+    // Where the source's pole is the world's, the side faces are turns of one another.
+    constexpr int sides[4] = {0, 4, 1, 5}, poles[2] = {2, 3};
+    const bool turns = options.world_to_source.row[1] == Vec3d{0, 1, 0} && grid.grid().width % 4 == 0;
+    if (turns)
+        clamped += for_rows(size, options.threads, [&](int y) {
+            auto row = directions(sides[0], y);
+            float* out[4];
+            for (int k = 0; k < 4; ++k) out[k] = cube.face(sides[k]).row(y);
+            return lookup.quarter_turns(row, out);
+        });
+    const std::span<const int> one_by_one = turns ? std::span<const int>(poles) : std::span<const int>(k_all_faces);
+    clamped += for_rows(int(one_by_one.size()) * size, options.threads, [&](int task) {
+        const int face = one_by_one[task / size], y = task % size;
+        auto row = directions(face, y);
+        return lookup.row(row, cube.face(face).row(y));
     });
     return cube;
 }
 
 ImageF grid_to_latlong(const SphereGrid& grid, int height, const LookupOptions& options, std::int64_t& clamped) {
-    ImageF image(2 * height, height, 3);
-    std::vector<Vec3d> equator(2 * height);
-    for (int x = 0; x < 2 * height; ++x) equator[x] = latlong_direction({(x + 0.5) / (2 * height), 0.5});
-    clamped += lookup_rows(grid, image.view(), options, [&](int x, int row) {
-        const double theta = k_pi * (row + 0.5) / height, s = std::sin(theta);
-        return Vec3d{s * equator[x].x, std::cos(theta), s * equator[x].z};
+    const int width = 2 * height;
+    ImageF image = ImageF::uninitialized(width, height, 3);
+    const RowLookup lookup(grid, options);
+    std::vector<Vec3d> equator(width);
+    for (int x = 0; x < width; ++x) equator[x] = latlong_direction({(x + 0.5) / width, 0.5});
+    clamped += for_rows(height, options.threads, [&](int y) {
+        const double theta = k_pi * (y + 0.5) / height, s = std::sin(theta);
+        std::vector<Vec3d> row(width);
+        for (int x = 0; x < width; ++x) row[x] = {s * equator[x].x, std::cos(theta), s * equator[x].z};
+        return lookup.row(row, image.row(y));
     });
     return image;
 }

@@ -51,6 +51,7 @@ using D = hn::CappedTag<float, 16>;
 struct Place {
     Place(const GridView& grid, const TapTable& table, double column, double row) {
         const int c0 = int(column), r0 = int(std::floor(row));
+        this->column = c0;
         const double fc = (column - c0) * TapTable::k_steps, fr = (row - r0) * TapTable::k_steps;
         const int ic = std::min(int(fc), TapTable::k_steps - 1), ir = std::min(int(fr), TapTable::k_steps - 1);
         offset = (r0 - (k_taps / 2 - 1)) * grid.stride + (c0 - (k_taps / 2 - 1)) * 4;
@@ -68,6 +69,7 @@ struct Place {
         return hn::MulAdd(hn::Set(d, t), hn::Sub(high, low), low);
     }
     std::ptrdiff_t offset;
+    int column;
     const float* across;
     float t;
     alignas(64) float down[k_taps];
@@ -130,12 +132,28 @@ HWY_INLINE void for_each_place(const GridView& grid, const TapTable& table, cons
             px = bx, py = by, pz = bz;
         }
         grid_coordinates(grid, px, py, pz, k_block, column, row);
-        for (int k = 0; k < n; ++k) use(i + k, Place(grid, table, column[k], row[k]));
+        for (int k = 0; k < n; ++k) {
+            Place place(grid, table, column[k], row[k]);
+            use(i + k, place);
+        }
     }
 }
 
 void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out) {
     for_each_place(grid, table, x, y, z, count, [&](int i, const Place& place) HWY_ATTR { lookup_one(grid, place, out + 3 * std::size_t(i)); });
+}
+
+void lookup_quarter_turns(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count,
+                          float* const (&out)[4]) {
+    const std::ptrdiff_t quarter = grid.width, row = 4 * std::ptrdiff_t(grid.width);  // floats of a quarter of a ring, and of all
+    for_each_place(grid, table, x, y, z, count, [&](int i, Place& place) HWY_ATTR {
+        for (int k = 0; k < 4; ++k) {
+            lookup_one(grid, place, out[k] + 3 * std::size_t(i));
+            place.offset += quarter;
+            place.column += grid.width / 4;
+            if (place.column >= grid.width) place.offset -= row, place.column -= grid.width;
+        }
+    });
 }
 
 void scatter_directions(const GridView& grid, float* rgbx, const TapTable& table, const double* x, const double* y, const double* z, int count,
@@ -150,6 +168,7 @@ HWY_AFTER_NAMESPACE();
 namespace domelight::simd {
 
 HWY_EXPORT(lookup_directions);
+HWY_EXPORT(lookup_quarter_turns);
 HWY_EXPORT(scatter_directions);
 
 TapTable::TapTable(const InterpolationTaps& taps) : across((k_steps + 1) * 32), down((k_steps + 1) * 8) {
@@ -165,6 +184,10 @@ TapTable::TapTable(const InterpolationTaps& taps) : across((k_steps + 1) * 32), 
 
 void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out) {
     HWY_DYNAMIC_DISPATCH(lookup_directions)(grid, table, x, y, z, count, out);
+}
+void lookup_quarter_turns(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count,
+                          float* const (&out)[4]) {
+    HWY_DYNAMIC_DISPATCH(lookup_quarter_turns)(grid, table, x, y, z, count, out);
 }
 void scatter_directions(const GridView& grid, float* rgbx, const TapTable& table, const double* x, const double* y, const double* z, int count,
                         const float* rgb) {

@@ -25,6 +25,11 @@ struct GridView {
 /// Values at `count` directions (need not be of unit length): 8 x 8 taps in colatitude and azimuth from +X towards +Z. out: RGB.
 void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out);
 
+/// The same at four directions for each one given: as it is and turned by one, two and three quarters from +X towards +Z. A grid that is a multiple
+/// of four wide has the same weights there.
+void lookup_quarter_turns(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count,
+                          float* const (&out)[4]);
+
 /// The lookup's transpose: adds each direction's value (RGB) to the 8 x 8 grid points around it with the lookup's weights. `rgbx` as in GridView.
 void scatter_directions(const GridView& grid, float* rgbx, const TapTable& table, const double* x, const double* y, const double* z, int count,
                         const float* rgb);
