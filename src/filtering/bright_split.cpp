@@ -1,7 +1,6 @@
 #include "filtering/bright_split.h"
 
 #include "domelight/projection.h"
-#include "domelight/spherical_harmonics.h"
 
 #include "filtering/tent_nodes.h"
 #include "simd/row_kernels.h"
@@ -87,37 +86,13 @@ void BrightSplit::take_from(ImageView<float> rows) {
     }
 }
 
-BrightPoints BrightSplit::points(int nodes) const {
-    BrightPoints points;
-    for (const Texel& t : texels_) add_tent_nodes(points, width_, height_, t.x, t.y, t.rgb, nodes);
-    return points;
-}
-
-Vec3d BrightSplit::power() const {
-    const BrightPoints p = points(2);
-    Vec3d sum;
-    for (int i = 0; i < p.count(); ++i) sum = sum + Vec3d{p.r[i], p.g[i], p.b[i]};
-    return sum;
-}
-
-void BrightSplit::add_to_sh(std::vector<Vec3d>& coefficients, int bands, const Mat3& world_to_source) const {
-    const BrightPoints p = points(2);
-    const Mat3 source_to_world = world_to_source.transposed();
-    std::vector<double> basis(coefficients.size());
-    for (int i = 0; i < p.count(); ++i) {
-        sh_basis(normalize(source_to_world * Vec3d{p.x[i], p.y[i], p.z[i]}), bands, basis);
-        for (std::size_t k = 0; k < basis.size(); ++k)
-            coefficients[k] = coefficients[k] + Vec3d{p.r[i], p.g[i], p.b[i]} * basis[k];
-    }
-}
-
 /// Builds the tree over texels, all of one kernel.
 class BrightSplit::TreeBuilder {
   public:
     TreeBuilder(const BrightSplit& split, double lobe_width) : split_(split), lobe_width_(lobe_width) {
         const double texel_angle = k_pi / split.height_;
         const int nodes = std::clamp(2 + int(std::ceil(4 * texel_angle / lobe_width)), 3, 16);
-        for (const Texel& t : split.texels_) {
+        for (const LoneTexel& t : split.texels_) {
             first_.push_back(fine_.count());
             add_tent_nodes(fine_, split.width_, split.height_, t.x, t.y, t.rgb, nodes);
         }

@@ -4,6 +4,7 @@
 #include "domelight/zonal_kernel.h"
 
 #include "filtering/bright_texels.h"
+#include "filtering/sh_analysis.h"
 #include "simd/direct_lights.h"
 
 #include <vector>
@@ -21,11 +22,8 @@ class BrightSplit {
     /// times the mean of what was left in the rows so far, k_most at most) does not depend on how rows are handed over.
     void take_from(ImageView<float> rows);
     bool empty() const { return texels_.empty(); }
-    /// The power taken out: int g d omega.
-    Vec3d power() const;
-    /// Adds its real coefficients in world space (basis of spherical_harmonics.h).
-    void add_to_sh(std::vector<Vec3d>& coefficients, int bands, const Mat3& world_to_source) const;
-
+    /// Spherical-harmonic coefficients of what was taken out.
+    Spectrum spectrum(int band_limit, int threads) const { return analyse_texels(width_, height_, texels_, band_limit, threads); }
     /// The texels as a tree of lights for a kernel.
     struct Lights {
         std::vector<simd::LightNode> nodes;
@@ -34,20 +32,14 @@ class BrightSplit {
     Lights lights(const ZonalKernel& kernel) const;
 
   private:
-    struct Texel {
-        int x, y;
-        float rgb[3];
-    };
     static constexpr int k_most = 4096;
     static constexpr double k_outshine = 300;
 
     class TreeBuilder;
 
-    BrightPoints points(int nodes) const;
-
     int width_, height_, next_row_ = 0;
     double sum_ = 0, weight_ = 0;  ///< of the channels' mean over the rows so far, without what was taken
-    std::vector<Texel> texels_;
+    std::vector<LoneTexel> texels_;
 };
 
 /// A kernel in the form that the sum over lights takes, with its table if it needs one.

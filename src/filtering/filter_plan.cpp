@@ -11,8 +11,10 @@ constexpr int k_most_degrees = 3072;
 constexpr int k_least_degrees = 256;
 /// b L at the band limit L.
 constexpr double k_decay = 16.6, k_decay_split = 11;
-/// From here on a lobe counts as narrow.
+/// From here on a lobe counts as narrow: a sun is then 10^6 times what is dark beside it, and float expansions round.
 constexpr int k_split_degrees = 600;
+constexpr double k_split_exponent = 500;
+
 
 }  // namespace
 
@@ -38,24 +40,46 @@ bool leaves_residual(const ZonalKernel& kernel) {
     }
 }
 
+namespace {
+
+bool is_narrow(const ZonalKernel& kernel) {
+    switch (kernel.lobe) {
+        case Lobe::ggx: return required_band_limit(kernel, false) > k_split_degrees;
+        case Lobe::charlie: return false;
+        default: return kernel.width > k_split_exponent;
+    }
+}
+
+}  // namespace
+
 FilterPlan make_filter_plan(const FilterOptions& options) {
     struct Need {
         int level, band_limit;
+        bool narrow;
     };
-    FilterPlan plan;
-    for (const LevelSpec& level : options.specular)
-        plan.split |= !level.mirror && level.kernel.lobe == Lobe::ggx && required_band_limit(level.kernel, false) > k_split_degrees;
     std::vector<Need> needs;
+    const auto add = [&](int level, const ZonalKernel& kernel) {
+        const bool narrow = is_narrow(kernel);
+        needs.push_back({level, required_band_limit(kernel, narrow), narrow});
+    };
     for (int l = 0; l < int(options.specular.size()); ++l)
-        if (!options.specular[l].mirror) needs.push_back({l, required_band_limit(options.specular[l].kernel, plan.split)});
-    if (options.irradiance_size > 0) needs.push_back({FilterPlan::k_irradiance, required_band_limit(ZonalKernel::cosine(), plan.split)});
-    std::stable_sort(needs.begin(), needs.end(), [](const Need& a, const Need& b) { return a.band_limit > b.band_limit; });
+        if (!options.specular[l].mirror) add(l, options.specular[l].kernel);
+    if (options.irradiance_size > 0) add(FilterPlan::k_irradiance, ZonalKernel::cosine());
+    std::stable_sort(needs.begin(), needs.end(),
+                     [](const Need& a, const Need& b) { return std::pair(a.narrow, a.band_limit) > std::pair(b.narrow, b.band_limit); });
 
-    plan.band_limit = std::max(options.sh_bands - 1, 8);
+    FilterPlan plan;
+    // The interpolation between rows and rings is made for spectra that have fallen off at the band limit: coefficients
+    // that are wanted as they are lie in its first third.
+    plan.wide_band_limit = std::max(64, 3 * (options.sh_bands - 1));
+    plan.band_limit = plan.wide_band_limit;
     for (const Need& need : needs) {
         plan.band_limit = std::max(plan.band_limit, need.band_limit);
+        if (!need.narrow) plan.wide_band_limit = std::max(plan.wide_band_limit, need.band_limit);
+        plan.split |= need.narrow;
         const RingGrid grid = ring_grid_for(need.band_limit);
-        if (plan.groups.empty() || plan.groups.back().grid != grid) plan.groups.push_back({need.band_limit, grid, {}});
+        if (plan.groups.empty() || plan.groups.back().grid != grid || plan.groups.back().narrow != need.narrow)
+            plan.groups.push_back({need.band_limit, grid, need.narrow, {}});
         plan.groups.back().levels.push_back(need.level);
     }
     return plan;

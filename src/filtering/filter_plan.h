@@ -13,12 +13,14 @@ struct FilterPlan {
     struct Group {
         int band_limit = 0;
         RingGrid grid;
+        bool narrow = false;
         std::vector<int> levels;  ///< indices of FilterOptions::specular; k_irradiance for the irradiance map
     };
     static constexpr int k_irradiance = -1;
 
-    int band_limit = 0;  ///< of the analysis
-    /// A lobe is so narrow that what outshines the rest is better taken out of a lat-long image before it is expanded (BrightSplit).
+    int band_limit = 0;       ///< of the analysis
+    int wide_band_limit = 0;  ///< of all levels that are not narrow
+    /// There are narrow levels: what outshines the rest by far is better taken out of a lat-long image before it is expanded (BrightSplit).
     bool split = false;
     std::vector<Group> groups;
 };

@@ -53,9 +53,10 @@ class Synthesis {
     /// The environment's brightest texels as point lights, fine enough for a band limit.
     using Bright = std::function<BrightPoints(int band_limit)>;
 
-    /// `split`: what was taken out of the spectrum, if anything.
-    Synthesis(const Spectrum& spectrum, Bright bright, const BrightSplit* split, const FilterOptions& options, FilterResult& result)
-        : spectrum_(spectrum), bright_(std::move(bright)), split_(split && !split->empty() ? split : nullptr), options_(options), result_(result) {}
+    /// `narrow`: the spectrum for narrow lobes, without what `split` holds; null where nothing was taken out.
+    Synthesis(const Spectrum& spectrum, const Spectrum* narrow, const BrightSplit* split, Bright bright, const FilterOptions& options,
+              FilterResult& result)
+        : spectrum_(spectrum), narrow_(narrow), split_(split), bright_(std::move(bright)), options_(options), result_(result) {}
 
     Result<void> run(const FilterPlan& plan) {
         for (const FilterPlan::Group& group : plan.groups) {
@@ -83,7 +84,8 @@ class Synthesis {
             factors.push_back(kernels.back().coefficients(group.band_limit));
             residual |= leaves_residual(kernels.back());
         }
-        const auto grids = sh_synthesis(spectrum_, factors, group.grid, options_.threads);
+        const bool split = group.narrow && narrow_;
+        const auto grids = sh_synthesis(split ? *narrow_ : spectrum_, factors, group.grid, options_.threads);
         BrightPoints points;
         std::unique_ptr<ResidualKernels> tables;
         if (residual) {
@@ -95,7 +97,7 @@ class Synthesis {
             if (tables && leaves_residual(kernels[i])) lookup.bright = &points, lookup.residual = tables->table(int(i));
             BrightSplit::Lights lights;
             const DirectKernelTable direct(kernels[i]);
-            if (split_) {
+            if (split) {
                 lights = split_->lights(kernels[i]);
                 lookup.lights = &lights, lookup.kernel = direct.view();
             }
@@ -108,24 +110,21 @@ class Synthesis {
     }
 
     const Spectrum& spectrum_;
-    Bright bright_;
+    const Spectrum* narrow_;
     const BrightSplit* split_;
+    Bright bright_;
     const FilterOptions& options_;
     FilterResult& result_;
     std::size_t done_ = 0;
 };
 
 /// Everything that follows from the spectrum.
-Result<void> finish(const Spectrum& spectrum, Synthesis::Bright bright, const BrightSplit* split, const FilterPlan& plan,
+Result<void> finish(const Spectrum& spectrum, const Spectrum* narrow, const BrightSplit* split, Synthesis::Bright bright, const FilterPlan& plan,
                     const FilterOptions& options, FilterResult& result) {
     result.band_limit = plan.band_limit;
     result.mean = mean_radiance(spectrum);
-    if (split) result.mean = result.mean + split->power() / (4 * k_pi);
-    if (auto done = Synthesis(spectrum, std::move(bright), split, options, result).run(plan); !done) return done;
-    if (options.sh_bands > 0) {
-        result.sh = spectrum_to_sh(spectrum, options.sh_bands, options.world_to_source);
-        if (split) split->add_to_sh(result.sh, options.sh_bands, options.world_to_source);
-    }
+    if (auto done = Synthesis(spectrum, narrow, split, std::move(bright), options, result).run(plan); !done) return done;
+    if (options.sh_bands > 0) result.sh = spectrum_to_sh(spectrum, options.sh_bands, options.world_to_source);
     return {};
 }
 
@@ -145,9 +144,9 @@ Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) 
         if (auto read = source.read(chunk); !read) return read.error();
         for (auto& mirror : mirrors)
             if (mirror) mirror->add_rows(chunk);
+        bright.add_rows(chunk);
         if (plan.split) split.take_from(chunk);
         analysis.add_rows(chunk);
-        bright.add_rows(chunk);
         if (options.progress && !options.progress("read", double(y + chunk.height) / height)) return k_cancelled;
     }
     rows = {};
@@ -161,7 +160,15 @@ Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) 
     }
     const Spectrum spectrum = analysis.finish();
     const auto points = [&](int band_limit) { return bright.points(result.mean, band_limit); };
-    if (auto done = finish(spectrum, points, &split, plan, options, result); !done) return done.error();
+    Result<void> done;
+    if (split.empty()) {
+        done = finish(spectrum, nullptr, nullptr, points, plan, options, result);
+    } else {
+        Spectrum whole = split.spectrum(plan.wide_band_limit, options.threads);
+        whole.add(spectrum);
+        done = finish(whole, &spectrum, &split, points, plan, options, result);
+    }
+    if (!done) return done.error();
     return result;
 }
 
@@ -180,7 +187,7 @@ Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& optio
     const BorderedCube cube(source);
     const Spectrum spectrum = analyse_cube(cube, plan.band_limit, options.threads);
     const auto points = [&](int band_limit) { return bright_points(cube, result.mean, k_least_share, band_limit); };
-    if (auto done = finish(spectrum, points, nullptr, plan, options, result); !done) return done.error();
+    if (auto done = finish(spectrum, nullptr, nullptr, points, plan, options, result); !done) return done.error();
     return result;
 }
 

@@ -34,6 +34,16 @@ void RingAnalysis::transform(const float* rows, std::ptrdiff_t stride, int texel
     }
 }
 
+void RingAnalysis::add_orders(int row, double weight, std::span<const std::complex<double>> orders) {
+    for (int m = 0; m <= band_limit_; ++m)
+        for (int c = 0; c < 3; ++c) {
+            const std::complex<double> value = weight * order_factors_[m] * orders[3 * m + c];
+            float* re = rings_.data() + (std::size_t(m) * 6 + 2 * c) * stride_ + row;
+            re[0] += float(value.real());
+            re[stride_] += float(value.imag());
+        }
+}
+
 Spectrum RingAnalysis::finish(int threads) {
     const NorthernRings north(grid_.rings);
     Spectrum spectrum(band_limit_);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <complex>
+#include <span>
 
 #include "filtering/latitude_reduction.h"
 #include "filtering/ring_grid.h"
@@ -26,6 +27,10 @@ class RingAnalysis {
     /// Takes one channel of the rows 32 batch .. 32 batch + 31 (ring = row - k_pad). Different batches and channels may be given at the same time.
     /// rows: `stride` floats apart, texels `texel` floats apart.
     void transform(const float* rows, std::ptrdiff_t stride, int texel, int batch, int channel);
+    /// The other way to give rows, for a few that are nearly empty: adds `weight` times a row's Fourier coefficients, orders[3 m + channel] =
+    /// sum_x g e^{-2 pi i m x / W}, m = 0..band_limit. After clear().
+    void clear() { rings_.fill_zero(); }
+    void add_orders(int row, double weight, std::span<const std::complex<double>> orders);
     /// Once, after all rows.
     Spectrum finish(int threads);
 

@@ -83,4 +83,27 @@ Spectrum ShAnalysis::finish() {
     return rings_.finish(threads_);
 }
 
+Spectrum analyse_texels(int width, int height, std::span<const LoneTexel> texels, int band_limit, int threads) {
+    RingAnalysis rings(width, band_limit, tent_factors(width, band_limit));
+    const LatitudeReduction reduction(height, rings.grid().rings, double(band_limit) / rings.grid().rings, k_decay);
+    rings.clear();
+    std::vector<std::complex<double>> orders(3 * std::size_t(band_limit + 1));
+    for (std::size_t i = 0; i < texels.size();) {
+        const int y = texels[i].y;
+        std::fill(orders.begin(), orders.end(), 0);
+        for (; i < texels.size() && texels[i].y == y; ++i)
+            for (int m = 0; m <= band_limit; ++m) {
+                // The whole turns of m x / W leave no rounding.
+                const double turns = double(std::int64_t(m) * texels[i].x % width) / width;
+                const std::complex<double> wave = std::polar(1.0, -2 * k_pi * turns);
+                for (int c = 0; c < 3; ++c) orders[3 * m + c] += double(texels[i].rgb[c]) * wave;
+            }
+        for (int k = 0; k < reduction.count(); ++k) {
+            const auto& row = reduction.row(k);
+            if (row.first <= y && y < row.end()) rings.add_orders(k, row.weights[y - row.first], orders);
+        }
+    }
+    return rings.finish(threads);
+}
+
 }  // namespace domelight

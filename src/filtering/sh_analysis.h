@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 
 #include "domelight/image.h"
 #include "filtering/latitude_reduction.h"
@@ -32,5 +33,14 @@ class ShAnalysis {
     int next_batch_ = 0;
     std::map<int, AlignedArray<float>> open_;  ///< 32 ring rows that are transformed together, while image rows still add to them
 };
+
+/// A texel of a lat-long image that is black elsewhere.
+struct LoneTexel {
+    int x, y;
+    float rgb[3];
+};
+
+/// The same for an image of a few texels, sorted by rows, in time that grows with them and not with the image.
+Spectrum analyse_texels(int width, int height, std::span<const LoneTexel> texels, int band_limit, int threads);
 
 }  // namespace domelight

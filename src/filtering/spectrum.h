@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <complex>
 
 #include "core/aligned.h"
@@ -36,6 +37,18 @@ class Spectrum {
     std::complex<double> coefficient(int l, int m, int channel) const {
         const float* a = block(m, (l - m) % 2) + 6 * std::size_t((l - m) / 2) + 2 * channel;
         return {a[0], a[1]};
+    }
+
+    /// Adds another function's coefficients, of the degrees that both have.
+    void add(const Spectrum& other) {
+        const int shared = std::min(band_limit_, other.band_limit_);
+        for (int m = 0; m <= shared; ++m)
+            for (int parity = 0; parity < 2 && m + parity <= shared; ++parity) {
+                const int count = 6 * ((shared - m - parity) / 2 + 1);
+                float* mine = block(m, parity);
+                const float* theirs = other.block(m, parity);
+                for (int i = 0; i < count; ++i) mine[i] += theirs[i];
+            }
     }
 
   private:

@@ -51,6 +51,11 @@ struct Taken {
         }
         return sum;
     }
+    Vec3d mean() const {
+        const Spectrum spectrum = split.spectrum(8, 1);
+        const auto a = [&](int c) { return spectrum.coefficient(0, 0, c).real() / std::sqrt(4 * k_pi); };
+        return {a(0), a(1), a(2)};
+    }
     ImageF image, rest;
     BrightSplit split;
     std::vector<std::pair<int, int>> texels;
@@ -65,7 +70,9 @@ TEST_CASE("bright_split: takes what outshines the rest, however the rows come") 
     BrightSplit split(k_width, k_height);
     for (int y = 0; y < k_height; y += 7) split.take_from(rows.view().rows(y, std::min(7, k_height - y)));
     CHECK(std::ranges::equal(rows.pixels(), whole.rest.pixels()));
-    CHECK(length(split.power() - whole.split.power()) == 0);
+    const Spectrum a = split.spectrum(8, 1), b = whole.split.spectrum(8, 1);
+    for (int l = 0; l <= 8; ++l)
+        for (int m = 0; m <= l; ++m) CHECK(a.coefficient(l, m, 1) == b.coefficient(l, m, 1));
 }
 
 TEST_CASE("bright_split: the tree of lights gives each kernel over the tents themselves, at any distance") {
@@ -76,6 +83,7 @@ TEST_CASE("bright_split: the tree of lights gives each kernel over the tents the
                                       ZonalKernel::charlie(0.5)}) {
         const auto lights = taken.split.lights(kernel);
         const DirectKernelTable table(kernel);
+        const Vec3d mean = taken.mean();
         double worst = 0;
         for (int k = 0; k < 60; ++k) {
             Vec3d n = normalize(Vec3d{normal(random), normal(random), normal(random)});
@@ -89,11 +97,28 @@ TEST_CASE("bright_split: the tree of lights gives each kernel over the tents the
             simd::add_direct_lights(lights.nodes.data(), int(lights.nodes.size()), lights.points.view(), table.view(), &x, &y, &z, 1, rgb);
             const Vec3d truth = taken.exactly(kernel, n);
             // Relative to the sum, or where the horizon hides nearly all of it to a tenth of its mean over the sphere.
-            const Vec3d mean = taken.split.power() / (4 * k_pi);
+            
             for (const auto& [got, want, floor] : {std::tuple{rgb[0], truth.x, mean.x}, {rgb[1], truth.y, mean.y}, {rgb[2], truth.z, mean.z}})
                 worst = std::max(worst, std::abs(got - want) / std::max(want, 0.1 * floor));
         }
         CAPTURE(kernel.width);
         CHECK(worst < 6e-4);  // third order in width over distance: k_far
     }
+}
+
+TEST_CASE("bright_split: the spectrum of the texels is that of an image of them alone") {
+    const Taken taken;
+    ImageF alone(k_width, k_height, 3);
+    for (const auto& [x, y] : taken.texels) std::copy_n(taken.image.at(x, y), 3, alone.at(x, y));
+    ShAnalysis analysis(k_width, k_height, 60, 1);
+    analysis.add_rows(alone.view());
+    const Spectrum want = analysis.finish(), got = taken.split.spectrum(60, 1);
+    double norm = 0, difference = 0;
+    for (int l = 0; l <= 60; ++l)
+        for (int m = 0; m <= l; ++m)
+            for (int c = 0; c < 3; ++c) {
+                norm += std::norm(want.coefficient(l, m, c));
+                difference += std::norm(want.coefficient(l, m, c) - got.coefficient(l, m, c));
+            }
+    CHECK(std::sqrt(difference / norm) < 1e-6);
 }

@@ -7,6 +7,7 @@
 #include "filtering/sh_analysis.h"
 #include "filtering/sh_synthesis.h"
 #include "filtering/spectrum_evaluate.h"
+#include "filtering/tent_nodes.h"
 #include "simd/instruction_set.h"
 #include "test.h"
 
@@ -171,6 +172,42 @@ TEST_CASE("prefilter: a turn of the world turns the maps") {
         const auto a = plain->specular[l].cube.face(0), b = turned->specular[l].cube.face(4);
         for (int y = 0; y < a.height; ++y)
             for (int i = 0; i < a.width * 3; ++i) CHECK(std::abs(a.row(y)[i] - b.row(y)[i]) < 2e-6 * (1 + a.row(y)[i]));
+    }
+}
+
+TEST_CASE("prefilter: SH coefficients are the integrals over the reconstruction, to 1e-5 of their norm") {
+    // Against Gauss-Legendre over each texel's tent, in double; with suns, one at a pole and one on the seam, and a turned world.
+    constexpr int height = 48, width = 2 * height, bands = 6;
+    ImageF image = noise_image(width, height, 3, 1e5f);
+    image.at(0, 30)[1] = 3e4f;
+    image.at(20, 0)[2] = 1e6f;
+    const double angle = 0.7, c = std::cos(angle), s = std::sin(angle);
+    for (const Mat3& world_to_source : {Mat3{}, rotation_y(1), Mat3{{Vec3d{1, 0, 0}, Vec3d{0, c, -s}, Vec3d{0, s, c}}} * rotation_y(0.3)}) {
+        std::vector<Vec3d> truth(bands * bands);
+        std::vector<double> basis(bands * bands);
+        BrightPoints nodes;
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) add_tent_nodes(nodes, width, height, x, y, image.at(x, y), 3);
+        for (int i = 0; i < nodes.count(); ++i) {
+            sh_basis(world_to_source.transposed() * normalize(nodes.place(i)), bands, basis);
+            for (int k = 0; k < bands * bands; ++k) truth[k] = truth[k] + Vec3d{nodes.r[i], nodes.g[i], nodes.b[i]} * basis[k];
+        }
+        // Wide lobes alone, and with a narrow one, for which the suns are taken out.
+        for (const double narrowest : {0.2, 0.05}) {
+            FilterOptions options;
+            options.specular.push_back({16, false, ZonalKernel::ggx(narrowest)});
+            options.sh_bands = bands;
+            options.world_to_source = world_to_source;
+            ImageRowSource source(image);
+            const auto result = prefilter(source, options);
+            REQUIRE(result);
+            double norm = 0, error = 0;
+            for (int k = 0; k < bands * bands; ++k) {
+                norm += dot(truth[k], truth[k]);
+                error += dot(result->sh[k] - truth[k], result->sh[k] - truth[k]);
+            }
+            CHECK(std::sqrt(error / norm) < 1e-6);  // 1e-5 is the aim
+        }
     }
 }
 
