@@ -66,8 +66,8 @@ T sheen_visibility(T NdotL, T NdotV) {
 /// Schlick's Fc = (1 - VdotH)^5, the weight of f90; VdotH in [0, 1] (more, by rounding, is taken as 1).
 template <typename T>
 T schlick_weight(T VdotH) {
-    const T x = 1 - std::min(VdotH, T(1)), x2 = x * x;
-    return x2 * x2 * x;
+    const T x = 1 - std::min(VdotH, T(1));
+    return x * x * x * x * x;
 }
 
 /// Fresnel reflectance f0 + (f90 - f0) (1 - VdotH)^5: Schlick 1994, eq. 15.
@@ -80,14 +80,25 @@ inline Vec3f reflect_about(const Vec3f& V, const Vec3f& H) {
     return H * (2 * dot(V, H) / std::max(dot(H, H), std::numeric_limits<float>::min())) - V;
 }
 
+/// Squares of the cosine and the sine of a polar angle.
+struct PolarSquares {
+    double cos2, sin2;
+};
+
+/// The polar angle of a normal of density D NdotH (GGX), from u in [0, 1): tan^2 = alpha^2 u / (1 - u), Walter et al.
+/// 2007, eq. 35, as Karis 2013 has it and with the sine free of cancellation.
+inline PolarSquares ggx_half_angle(double u, double alpha2) {
+    const double scale = 1 + (alpha2 - 1) * u;
+    return {(1 - u) / scale, alpha2 * u / scale};
+}
+
 /// A normal of density D NdotH (GGX), of unit length: u.x in the polar angle, u.y in azimuth.
-/// Walter et al. 2007, eqs. 35 and 36: tan^2 theta = alpha^2 u / (1 - u).
 inline Vec3f ggx_half_vector(float alpha, UnitPoint u) {
-    // In double, where 1 - u and alpha^2 u are exact: near u = 1 the tail of the lobe hangs on the last bits.
-    const double x = unit_double(u.x), a2x = double(alpha) * alpha * x;
-    const float sin2 = float(a2x / (1 - x + a2x)), cos2 = float((1 - x) / (1 - x + a2x)), s = std::sqrt(sin2);
+    // In double: near u = 1 the tail of the lobe hangs on all 32 bits.
+    const PolarSquares h = ggx_half_angle(unit_double(u.x), double(alpha) * alpha);
+    const float s = std::sqrt(float(h.sin2));
     const CirclePoint azimuth = circle_point(u.y);
-    return {s * azimuth.x, s * azimuth.y, std::sqrt(cos2)};
+    return {s * azimuth.x, s * azimuth.y, std::sqrt(float(h.cos2))};
 }
 
 /// A normal of density D NdotH (Charlie), of unit length: sin theta = u^(alpha / (2 alpha + 1)), Estevez and Kulla

@@ -1,6 +1,6 @@
 #include "filtering/brdf_quadrature.h"
 
-#include "domelight/vec.h"
+#include "domelight/microfacet.h"
 
 #include "math/gauss_legendre.h"
 
@@ -10,10 +10,6 @@
 
 namespace domelight {
 namespace {
-
-double fifth_power(double x) {
-    return x * x * x * x * x;
-}
 
 /// A view direction and the lobe: what stays the same over the nodes.
 struct View {
@@ -33,7 +29,7 @@ BrdfTerms integrate_azimuth(const View& view, double c_h, double s_h, const Gaus
         const double NdotL = 2 * VdotH * c_h - view.c;
         if (NdotL <= 0) continue;  // rounding at the end
         const double f = 4 * brdf_visibility(NdotL, view.c, view.alpha, view.g) * NdotL * VdotH / c_h;
-        const double fresnel = fifth_power(1 - std::min(VdotH, 1.0)), weight = rule.w[j] * end * f;  // end / 2, twice
+        const double fresnel = schlick_weight(VdotH), weight = rule.w[j] * end * f;  // end / 2, twice
         sum.scale += weight * (1 - fresnel);
         sum.bias += weight * fresnel;
     }
@@ -57,13 +53,12 @@ void integrate_piece(const View& view, double za, double zb, const BrdfNodes& no
 }  // namespace
 
 double brdf_visibility(double NdotL, double NdotV, double alpha, BrdfG g) {
-    const double a2 = alpha * alpha;
-    const auto root = [&](double c) { return std::sqrt(a2 + (1 - a2) * c * c); };
     switch (g) {
         case BrdfG::correlated:
-            return 0.5 / (NdotV * root(NdotL) + NdotL * root(NdotV));  // Heitz 2014, eq. 99
+            return ggx_visibility(NdotL, NdotV, alpha);
         case BrdfG::smith:
-            return 1 / ((NdotL + root(NdotL)) * (NdotV + root(NdotV)));  // Walter et al. 2007, eq. 34
+            // G1 G1 / (4 NdotL NdotV), each G1 by Walter et al. 2007, eq. 34
+            return 1 / ((NdotL + ggx_smith_root(NdotL, alpha)) * (NdotV + ggx_smith_root(NdotV, alpha)));
         case BrdfG::karis: {
             const double k = alpha / 2;  // Karis 2013, eq. 4 for image-based lighting
             return 0.25 / ((NdotL * (1 - k) + k) * (NdotV * (1 - k) + k));
@@ -107,8 +102,7 @@ double integrate_sheen(double NdotV, double alpha, int nodes) {
             const double across = (s_l - s_v) * (s_l - s_v) + 4 * s_l * s_v * b * b, up = NdotL + NdotV;
             ring += rule.w[j] / 2 * dphi * std::pow(across / (across + up * up), half_power);
         }
-        const double visibility = 0.25 / (NdotL + NdotV - NdotL * NdotV);
-        sum += rule.w[i] / 2 * dmu * visibility * NdotL * 2 * ring;
+        sum += rule.w[i] / 2 * dmu * sheen_visibility(NdotL, NdotV) * NdotL * 2 * ring;
     }
     return sum * (2 + 1 / alpha) / (2 * k_pi);
 }

@@ -1,10 +1,11 @@
 #include "domelight/brdf_table.h"
 
+#include "domelight/low_discrepancy.h"
+#include "domelight/microfacet.h"
 #include "domelight/parallel.h"
 
 #include "filtering/brdf_embedded.h"
 #include "filtering/brdf_quadrature.h"
-#include "filtering/reference_sampling.h"
 
 #include <cassert>
 #include <cmath>
@@ -36,11 +37,12 @@ BrdfTerms montecarlo_terms(double NdotV, double alpha, BrdfG g, int samples) {
     BrdfTerms sum;
     for (int i = 0; i < samples; ++i) {
         const double xi = radical_inverse(std::uint32_t(i)), phi = 2 * k_pi * i / samples;
-        const double c_h = std::sqrt((1 - xi) / (1 + (a2 - 1) * xi)), s_h = std::sqrt(a2 * xi / (1 + (a2 - 1) * xi));
+        const PolarSquares h = ggx_half_angle(xi, a2);
+        const double c_h = std::sqrt(h.cos2), s_h = std::sqrt(h.sin2);
         const double VdotH = NdotV * c_h + s_v * s_h * std::cos(phi), NdotL = 2 * VdotH * c_h - NdotV;
         if (NdotL <= 0) continue;
         const double f = 4 * brdf_visibility(NdotL, NdotV, alpha, g) * NdotL * VdotH / c_h;
-        const double fresnel = std::pow(1 - std::min(VdotH, 1.0), 5);
+        const double fresnel = schlick_weight(VdotH);
         sum.scale += (1 - fresnel) * f;
         sum.bias += fresnel * f;
     }
@@ -56,8 +58,8 @@ double montecarlo_sheen(double NdotV, double alpha, int samples) {
                      phi = 2 * k_pi * i / samples;
         const double VdotH = NdotV * c_h + s_v * std::sqrt(s2_h) * std::cos(phi), NdotL = 2 * VdotH * c_h - NdotV;
         if (NdotL <= 0) continue;
-        const double distribution = (2 + 1 / alpha) * std::pow(s2_h, 0.5 / alpha) / (2 * k_pi);
-        sum += distribution * NdotL * VdotH / (NdotL + NdotV - NdotL * NdotV);  // 4 VdotH dh = dl, V's own 1/4
+        sum +=
+            charlie_d(s2_h, alpha) * NdotL * VdotH / (NdotL + NdotV - NdotL * NdotV);  // 4 VdotH dh = dl, V's own 1/4
     }
     return sum * 2 * k_pi / samples;
 }

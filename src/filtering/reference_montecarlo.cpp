@@ -1,3 +1,5 @@
+#include "domelight/microfacet.h"
+
 #include "filtering/reference_sampling.h"
 
 namespace domelight {
@@ -16,10 +18,9 @@ Drawn reflect_about(double sin2_half) {
 Drawn draw(const KernelDensity& density, const ZonalKernel& kernel, double xi) {
     switch (kernel.lobe) {
         case Lobe::ggx: {
-            // Karis 2013, ImportanceSampleGGX: cos^2 theta_h = (1 - xi) / (1 + (alpha^2 - 1) xi); its sine without
-            // cancellation.
+            // Karis 2013, ImportanceSampleGGX
             const double a2 = std::max(kernel.width, k_least_alpha) * std::max(kernel.width, k_least_alpha);
-            return reflect_about(a2 * xi / (1 + (a2 - 1) * xi));
+            return reflect_about(ggx_half_angle(xi, a2).sin2);
         }
         case Lobe::charlie: {
             // Khronos glTF-IBL-Sampler: sin theta_h = xi^(alpha / (2 alpha + 1)); with p = 1 / (2 alpha) the square of

@@ -1,11 +1,10 @@
 #pragma once
 
+#include "domelight/low_discrepancy.h"
 #include "domelight/reference.h"
 
 #include "filtering/kernel_density.h"
 #include "filtering/reference_source.h"
-
-#include <cstdint>
 
 namespace domelight {
 
@@ -22,16 +21,6 @@ struct ReferenceFrame {
         return tangent * (sine * std::cos(azimuth)) + bitangent * (sine * std::sin(azimuth)) + axis * cosine;
     }
 };
-
-/// The base-2 radical inverse of i, in [0, 1): second coordinate of the Hammersley points (i / N, radical_inverse(i)).
-inline double radical_inverse(std::uint32_t i) {
-    i = (i << 16) | (i >> 16);
-    i = ((i & 0x00ff00ffu) << 8) | ((i & 0xff00ff00u) >> 8);
-    i = ((i & 0x0f0f0f0fu) << 4) | ((i & 0xf0f0f0f0u) >> 4);
-    i = ((i & 0x33333333u) << 2) | ((i & 0xccccccccu) >> 2);
-    i = ((i & 0x55555555u) << 1) | ((i & 0xaaaaaaaau) >> 1);
-    return i * 0x1p-32;
-}
 
 /// The textbook Riemann sum over the hemisphere about `axis`, K polar by J azimuth steps at their midpoints,
 ///   sum_kj K(cos theta_k) g(theta_k, phi_j) sin theta_k / sum_kj K(cos theta_k) sin theta_k,
