@@ -10,8 +10,7 @@ namespace domelight {
 
 /// The bits of `i` in reverse order; as a fraction of 2^32, the base-2 radical inverse (van der Corput's sequence).
 constexpr std::uint32_t reverse_bits(std::uint32_t i) {
-    i = (i << 16) | (i >> 16);
-    i = ((i & 0x00ff00ffu) << 8) | ((i & 0xff00ff00u) >> 8);
+    i = (i >> 24) | ((i >> 8) & 0xff00u) | ((i << 8) & 0xff0000u) | (i << 24);  // compilers make one instruction of it
     i = ((i & 0x0f0f0f0fu) << 4) | ((i & 0xf0f0f0f0u) >> 4);
     i = ((i & 0x33333333u) << 2) | ((i & 0xccccccccu) >> 2);
     i = ((i & 0x55555555u) << 1) | ((i & 0xaaaaaaaau) >> 1);
@@ -60,18 +59,25 @@ constexpr std::uint32_t owen_scramble(std::uint32_t fraction, std::uint32_t seed
     return reverse_bits(owen_scramble_reversed(reverse_bits(fraction), seed));
 }
 
-/// halton(), Owen-scrambled: each digit goes through a permutation that depends on the digits before it (Owen 1995).
-/// One coordinate is uniform in [0, 1) over the keys; elementary intervals of the base keep their number of points.
+/// halton(), scrambled by `key` as Owen 1995 has it: each digit goes through a permutation that depends on the digits
+/// before it. Every coordinate is uniform in [0, 1) over the keys; elementary intervals keep their number of points.
+///
+/// The permutations are affine, a digit + b mod base with a != 0: in a prime base any two digits then go to any two
+/// equally likely, which is all that the variance sees (Matousek 1998, "On the L2-discrepancy for anchored boxes").
+/// Digits count until base^k >= 2^24; below that cell the point is random.
 constexpr std::uint32_t halton_scrambled(std::uint64_t key, std::uint32_t index, int dimension) {
     const std::uint32_t base = k_primes[dimension];
-    if (base == 2) return owen_scramble(reverse_bits(index), std::uint32_t(mix_bits(key) >> 32));
-    std::uint64_t mirrored = 0, scale = 1, digits_before = mix_bits(key);
-    for (; scale < (1ull << 36); scale *= base, index /= base) {  // zeros after the last digit are scrambled too
-        const std::uint32_t digit = permute(index % base, base, digits_before);
-        mirrored = mirrored * base + digit;
-        digits_before = mix_bits(digits_before + digit);
+    std::uint64_t before = mix_bits(key);  // a hash of the digits so far
+    if (base == 2) return owen_scramble(reverse_bits(index), std::uint32_t(before >> 32));
+    std::uint64_t mirrored = 0, scale = 1;  // below 2^24 base < 2^33
+    for (; scale < (1u << 24); scale *= base, index /= base) {
+        const std::uint32_t digit = index % base;
+        const std::uint64_t a = 1 + ((before & 0xffffffffu) * (base - 1) >> 32), b = (before >> 32) * base >> 32;
+        mirrored = mirrored * base + std::uint32_t(a * digit + b) % base;
+        before = mix_bits(before + digit);
     }
-    return unit_fixed(double(mirrored) / double(scale));
+    const double within = double(before >> 44) * 0x1p-20;  // 33 + 20 bits: exact, and so under 1
+    return unit_fixed((double(mirrored) + within) / double(scale));
 }
 
 /// Point `index` of `count` of the Hammersley set, (index / count, radical inverse); index < count.
