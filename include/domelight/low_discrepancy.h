@@ -124,4 +124,17 @@ constexpr UnitPoint r2(std::uint32_t index) {
     return {0x80000000u + index * a, 0x80000000u + index * b};
 }
 
+/// A rotation for each pixel of a picture that differs most between neighbours, so that their errors cancel where the
+/// eye (or a denoiser) averages: rotate(p, pixel_rotation(x, y)) turns one sequence into one for each pixel with noise
+/// of few low frequencies, like a blue-noise mask's but with nothing to look up.
+///
+/// x is Roberts' dither mask (2018), x / g + y / g^2 mod 1 of the pixel. The second mask's slopes are from a search of
+/// 40000 for pairs whose rotations lie farthest apart: among pixels d <= 12 apart the distance on the torus is at least
+/// 0.35 / d, in either coordinate alone at least 0.17 / d^2 (random slopes: 0.1 and 0.05).
+constexpr UnitPoint pixel_rotation(std::uint32_t pixel_x, std::uint32_t pixel_y) {
+    constexpr std::uint32_t a = unit_fixed(0.7548776662466927), b = unit_fixed(0.5698402909980532);
+    constexpr std::uint32_t c = unit_fixed(0.52152512), d = unit_fixed(0.3089682);
+    return {pixel_x * a + pixel_y * b, pixel_x * c + pixel_y * d};
+}
+
 }  // namespace domelight

@@ -1,5 +1,7 @@
 #include "domelight/sequences.h"
 
+#include "domelight/vec.h"
+
 #include "distribution/chi_square.h"
 #include "test.h"
 
@@ -13,6 +15,8 @@ using namespace domelight;
 using test::chi_square_p_value;
 
 namespace {
+
+constexpr double k_quarter_disk = k_pi / 4;
 
 constexpr Sequence k_all[]{Sequence::random, Sequence::stratified, Sequence::hammersley,
                            Sequence::halton, Sequence::sobol,      Sequence::r2};
@@ -264,6 +268,60 @@ TEST_CASE("sequences: low discrepancy converges faster than random points") {
         CHECK_MESSAGE(slope < least, sequence_name(sequence), " ", slope);
         CHECK_MESSAGE(fine < random_fine / 100, sequence_name(sequence));
     }
+}
+
+TEST_CASE("sequences: pixel rotations of neighbours lie far apart, and their errors cancel") {
+    const auto torus = [](std::uint32_t d) { return std::abs(double(std::int32_t(d))) * 0x1p-32; };
+    for (int y = -12; y <= 12; ++y)
+        for (int x = 0; x <= 12; ++x) {
+            const int d2 = x * x + y * y;
+            if (d2 == 0 || d2 > 144) continue;
+            const UnitPoint shift = pixel_rotation(std::uint32_t(x), std::uint32_t(y));
+            CHECK(std::hypot(torus(shift.x), torus(shift.y)) >= 0.35 / std::sqrt(d2));
+            CHECK(std::min(torus(shift.x), torus(shift.y)) >= 0.17 / d2);
+        }
+    // One sample a pixel of the area of a quarter disk, averaged over blocks of 8 x 8 pixels
+    const auto block_error = [](auto&& point) {
+        double sum = 0;
+        for (std::uint32_t block = 0; block < 256; ++block) {
+            int inside = 0;
+            for (std::uint32_t i = 0; i < 64; ++i) {
+                const UnitPoint p = point(block % 16 * 8 + i % 8, block / 16 * 8 + i / 8);
+                inside += std::hypot(unit_double(p.x), unit_double(p.y)) < 1;
+            }
+            sum += std::pow(inside / 64.0 - k_quarter_disk, 2);
+        }
+        return std::sqrt(sum / 256);
+    };
+    const double random = block_error([](std::uint32_t x, std::uint32_t y) { return random_point(5, x, y); });
+    const double rotated =
+        block_error([](std::uint32_t x, std::uint32_t y) { return rotate(r2(0), pixel_rotation(x, y)); });
+    CHECK(random == doctest::Approx(std::sqrt(k_quarter_disk * (1 - k_quarter_disk) / 64)).epsilon(0.2));
+    CHECK(rotated < random / 1.8);
+}
+
+TEST_CASE("sequences: low discrepancy points fill boxes evenly") {
+    // Largest |share of points in [0, x) x [0, y) - x y| over the corners that the points make: the star discrepancy,
+    // but for the corners' own points, which 1 / N bounds.
+    const auto discrepancy = [](const std::vector<UnitPoint>& set) {
+        double worst = 0;
+        for (const UnitPoint& a : set)
+            for (const UnitPoint& b : set) {
+                int inside = 0;
+                for (const UnitPoint& p : set) inside += p.x < a.x && p.y < b.y;
+                worst = std::max(worst,
+                                 std::abs(double(inside) / double(set.size()) - unit_double(a.x) * unit_double(b.y)));
+            }
+        return worst;
+    };
+    const double random = discrepancy(points(Sequence::random, 1, 256));
+    CHECK(random > 0.03);
+    for (Sequence sequence : {Sequence::hammersley, Sequence::halton, Sequence::sobol, Sequence::r2})
+        for (std::uint64_t seed : {0, 1}) {
+            const double d = discrepancy(points(sequence, seed, 256));
+            CHECK_MESSAGE(d < 0.026, sequence_name(sequence), " ", d, ", random ", random);
+        }
+    CHECK(discrepancy(points(Sequence::stratified, 1, 256)) < random / 1.5);
 }
 
 TEST_CASE("sequences: any argument is valid, and names are found again") {
