@@ -4,6 +4,7 @@
 #include "domelight/area_resample.h"
 #include "domelight/brdf.h"
 #include "domelight/brdf_table.h"
+#include "domelight/distribution.h"
 #include "domelight/environment.h"
 #include "domelight/frame.h"
 #include "domelight/image.h"

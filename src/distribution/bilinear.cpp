@@ -1,0 +1,215 @@
+#include "domelight/distribution_bilinear.h"
+
+#include <bit>
+#include <cassert>
+
+#include "distribution/bilinear_place.h"
+#include "distribution/quanta.h"
+#include "distribution/weight_rows.h"
+#include "simd/distribution_bilinear.h"
+
+namespace domelight {
+
+// ---- tables
+
+BilinearRows::BilinearRows(int count_, int items_) : count(count_), items(items_) {
+    shift = 32 - (int(std::bit_width(unsigned(items))) - 1);  // the largest power of two up to the number of items
+    edges.resize(std::size_t(count) * (items + 1) + 16);
+    shape.resize(std::size_t(count) * items);
+    guide.resize(std::size_t(count) * (cells() + 8));
+    std::fill_n(edges.end() - 16, 16, k_total);  // whole vectors are read
+}
+
+void BilinearRows::fill(int row, std::span<const double> begins, std::span<const double> ends) {
+    std::uint32_t* e = edges.data() + std::size_t(row) * (items + 1);
+    std::uint16_t *s = shape.data() + std::size_t(row) * items, *g = guide.data() + std::size_t(row) * (cells() + 8);
+    std::vector<double> sums(items);
+    double sum = 0;
+    for (int i = 0; i < items; ++i) {
+        const double both = begins[i] + ends[i];
+        sums[i] = sum += both;
+        // Where neither end is zero neither end of the shape is, or radiance / density would have no bound there.
+        const double r = both > 0 ? begins[i] / both * 65535 + 0.5 : 32768;
+        const int least = begins[i] > 0, most = 65535 - (ends[i] > 0);
+        s[i] = std::uint16_t(std::clamp(int(r), std::min(least, most), most));
+    }
+    std::size_t filled = 0;
+    e[0] = 0;
+    share_quanta([&](int i) { return begins[i] + ends[i] > 0; }, sums, k_total, [&](int i, std::uint64_t end) {
+        e[i + 1] = std::uint32_t(end);
+        const std::size_t cells_begun = (end >> shift) + 1;
+        for (std::size_t k = 0; k < 8; ++k) g[filled + k] = std::uint16_t(i);
+        for (std::size_t k = filled + 8; k < cells_begun; ++k) g[k] = std::uint16_t(i);
+        filled = cells_begun;
+    });
+}
+
+void BilinearRows::fill_uniform(int row) {
+    const std::vector<double> ones(items, 1.0);
+    fill(row, ones, ones);
+}
+
+// ---- the density
+
+namespace {
+
+constexpr double k_total = BilinearRows::k_total;
+/// xi on the tables' scale, less 2^31: edges are read as signed numbers, which vectors convert to double.
+double table_mass(std::uint32_t xi) {
+    return (xi + 0.5) * (k_total * 0x1p-32) - 0x1p31;
+}
+double signed_edge(std::uint32_t edge) {
+    return double(edge) - 0x1p31;
+}
+
+/// The mixture of two rows at some v, on the tables' scale.
+struct Mixture {
+    const std::uint32_t *above_edges, *below_edges;
+    const std::uint16_t *above_shape, *below_shape;
+    double above, below;  // shares, together 1
+
+    double edge(int i) const { return above * signed_edge(above_edges[i]) + below * signed_edge(below_edges[i]); }
+    LinearSegment segment(int i) const {
+        const double a = above * double(above_edges[i + 1] - above_edges[i]), b = below * double(below_edges[i + 1] - below_edges[i]);
+        const double a_begin = a * (above_shape[i] * (1.0 / 65535)), b_begin = b * (below_shape[i] * (1.0 / 65535));
+        const double begin = 2 * (a_begin + b_begin);
+        return {begin, 2 * (a + b) - begin};
+    }
+};
+
+/// What is known once v is.
+struct Row {
+    double v, pdf_v;
+    Mixture mixture;
+    int row_above, row_below;
+};
+
+struct Tables {
+    const BilinearRows &rows, &columns;
+    const std::vector<double>& sums;
+
+    LinearSegment marginal_segment(int s) const {
+        const RowSegment place = row_segment(s, columns.count);
+        const double a = sums[place.above], b = sums[place.below], quanta = rows.edges_of(0)[s + 1] - rows.edges_of(0)[s];
+        const double begin = 2 * quanta * (a / std::max(a + b, 1e-300));
+        return {begin, 2 * quanta - begin};
+    }
+
+    Row at(int s, double t) const {
+        const RowSegment place = row_segment(s, columns.count);
+        const double a = (1 - t) * sums[place.above], b = t * sums[place.below];
+        const double below = b / std::max(a + b, 1e-300);
+        const double pdf_v = marginal_segment(s).at(t) * (1 / place.length) * (columns.count * (1 / k_total));
+        return {(place.start + t * place.length) * (1.0 / columns.count), pdf_v,
+                {columns.edges_of(place.above), columns.edges_of(place.below), columns.shape_of(place.above), columns.shape_of(place.below), 1 - below, below},
+                place.above, place.below};
+    }
+
+    /// Draws v.
+    Row draw(std::uint32_t xi) const {
+        const std::uint32_t* e = rows.edges_of(0);
+        const double mass = table_mass(xi);
+        int s = rows.guide_of(0)[std::uint64_t(xi) >> rows.shift];
+        while (signed_edge(e[s + 1]) <= mass) ++s;
+        return at(s, marginal_segment(s).invert(mass - signed_edge(e[s])));
+    }
+
+    /// The segment of the mixture in which `mass` is reached.
+    int find(const Row& row, std::uint32_t xi, double mass) const {
+        const std::size_t cell = std::uint64_t(xi) >> columns.shift;
+        const std::uint16_t *above = columns.guide_of(row.row_above) + cell, *below = columns.guide_of(row.row_below) + cell;
+        int first = std::min(above[0], below[0]), last = columns.items - 1;
+        if (int(cell) + 1 < columns.cells()) last = std::max(above[1], below[1]);
+        while (first < last) {
+            const int middle = (first + last) / 2;
+            if (row.mixture.edge(middle + 1) > mass) last = middle;
+            else first = middle + 1;
+        }
+        return first;
+    }
+
+    /// v's place: segment and position.
+    Row of(double v) const {
+        const int s = row_segment_at(v, columns.count);
+        const RowSegment place = row_segment(s, columns.count);
+        return at(s, std::clamp((std::clamp(v, 0.0, 1.0) * columns.count - place.start) / place.length, 0.0, 1.0));
+    }
+};
+
+/// u's place among `items` segments from centre to centre.
+std::pair<int, double> column_place(double u, int items) {
+    double x = (u > 0 ? std::min(u, 1.0) : 0.0) * items - 0.5;
+    if (x < 0) x += items;
+    const int i = std::min(int(x), items - 1);
+    return {i, std::clamp(x - i, 0.0, 1.0)};
+}
+
+}  // namespace
+
+Result<BilinearDistribution> BilinearDistribution::build(const Weights& weights, int threads) {
+    BilinearDistribution d;
+    const int w = std::max(0, weights.width), h = std::max(0, weights.height);
+    if (w > 0 && h > 0 && w <= 65535 && h <= 65535) d.columns_ = BilinearRows(h, w);
+    d.row_sums_.resize(h);
+    const auto add = [&](int y, std::span<const float> row, std::span<const double> sums) {
+        d.row_sums_[y] = sums.back();
+        if (sums.back() == 0) return d.columns_.fill_uniform(y);
+        std::vector<double> nodes(w + 1);
+        std::copy(row.begin(), row.end(), nodes.begin());
+        nodes[w] = nodes[0];
+        d.columns_.fill(y, std::span(nodes).first(w), std::span(nodes).last(w));
+    };
+    if (auto read = for_each_weight_row(weights, threads, add); !read) return read.error();
+
+    std::vector<double> begins(h + 1), ends(h + 1);
+    double total = 0;
+    for (int s = 0; s <= h; ++s) {
+        const RowSegment place = row_segment(s, h);
+        begins[s] = d.row_sums_[place.above] * place.length;
+        ends[s] = d.row_sums_[place.below] * place.length;
+        total += begins[s] + ends[s];
+    }
+    if (total == 0) return build(uniform_weights(w, h), threads);
+    d.rows_ = BilinearRows(1, h + 1);
+    d.rows_.fill(0, begins, ends);
+    return d;
+}
+
+DistributionSample BilinearDistribution::sample(UnitPoint point) const {
+    const Tables tables{rows_, columns_, row_sums_};
+    const Row row = tables.draw(point.y);
+    const double mass = table_mass(point.x);
+    const int i = tables.find(row, point.x, mass);
+    const LinearSegment segment = row.mixture.segment(i);
+    const double t = segment.invert(std::max(mass - row.mixture.edge(i), 0.0));
+    double u = (i + 0.5 + t) * (1.0 / width());
+    if (u >= 1) u -= 1;
+    const double pdf_u = segment.at(t) * (width() * (1 / k_total));
+    return {u, std::min(row.v, 1 - 0x1p-53), row.pdf_v * pdf_u};
+}
+
+void BilinearDistribution::sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v, std::span<float> pdf_uv) const {
+    assert(u.size() == points.size() && v.size() == points.size() && pdf_uv.size() == points.size());
+    simd::sample_bilinear(rows_, columns_, row_sums_.data(), points, u.data(), v.data(), pdf_uv.data());
+}
+
+double BilinearDistribution::pdf_uv(double u, double v) const {
+    const Row row = Tables{rows_, columns_, row_sums_}.of(v);
+    const auto [i, t] = column_place(u, width());
+    return row.pdf_v * row.mixture.segment(i).at(t) * (width() * (1 / k_total));
+}
+
+std::optional<UnitPoint> BilinearDistribution::invert(double u, double v) const {
+    const Tables tables{rows_, columns_, row_sums_};
+    if (!(pdf_uv(u, v) > 0)) return std::nullopt;
+    const int s = row_segment_at(v, height());
+    const RowSegment place = row_segment(s, height());
+    const double t = std::clamp((v * height() - place.start) / place.length, 0.0, 1.0);
+    const Mixture mixture = tables.at(s, t).mixture;
+    const auto [i, r] = column_place(u, width());
+    const auto quantum = [](double mass) { return unit_fixed((mass + 0x1p31) * (1 / k_total)); };
+    return UnitPoint{quantum(mixture.edge(i) + mixture.segment(i).before(r)),
+                     quantum(signed_edge(rows_.edges_of(0)[s]) + tables.marginal_segment(s).before(t))};
+}
+
+}  // namespace domelight
