@@ -1,0 +1,264 @@
+#include "domelight/environment_sampler.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "domelight/area_resample.h"
+#include "domelight/parallel.h"
+#include "domelight/projection.h"
+#include "domelight/warps.h"
+#include "simd/light_samples.h"
+
+namespace domelight {
+namespace {
+
+/// Below it the sine of the colatitude counts as this: densities stay finite at the poles themselves.
+constexpr float k_least_sine = 1e-7f;
+constexpr float k_uniform_density = float(1 / (4 * k_pi));
+
+struct Grayscale {
+    float r, g, b;
+    float operator()(const float* p) const { return r * p[0] + g * p[1] + b * p[2]; }
+};
+
+Grayscale grayscale(LightWeight weight) {
+    if (weight == LightWeight::grayscale) return {0.2989f, 0.5866f, 0.1145f};
+    return {0.2126f, 0.7152f, 0.0722f};
+}
+
+/// The weight of texels: max(luminance - delta, 0) sin theta, or the plain grayscale. A row's solid angles are (2 pi / W) 2 sin(pi / 2H) sin theta,
+/// so sin theta at its centre is exact for texels.
+Weights weights_of(ImageView<const float> image, LightWeight weight, double delta) {
+    return {image.width, image.height, [=](int y, std::span<float> room) -> std::span<const float> {
+                const Grayscale gray = grayscale(weight);
+                const float sine = weight == LightWeight::grayscale ? 1.f : float(std::sin(k_pi * (y + 0.5) / image.height));
+                const float* p = image.row(y);
+                for (int x = 0; x < image.width; ++x) room[x] = std::max(gray(p + 3 * x) - float(delta), 0.f) * sine;
+                return room;
+            }};
+}
+
+/// Mean over the sphere, and the largest value, of the luminance.
+struct Luminance {
+    double mean = 0, largest = 0;
+};
+Luminance survey(ImageView<const float> image, LightWeight weight, int threads) {
+    std::vector<Luminance> rows(image.height);
+    parallel_ranges(image.height, 16, threads, [&](int begin, int end) {
+        const Grayscale gray = grayscale(weight);
+        for (int y = begin; y < end; ++y) {
+            const float* p = image.row(y);
+            for (int x = 0; x < image.width; ++x) {
+                const double value = gray(p + 3 * x);
+                rows[y].mean += value;
+                rows[y].largest = std::max(rows[y].largest, value);
+            }
+        }
+    });
+    Luminance all;
+    for (int y = 0; y < image.height; ++y) {
+        all.mean += rows[y].mean * latlong_solid_angle(y, image.width, image.height) / (4 * k_pi);
+        all.largest = std::max(all.largest, rows[y].largest);
+    }
+    return all;
+}
+
+Result<void> check(ImageView<const float> image, int threads) {
+    if (image.width < 1 || image.height < 1) return Error{"the environment has no texels", "", ""};
+    if (image.channels != 3) return Error{fmt::format("the environment has {} channels instead of 3", image.channels), "", ""};
+    std::vector<int> bad(image.height, -1);
+    parallel_ranges(image.height, 16, threads, [&](int begin, int end) {
+        for (int y = begin; y < end; ++y) {
+            const float* p = image.row(y);
+            bool fine = true;
+            for (int i = 0; i < 3 * image.width; ++i) fine &= p[i] >= 0 && p[i] <= std::numeric_limits<float>::max();
+            if (fine) continue;
+            for (int i = 0; bad[y] < 0; ++i)
+                if (!(p[i] >= 0 && p[i] <= std::numeric_limits<float>::max())) bad[y] = i / 3;
+        }
+    });
+    for (int y = 0; y < image.height; ++y)
+        if (bad[y] >= 0)
+            return Error{fmt::format("texel ({}, {}) is ({}, {}, {})", bad[y], y, image.at(bad[y], y)[0], image.at(bad[y], y)[1], image.at(bad[y], y)[2]),
+                         "", "Radiance must be finite and not negative; open_environment repairs files."};
+    return {};
+}
+
+}  // namespace
+
+Result<EnvironmentSampler> EnvironmentSampler::build(EnvironmentSampler sampler) {
+    const ImageView<const float> image = sampler.image_;
+    EnvironmentSamplerOptions& o = sampler.options_;
+    o.uniform_share = std::clamp(o.uniform_share, 0.0, 1.0);
+    if (o.compensate) {
+        const Luminance luminance = survey(image, o.weight, o.threads);
+        // Nothing stands out of a constant environment: what rounding left would be drawn alone.
+        if (luminance.largest > luminance.mean * 1.0001) sampler.compensation_ = luminance.mean;
+    }
+    auto distribution = make_distribution(weights_of(image, o.weight, sampler.compensation_), o.method, o.threads);
+    if (!distribution) return distribution.error();
+    sampler.distribution_ = std::move(*distribution);
+    return sampler;
+}
+
+Result<EnvironmentSampler> EnvironmentSampler::build(ImageView<const float> latlong, const EnvironmentSamplerOptions& options,
+                                                     const Mat3& world_to_source) {
+    if (auto fine = check(latlong, options.threads); !fine) return fine.error();
+    EnvironmentSampler sampler;
+    sampler.options_ = options;
+    sampler.image_ = latlong;
+    sampler.world_to_source_ = world_to_source;
+    return build(std::move(sampler));
+}
+
+Result<EnvironmentSampler> EnvironmentSampler::build(Environment& environment, const EnvironmentSamplerOptions& options) {
+    EnvironmentSampler sampler;
+    sampler.options_ = options;
+    if (environment.latlong) {
+        auto image = read_latlong(*environment.latlong);
+        if (!image) return image.error();
+        sampler.owned_ = std::move(*image);
+        sampler.world_to_source_ = environment.world_to_source;
+    } else {
+        sampler.owned_ = area_resample_cube_to_latlong(environment.cube, 2 * environment.cube.size(), environment.world_to_source, options.threads);
+    }
+    sampler.image_ = sampler.owned_.view();
+    if (auto fine = check(sampler.image_, options.threads); !fine) return fine.error();
+    return build(std::move(sampler));
+}
+
+/// The radiance at a point: bilinear (u wraps, v clamps) where the density is, else the texel's.
+Vec3f EnvironmentSampler::texel(float u, float v) const {
+    const int w = image_.width, h = image_.height;
+    if (!distribution_->continuous()) {
+        const float* p = image_.at(std::min(int(double(u) * w), w - 1), std::min(int(double(v) * h), h - 1));
+        return {p[0], p[1], p[2]};
+    }
+    const float x = u * float(w) - 0.5f, y = v * float(h) - 0.5f, fx = std::floor(x), fy = std::floor(y), s = x - fx, t = y - fy;
+    const int x0 = fx < 0 ? w - 1 : std::min(int(fx), w - 1), x1 = fx < 0 ? 0 : int(fx) + 1 < w ? int(fx) + 1 : 0;
+    const int y0 = std::clamp(int(fy), 0, h - 1), y1 = std::clamp(int(fy) + 1, 0, h - 1);
+    const float *a = image_.at(x0, y0), *b = image_.at(x1, y0), *c = image_.at(x0, y1), *d = image_.at(x1, y1);
+    const auto mix = [&](int k) {
+        const float upper = a[k] + s * (b[k] - a[k]), lower = c[k] + s * (d[k] - c[k]);
+        return std::max(upper + t * (lower - upper), 0.f);
+    };
+    return {mix(0), mix(1), mix(2)};
+}
+
+/// Per steradian: dω = 2 pi^2 sin(theta) du dv.
+float EnvironmentSampler::density(double pdf_uv, float sin_theta) const {
+    const float p = float(pdf_uv) / (float(2 * k_pi * k_pi) * std::max(sin_theta, k_least_sine)), share = float(options_.uniform_share);
+    return share > 0 ? p + share * (k_uniform_density - p) : p;
+}
+
+LightSample EnvironmentSampler::at(float u, float v, float pdf_uv) const {
+    const double phi = (double(u) - 0.5) * 2 * k_pi, theta = double(v) * k_pi, s = std::sin(theta);
+    const Vec3d source{s * std::cos(phi), std::cos(theta), s * std::sin(phi)};
+    return {u, v, Vec3f(world_to_source_.transposed() * source), texel(u, v), density(pdf_uv, float(s))};
+}
+
+LightSample EnvironmentSampler::uniform(UnitPoint point) const {
+    const double y = 1 - 2 * unit_double(point.x), s = std::sqrt(std::max(0.0, 1 - y * y)), phi = 2 * k_pi * unit_double(point.y);
+    const Vec3d source{s * std::cos(phi), y, s * std::sin(phi)};
+    LightSample sample = look_up(Vec3f(world_to_source_.transposed() * source));
+    return sample;
+}
+
+LightSample EnvironmentSampler::sample(UnitPoint point) const {
+    if (const double share = options_.uniform_share; share > 0) {
+        // One number serves both: the lower part of its range chooses the uniform density, and either part is stretched to the whole again.
+        const double x = unit_double(point.x);
+        if (x < share || share >= 1) return uniform({unit_fixed(x / share), point.y});
+        point.x = unit_fixed((x - share) / (1 - share));
+    }
+    const DistributionSample s = distribution_->sample(point);
+    // Rounded down: a float of 1 is no point of the image.
+    const auto inside = [](double x) { return std::min(float(x), 0x1.fffffep-1f); };
+    return at(inside(s.u), inside(s.v), float(s.pdf_uv));
+}
+
+void EnvironmentSampler::sample(std::span<const UnitPoint> points, const LightSampleSpans& out) const {
+    if (options_.uniform_share > 0) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const LightSample s = sample(points[i]);
+            out.u[i] = s.u, out.v[i] = s.v, out.x[i] = s.direction.x, out.y[i] = s.direction.y, out.z[i] = s.direction.z;
+            out.r[i] = s.radiance.x, out.g[i] = s.radiance.y, out.b[i] = s.radiance.z, out.pdf_solid_angle[i] = s.pdf_solid_angle;
+        }
+        return;
+    }
+    const simd::LightImage image{image_.data, image_.stride, image_.width, image_.height, distribution_->continuous()};
+    const Mat3 to_world = world_to_source_.transposed();
+    float turn[9];
+    for (int i = 0; i < 3; ++i) turn[3 * i] = float(to_world.row[i].x), turn[3 * i + 1] = float(to_world.row[i].y), turn[3 * i + 2] = float(to_world.row[i].z);
+    constexpr std::size_t block = 512;  // what lies between the two steps stays in the nearest cache
+    for (std::size_t i = 0; i < points.size(); i += block) {
+        const std::size_t n = std::min(block, points.size() - i);
+        const auto part = [&](std::span<float> s) { return s.subspan(i, n); };
+        distribution_->sample(points.subspan(i, n), part(out.u), part(out.v), part(out.pdf_solid_angle));
+        simd::complete_light_samples(image, turn, int(n), k_least_sine, out.u.data() + i, out.v.data() + i, out.pdf_solid_angle.data() + i,
+                                     {out.x.data() + i, out.y.data() + i, out.z.data() + i}, {out.r.data() + i, out.g.data() + i, out.b.data() + i});
+    }
+}
+
+LightSample EnvironmentSampler::look_up(const Vec3f& direction) const {
+    const Vec3d d = world_to_source_ * Vec3d(direction);
+    const UV uv = latlong_uv(d);
+    const auto inside = [](double x) { return std::min(float(x), 0x1.fffffep-1f); };
+    const float u = uv.u >= 1 ? 0 : inside(uv.u), v = inside(uv.v);
+    const double length = std::sqrt(dot(d, d)), sine = std::hypot(d.x, d.z) / length;
+    const double pdf_uv = options_.uniform_share < 1 ? distribution_->pdf_uv(u, v) : 0;
+    return {u, v, Vec3f(Vec3d(direction) / length), texel(u, v), density(pdf_uv, float(sine))};
+}
+
+float EnvironmentSampler::pdf_solid_angle(const Vec3f& direction) const {
+    const Vec3d d = world_to_source_ * Vec3d(direction);
+    const UV uv = latlong_uv(d);
+    const double sine = std::hypot(d.x, d.z) / std::sqrt(dot(d, d));
+    return density(options_.uniform_share < 1 ? distribution_->pdf_uv(uv.u >= 1 ? 0 : uv.u, uv.v) : 0, float(sine));
+}
+
+Vec3f EnvironmentSampler::radiance(const Vec3f& direction) const {
+    const UV uv = latlong_uv(world_to_source_ * Vec3d(direction));
+    return texel(uv.u >= 1 ? 0 : std::min(float(uv.u), 0x1.fffffep-1f), std::min(float(uv.v), 0x1.fffffep-1f));
+}
+
+std::optional<UnitPoint> EnvironmentSampler::invert(const Vec3f& direction) const {
+    if (options_.uniform_share > 0) return std::nullopt;
+    const UV uv = latlong_uv(world_to_source_ * Vec3d(direction));
+    return distribution_->invert(uv.u >= 1 ? 0 : uv.u, uv.v);
+}
+
+SamplingTextures sampling_textures(const EnvironmentSampler& sampler) {
+    const auto image = sampler.image();
+    const Weights weights = weights_of(image, sampler.options().weight, sampler.compensation());
+    SamplingTextures out{ImageF(1, image.height, 2), ImageF(image.width, image.height, 2)};
+    std::vector<double> sums(image.height);
+    // A cumulative row and the density beside it; all zero: uniform.
+    const auto fill = [](int n, double total, const auto& weight, const auto& texel) {
+        double sum = 0;
+        for (int i = 0; i < n; ++i) {
+            const double w = total > 0 ? weight(i) / total : 1.0 / n;
+            sum += w;
+            texel(i)[0] = i == n - 1 ? 1.f : float(sum);
+            texel(i)[1] = float(w * n);
+        }
+    };
+    parallel_ranges(image.height, 16, sampler.options().threads, [&](int begin, int end) {
+        std::vector<float> room(image.width);
+        for (int y = begin; y < end; ++y) {
+            const auto row = weights.row(y, room);
+            for (const float w : row) sums[y] += w;
+            fill(image.width, sums[y], [&](int x) { return double(row[x]); }, [&](int x) { return out.columns.at(x, y); });
+        }
+    });
+    double total = 0;
+    for (const double s : sums) total += s;
+    fill(image.height, total, [&](int y) { return sums[y]; }, [&](int y) { return out.rows.at(0, y); });
+    return out;
+}
+
+}  // namespace domelight

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace domelight::simd {
+
+/// A lat-long RGB image to look radiance up in: bilinearly (u wraps, v clamps), or the texel's own.
+struct LightImage {
+    const float* rgb;
+    std::ptrdiff_t stride;
+    int width, height;
+    bool bilinear;
+};
+
+/// Completes drawn points: directions (turned by the rows of `to_world`), radiance, and pdf from per unit square to per steradian in place,
+/// pdf / (2 pi^2 max(sin theta, least_sine)).
+void complete_light_samples(const LightImage& image, const float (&to_world)[9], int count, float least_sine, const float* u, const float* v,
+                            float* pdf, const std::array<float*, 3>& direction, const std::array<float*, 3>& radiance);
+
+}  // namespace domelight::simd
