@@ -5,7 +5,6 @@
 #include "domelight/warps.h"
 
 #include <algorithm>
-#include <limits>
 
 /// What microfacet BRDFs are made of: distributions of normals, masking, Fresnel, and drawing normals. Directions are
 /// local: the surface's normal is +Z, everything points away from the surface, V towards the viewer, L towards the
@@ -23,7 +22,7 @@ namespace domelight {
 template <typename T>
 T ggx_d(const Vec3<T>& H, T alpha) {
     const T a2 = alpha * alpha, sin2 = H.x * H.x + H.y * H.y, cos2 = H.z * H.z;
-    const T ratio = (sin2 + cos2) / std::max(sin2 + a2 * cos2, std::numeric_limits<T>::min());
+    const T ratio = (sin2 + cos2) / (sin2 + a2 * cos2);
     return a2 * ratio * ratio / T(k_pi);
 }
 
@@ -75,9 +74,9 @@ inline Vec3f fresnel_schlick(float VdotH, const Vec3f& f0, const Vec3f& f90 = {1
     return f0 + (f90 - f0) * schlick_weight(VdotH);
 }
 
-/// The mirror image of V about H, which need not be of unit length: 2 (V.H) H / (H.H) - V.
+/// The mirror image of V about H, which may have any length but 0: 2 (V.H) H / (H.H) - V.
 inline Vec3f reflect_about(const Vec3f& V, const Vec3f& H) {
-    return H * (2 * dot(V, H) / std::max(dot(H, H), std::numeric_limits<float>::min())) - V;
+    return H * (2 * dot(V, H) / dot(H, H)) - V;
 }
 
 /// Squares of the cosine and the sine of a polar angle.
@@ -148,8 +147,9 @@ inline Vec3f ggx_visible_normal_cap(const Vec3f& V, float alpha, UnitPoint u, fl
     // z uniform in (-bound axis.z, 1]; q = 1 - z, not z, so that near the pole the sine keeps its digits
     const float q = unit_float(u.x) * (1 + bound * axis.z), s = std::sqrt(q * (2 - q));
     const CirclePoint azimuth = circle_point(u.y);
-    // A uniform direction of the cap plus the axis is the half vector of a hemisphere's reflection; then unstretched
-    return {alpha * (axis.x + s * azimuth.x), alpha * (axis.y + s * azimuth.y), std::max(0.f, axis.z + (1 - q))};
+    // A uniform direction of the cap plus the axis is the half vector of a hemisphere's reflection; then unstretched.
+    // Its z is positive: u < 1, and 1 - 2^-24 times 1 + axis.z rounds to less than that.
+    return {alpha * (axis.x + s * azimuth.x), alpha * (axis.y + s * azimuth.y), axis.z + (1 - q)};
 }
 
 }  // namespace domelight

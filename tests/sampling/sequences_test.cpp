@@ -173,6 +173,22 @@ TEST_CASE("sequences: Owen scrambling keeps common prefixes and spreads what fol
         }
         if (bit < 31) CHECK(chi_square_p_value(flips, std::vector<double>{1000, 1000}) > 1e-5);
     }
+    // Whether a bit is flipped is as good as independent between different bits above it: 2 x 2 cells each over seeds,
+    // 24 x 8 tests
+    double least = 1;
+    for (int bit = 1; bit <= 24; ++bit)
+        for (std::uint32_t trial = 0; trial < 8; ++trial) {
+            const auto a = std::uint32_t(mix_bits(trial)), b = a ^ (0x80000000u >> (trial * std::uint32_t(bit) / 8));
+            std::vector<double> cells(4);
+            for (std::uint32_t seed = 0; seed < 2000; ++seed) {
+                const std::uint32_t key = std::uint32_t(mix_bits(seed + 7));
+                const std::uint32_t s = (owen_scramble(a, key) ^ a) >> (31 - bit),
+                                    t = (owen_scramble(b, key) ^ b) >> (31 - bit);
+                ++cells[(s & 1) * 2 + (t & 1)];
+            }
+            least = std::min(least, chi_square_p_value(cells, std::vector<double>(4, 500.0)));
+        }
+    CHECK(least > 1e-7);
 }
 
 TEST_CASE("sequences: scrambled Halton keeps its elementary intervals") {
@@ -184,6 +200,21 @@ TEST_CASE("sequences: scrambled Halton keeps its elementary intervals") {
                 ++seen[std::size_t(double(count) * unit_double(halton_scrambled(key, 7 * count + i, d)) + 1e-6)];
             CHECK(*std::max_element(seen.begin(), seen.end()) == 1);
         }
+}
+
+TEST_CASE("sequences: Halton's digits are permuted by permutations of their own, and random after the last") {
+    // Base 3: second digits of 0.00.. and 0.10.., and what follows the 16 digits that count
+    std::vector<double> digits(9), rest(16);
+    for (std::uint64_t key = 0; key < 9000; ++key) {
+        const auto second = [&](std::uint32_t index) {
+            return int(unit_double(halton_scrambled(key, index, 1)) * 9) % 3;
+        };
+        ++digits[second(0) * 3 + second(1)];
+        const double cell = unit_double(halton_scrambled(key, 5, 1)) * std::pow(3.0, 16);
+        ++rest[int((cell - std::floor(cell)) * 16)];
+    }
+    CHECK(chi_square_p_value(digits, std::vector<double>(9, 1000.0)) > 1e-4);
+    CHECK(chi_square_p_value(rest, std::vector<double>(16, 562.5)) > 1e-4);
 }
 
 TEST_CASE("sequences: stratified has one point a cell and a row") {
@@ -224,16 +255,19 @@ TEST_CASE("sequences: pairs of dimensions are independent") {
     // discrepancy may make the cells more even than chance, never less.
     for (Sequence sequence : k_all)
         for (std::uint32_t other : {1u, 2u, 17u}) {
-            std::vector<double> observed(256);
+            std::vector<double> observed(256), same_axis(256);
             double correlation = 0;
             const std::uint32_t count = 4096;
             for (std::uint32_t i = 0; i < count; ++i) {
                 const UnitPoint p = unit_point(sequence, 99, i, count, 0),
                                 q = unit_point(sequence, 99, i, count, other);
                 ++observed[(p.x >> 28) * 16 + (q.y >> 28)];
+                ++same_axis[(p.x >> 28) * 16 + (q.x >> 28)];
                 correlation += (unit_double(p.x) - 0.5) * (unit_double(q.y) - 0.5) * 12 / count;
             }
             CHECK_MESSAGE(chi_square_p_value(observed, std::vector<double>(256, count / 256.0)) > 1e-5,
+                          sequence_name(sequence), " ", other);
+            CHECK_MESSAGE(chi_square_p_value(same_axis, std::vector<double>(256, count / 256.0)) > 1e-5,
                           sequence_name(sequence), " ", other);
             CHECK(std::abs(correlation) < 4.5 / std::sqrt(count));
         }
