@@ -1,5 +1,6 @@
-// Nanoseconds to draw a direction with its density and weight, and to draw a point of each sequence; for GGX also the
-// share of draws lost below the horizon, and the variance of the weight (1 - share of light lost to masking aside).
+// Time to draw a direction with its density and weight, and to draw a point of each sequence; for BRDFs also the share
+// of draws that fall below the horizon, and the variance of the weight over views of every angle (0 would be a perfect
+// draw of an albedo that does not depend on the view).
 #include "domelight/brdf.h"
 #include "domelight/sequences.h"
 
@@ -39,8 +40,8 @@ void draw(benchmark::State& state, Brdf brdf) {
         lost += s.pdf_solid_angle == 0, sum += s.weight.x, squares += s.weight.x * s.weight.x;
     }
     state.SetItemsProcessed(state.iterations() * k_points);
-    state.counters["ns"] = benchmark::Counter(double(state.iterations()) * k_points * 1e-9,
-                                              benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["each"] = benchmark::Counter(double(state.iterations()) * k_points,
+                                                benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
     state.counters["lost"] = lost / k_points;
     state.counters["weight_variance"] = squares / k_points - sum * sum / k_points / k_points;
 }
@@ -71,8 +72,8 @@ void normals(benchmark::State& state, const Draw& draw) {
     const std::vector<Vec3f> V = views();
     for (auto _ : state)
         for (int i = 0; i < k_points; ++i) benchmark::DoNotOptimize(draw(V[i], u[i]));
-    state.counters["ns"] = benchmark::Counter(double(state.iterations()) * k_points * 1e-9,
-                                              benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["each"] = benchmark::Counter(double(state.iterations()) * k_points,
+                                                benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 BENCHMARK_CAPTURE(normals, half_vectors, [](const Vec3f&, UnitPoint u) { return ggx_half_vector(0.36f, u); });
 BENCHMARK_CAPTURE(normals, heitz, [](const Vec3f& V, UnitPoint u) { return ggx_visible_normal_heitz(V, 0.36f, u); });
@@ -105,8 +106,8 @@ void sequence(benchmark::State& state) {
         ++seed;
         for (std::uint32_t i = 0; i < 1024; ++i) benchmark::DoNotOptimize(unit_point(which, seed, i, 1024, pair));
     }
-    state.counters["ns"] = benchmark::Counter(double(state.iterations()) * 1024e-9,
-                                              benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["each"] = benchmark::Counter(double(state.iterations()) * 1024.0,
+                                                benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(sequence)->ArgNames({"", "pair"})->ArgsProduct({{0, 1, 2, 3, 4, 5}, {0, 2}});
 

@@ -16,13 +16,13 @@
 namespace domelight {
 
 struct BrdfSample {
-    Vec3f L;  ///< unit length
-    float pdf_solid_angle =
-        0;         ///< per steradian, the same bits as pdf_solid_angle(V, L); 0: L is not above the surface
-    Vec3f weight;  ///< evaluate(V, L) L.z / pdf_solid_angle; 0 where the density is
+    Vec3f L;                    ///< unit length
+    float pdf_solid_angle = 0;  ///< per steradian, the same bits as pdf_solid_angle(V, L); 0: L is below the horizon
+    Vec3f weight;               ///< evaluate(V, L) L.z / pdf_solid_angle; 0 where the density is
 };
 
-/// Alphas below this are taken as this: a lobe narrower than directions in float can tell apart.
+/// Alphas below this are taken as this: directions in float (6e-8) resolve a lobe of this width to about 1e-3, and at
+/// grazing angles, where the half vector magnifies their rounding by 1 / V.z, no better than that.
 inline constexpr float k_least_brdf_alpha = 1e-4f;
 
 /// Light that comes in flatter than this counts as below the horizon: its square is still a normal float.
@@ -73,8 +73,10 @@ struct PhongBrdf {
         // cos = (1 - u)^(1 / (n + 1)); 1 - cos, by expm1, because a narrow lobe lives there
         const float q = -std::expm1(std::log1p(-unit_float(u.x)) / (exponent + 1)), s = std::sqrt(q * (2 - q));
         const CirclePoint azimuth = circle_point(u.y);
-        const Frame<float> about({-V.x, -V.y, V.z});
-        return detail::with_density(*this, V, about.to_world({s * azimuth.x, s * azimuth.y, 1 - q}));
+        const Vec3f L = Frame<float>({-V.x, -V.y, V.z}).to_world({s * azimuth.x, s * azimuth.y, 1 - q});
+        const float pdf = pdf_solid_angle(V, L);
+        if (!(pdf > 0)) return {L, 0, {}};
+        return {L, pdf, specular * ((exponent + 2) / (exponent + 1) * L.z)};
     }
 
   private:
@@ -130,7 +132,7 @@ struct BasicGgxBrdf {
     /// D / pdf_solid_angle; H = V + L, not of unit length.
     float normals_per_density(const Vec3f& V, const Vec3f& H) const {
         if (normals == GgxNormals::half_vectors) return 2 * dot(H, H) / H.z;  // 4 VdotH / NdotH
-        // 4 V.z / G1 = 2 (V.z + root), which V.z = 0 does no harm; with the bound, Eto and Tokuyoshi 2023, eq. 8
+        // 4 V.z / G1 = 2 (V.z + root), which V.z = 0 does no harm; the bound, as it was drawn with
         const float bound = normals == GgxNormals::bounded_caps ? ggx_cap_bound(V, width()) : 1;
         return 2 * (bound * V.z + ggx_smith_root(V.z, width()));
     }

@@ -122,7 +122,7 @@ TEST_CASE("brdf: the weight is f cos / pdf") {
             CHECK(s.weight.y * s.pdf_solid_angle == doctest::Approx(f.y * s.L.z).epsilon(1e-5));
         };
         agrees(LambertBrdf{});
-        agrees(PhongBrdf{20});
+        agrees(PhongBrdf{20, {0.2f, 0.5f, 1}});
         agrees(GgxBrdf{0.2f, {0.04f, 0.5f, 1}});
         agrees(BasicGgxBrdf<GgxNormals::half_vectors>{0.01f});
         agrees(CharlieBrdf{0.3f});
