@@ -23,13 +23,9 @@ void Distribution2D::sample(std::span<const UnitPoint> points, std::span<float> 
     const int w = width(), h = height();
     for (std::size_t i = 0; i < points.size(); ++i) {
         const DistributionSample s = sample(points[i]);
-        if (continuous()) {
-            u[i] = std::min(float(s.u), 0x1.fffffep-1f);
-            v[i] = std::min(float(s.v), 0x1.fffffep-1f);
-        } else {
-            u[i] = texel_float(s.u, texel_index(s.u, w), w);
-            v[i] = texel_float(s.v, texel_index(s.v, h), h);
-        }
+        const auto point = float_point(s, w, h, continuous());
+        u[i] = point[0];
+        v[i] = point[1];
         pdf_uv[i] = float(s.pdf_uv);
     }
 }

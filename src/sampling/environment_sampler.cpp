@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
+#include "distribution/texel_float.h"
 #include "domelight/area_resample.h"
 #include "domelight/parallel.h"
 #include "domelight/projection.h"
-#include "domelight/warps.h"
 #include "simd/light_samples.h"
 
 namespace domelight {
@@ -164,8 +164,7 @@ LightSample EnvironmentSampler::at(float u, float v, float pdf_uv) const {
 LightSample EnvironmentSampler::uniform(UnitPoint point) const {
     const double y = 1 - 2 * unit_double(point.x), s = std::sqrt(std::max(0.0, 1 - y * y)), phi = 2 * k_pi * unit_double(point.y);
     const Vec3d source{s * std::cos(phi), y, s * std::sin(phi)};
-    LightSample sample = look_up(Vec3f(world_to_source_.transposed() * source));
-    return sample;
+    return look_up(Vec3f(world_to_source_.transposed() * source));
 }
 
 LightSample EnvironmentSampler::sample(UnitPoint point) const {
@@ -176,9 +175,8 @@ LightSample EnvironmentSampler::sample(UnitPoint point) const {
         point.x = unit_fixed((x - share) / (1 - share));
     }
     const DistributionSample s = distribution_->sample(point);
-    // Rounded down: a float of 1 is no point of the image.
-    const auto inside = [](double x) { return std::min(float(x), 0x1.fffffep-1f); };
-    return at(inside(s.u), inside(s.v), float(s.pdf_uv));
+    const auto [u, v] = float_point(s, image_.width, image_.height, distribution_->continuous());
+    return at(u, v, float(s.pdf_uv));
 }
 
 void EnvironmentSampler::sample(std::span<const UnitPoint> points, const LightSampleSpans& out) const {
