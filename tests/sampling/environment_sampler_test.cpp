@@ -145,6 +145,23 @@ TEST_CASE("environment_sampler: a sample's radiance and density are those of its
             }
 }
 
+TEST_CASE("environment_sampler: a constant environment is drawn evenly over the sphere, the courses' form too much at the poles") {
+    const ImageF image(64, 32, 3, 0.7f);
+    for (const DistributionMethod method : {DistributionMethod::guided, DistributionMethod::bilinear}) {
+        EnvironmentSamplerOptions options;
+        options.method = method;
+        const EnvironmentSampler even = make(image, options);
+        options.weight = LightWeight::grayscale;
+        const EnvironmentSampler courses = make(image, options);
+        for (int y = 0; y < 32; ++y) {
+            const double theta = k_pi * (y + 0.5) / 32;
+            const Vec3f d(latlong_direction({0.3, (y + 0.5) / 32}));
+            CHECK(even.pdf_solid_angle(d) * 4 * k_pi == doctest::Approx(1).epsilon(2e-3));  // sin theta's steps against its integral
+            CHECK(courses.pdf_solid_angle(d) * 2 * k_pi * k_pi * std::sin(theta) == doctest::Approx(1).epsilon(1e-4));
+        }
+    }
+}
+
 TEST_CASE("environment_sampler: batches give the same samples") {
     constexpr int n = 1000;
     std::vector<UnitPoint> points(n);
