@@ -56,13 +56,14 @@ class BilinearDistribution final : public Distribution2D {
     int height() const override { return columns_.count; }
     bool continuous() const override { return true; }
     std::size_t memory_bytes() const override {
-        return rows_.memory_bytes() + columns_.memory_bytes() + row_sums_.size() * sizeof(double);
+        return rows_.memory_bytes() + columns_.memory_bytes() + (row_sums_.size() + row_begins_.size()) * sizeof(double);
     }
 
   private:
     BilinearRows rows_;     // one density of height + 1 segments; its shapes are not used, row_sums_ says it more finely
     BilinearRows columns_;  // for each row, segments from centre to centre; the last one goes around
     std::vector<double> row_sums_;
+    std::vector<double> row_begins_;  // [height + 1]: the marginal's value at the beginning of each segment, in quanta a segment
 };
 
 /// The same density in double by linear search, as one would write it down: what BilinearDistribution is tested against.

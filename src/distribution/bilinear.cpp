@@ -42,6 +42,7 @@ void BilinearRows::fill(int row, std::span<const double> begins, std::span<const
         for (std::size_t k = filled + 8; k < cells_begun; ++k) g[k] = std::uint16_t(i);
         filled = cells_begun;
     });
+    g[cells()] = std::uint16_t(items - 1);  // the next cell's item bounds a search, also in the last cell
 }
 
 void BilinearRows::fill_uniform(int row) {
@@ -86,13 +87,11 @@ struct Row {
 
 struct Tables {
     const BilinearRows &rows, &columns;
-    const std::vector<double>& sums;
+    const std::vector<double>&sums, &begins;
 
     LinearSegment marginal_segment(int s) const {
-        const RowSegment place = row_segment(s, columns.count);
-        const double a = sums[place.above], b = sums[place.below], quanta = rows.edges_of(0)[s + 1] - rows.edges_of(0)[s];
-        const double begin = 2 * quanta * (a / std::max(a + b, 1e-300));
-        return {begin, 2 * quanta - begin};
+        const double quanta = rows.edges_of(0)[s + 1] - rows.edges_of(0)[s];
+        return {begins[s], 2 * quanta - begins[s]};
     }
 
     Row at(int s, double t) const {
@@ -118,8 +117,7 @@ struct Tables {
     int find(const Row& row, std::uint32_t xi, double mass) const {
         const std::size_t cell = std::uint64_t(xi) >> columns.shift;
         const std::uint16_t *above = columns.guide_of(row.row_above) + cell, *below = columns.guide_of(row.row_below) + cell;
-        int first = std::min(above[0], below[0]), last = columns.items - 1;
-        if (int(cell) + 1 < columns.cells()) last = std::max(above[1], below[1]);
+        int first = std::min(above[0], below[0]), last = std::max(above[1], below[1]);
         while (first < last) {
             const int middle = (first + last) / 2;
             if (row.mixture.edge(middle + 1) > mass) last = middle;
@@ -172,11 +170,16 @@ Result<BilinearDistribution> BilinearDistribution::build(const Weights& weights,
     if (total == 0) return build(uniform_weights(w, h), threads);
     d.rows_ = BilinearRows(1, h + 1);
     d.rows_.fill(0, begins, ends);
+    d.row_begins_.resize(h + 1);
+    for (int s = 0; s <= h; ++s) {
+        const double both = begins[s] + ends[s], quanta = d.rows_.edges_of(0)[s + 1] - d.rows_.edges_of(0)[s];
+        d.row_begins_[s] = both > 0 ? 2 * quanta * (begins[s] / both) : 0;
+    }
     return d;
 }
 
 DistributionSample BilinearDistribution::sample(UnitPoint point) const {
-    const Tables tables{rows_, columns_, row_sums_};
+    const Tables tables{rows_, columns_, row_sums_, row_begins_};
     const Row row = tables.draw(point.y);
     const double mass = table_mass(point.x);
     const int i = tables.find(row, point.x, mass);
@@ -190,17 +193,17 @@ DistributionSample BilinearDistribution::sample(UnitPoint point) const {
 
 void BilinearDistribution::sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v, std::span<float> pdf_uv) const {
     assert(u.size() == points.size() && v.size() == points.size() && pdf_uv.size() == points.size());
-    simd::sample_bilinear(rows_, columns_, row_sums_.data(), points, u.data(), v.data(), pdf_uv.data());
+    simd::sample_bilinear(rows_, columns_, row_sums_.data(), row_begins_.data(), points, u.data(), v.data(), pdf_uv.data());
 }
 
 double BilinearDistribution::pdf_uv(double u, double v) const {
-    const Row row = Tables{rows_, columns_, row_sums_}.of(v);
+    const Row row = Tables{rows_, columns_, row_sums_, row_begins_}.of(v);
     const auto [i, t] = column_place(u, width());
     return row.pdf_v * row.mixture.segment(i).at(t) * (width() * (1 / k_total));
 }
 
 std::optional<UnitPoint> BilinearDistribution::invert(double u, double v) const {
-    const Tables tables{rows_, columns_, row_sums_};
+    const Tables tables{rows_, columns_, row_sums_, row_begins_};
     if (!(pdf_uv(u, v) > 0)) return std::nullopt;
     const int s = row_segment_at(v, height());
     const RowSegment place = row_segment(s, height());

@@ -40,6 +40,9 @@ HWY_INLINE int find_from(const std::uint32_t* edges, int from, std::uint32_t tar
     }
 }
 
+constexpr int k_window = 8;
+using W = hn::CappedTag<double, k_window>;
+
 /// Two rows' edges and the shares to mix them with.
 struct Mixture {
     const std::uint32_t *above_edges, *below_edges;
@@ -47,27 +50,17 @@ struct Mixture {
 
     HWY_INLINE double edge(int i) const { return above * signed_edge(above_edges[i]) + below * signed_edge(below_edges[i]); }
 
-    /// The segment in [first, last] in which `mass` is reached, looked for around `guess`, a vector of edges at a time.
-    HWY_INLINE int find(double mass, int first, int last, int guess) const {
-        const hn::CappedTag<double, 8> d;
-        const int lanes = int(hn::Lanes(d));
-        if (lanes > 2) {
-            int start = std::clamp(guess - lanes / 2 + 1, first, last);
-            const auto va = hn::Set(d, above), vb = hn::Set(d, below), vm = hn::Set(d, mass);
-            for (int round = 0; round < 3; ++round) {
-                const auto mixed = hn::Add(hn::Mul(va, signed_edges(d, above_edges + start)), hn::Mul(vb, signed_edges(d, below_edges + start)));
-                const auto found = hn::FindFirstTrue(d, hn::Lt(vm, mixed));
-                if (found > 0) return start + int(found) - 1;
-                if (found == 0) {  // reached before the window
-                    last = start - 1;
-                    start = std::max(first, start - lanes + 1);
-                } else {
-                    first = start + lanes - 1;
-                    start = first;
-                    if (first >= last) return last;
-                }
-                if (first >= last) return first;
-            }
+    /// The segment in [first, last] in which `mass` is reached, given `start` in that range, a little before it: nearly always in the vector of edges
+    /// that begins there.
+    HWY_INLINE int find(double mass, int first, int last, int start) const {
+        const W d;
+        if (hn::Lanes(d) > 2) {
+            const auto mixed = hn::Add(hn::Mul(hn::Set(d, above), signed_edges(d, above_edges + start)),
+                                       hn::Mul(hn::Set(d, below), signed_edges(d, below_edges + start)));
+            const auto found = hn::FindFirstTrue(d, hn::Lt(hn::Set(d, mass), mixed));
+            if (HWY_LIKELY(found > 0)) return start + int(found) - 1;
+            if (found == 0) last = start - 1;
+            else first = start + int(hn::Lanes(d)) - 1;
         }
         while (first < last) {
             const int middle = (first + last) / 2;
@@ -96,23 +89,39 @@ struct Segments {
 
 /// One batch's numbers between the steps.
 struct Batch {
-    alignas(64) double quanta[k_batch], rest[k_batch], sum_above[k_batch], sum_below[k_batch], start[k_batch], length[k_batch];
-    alignas(64) double above[k_batch], below[k_batch], pdf_v[k_batch], v[k_batch];
-    alignas(64) double item[k_batch], mass[k_batch], quanta_above[k_batch], quanta_below[k_batch], shape_above[k_batch], shape_below[k_batch];
-    int row_above[k_batch], row_below[k_batch], first[k_batch], last[k_batch], guess[k_batch];
+    alignas(64) std::uint32_t x[k_batch], y[k_batch];                   // the points
+    alignas(64) std::int32_t segment[k_batch];                          // of the rows
+    alignas(64) std::uint32_t row_edge[k_batch], row_next[k_batch];     // its quanta before and after
+    alignas(64) double sum_above[k_batch], sum_below[k_batch], begin[k_batch];
+    alignas(64) double above[k_batch], below[k_batch], pdf_v[k_batch], v[k_batch], mass[k_batch];
+    alignas(64) std::int32_t above_first[k_batch], above_last[k_batch], below_first[k_batch], below_last[k_batch];  // what the guides say
+    alignas(64) std::int32_t first[k_batch], last[k_batch], start[k_batch];
+    alignas(64) std::int32_t item[k_batch];                             // the column segment
+    alignas(64) std::uint32_t above_edge[k_batch], above_next[k_batch], below_edge[k_batch], below_next[k_batch];
+    alignas(64) std::int32_t above_shape[k_batch], below_shape[k_batch];
 };
 
-void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_sums, const UnitPoint* points, std::size_t count, float* u,
-                     float* v, float* pdf_uv) {
+void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_sums, const double* row_begins, const UnitPoint* points,
+                     std::size_t count, float* u, float* v, float* pdf_uv) {
     const hn::ScalableTag<double> d;
     const hn::Rebind<float, decltype(d)> df;
+    const hn::Rebind<std::int32_t, decltype(d)> di;
+    const hn::Rebind<std::uint32_t, decltype(d)> du;
     const int lanes = int(hn::Lanes(d));
     const std::uint32_t* row_edges = rows.edges_of(0);
     const std::uint16_t* row_guide = rows.guide_of(0);
-    const int width = columns.items, height = columns.count;
-    const std::uint32_t in_cell = (columns.shift == 32 ? 0u : 1u << columns.shift) - 1;
-    const float cell_share = float(1 / (double(in_cell) + 1));
-    const auto one = hn::Set(d, 1.0), two = hn::Set(d, 2.0), half = hn::Set(d, 0.5), tiny = hn::Set(d, 1e-300);
+    const int width = columns.items, height = columns.count, row_shift = rows.shift, shift = columns.shift;
+    const std::uint32_t* edges = columns.edges.data();
+    const std::uint16_t *shapes = columns.shape.data(), *guides = columns.guide.data();
+    const std::size_t edge_stride = std::size_t(width) + 1, shape_stride = std::size_t(width), guide_stride = std::size_t(columns.cells()) + 8;
+    const std::uint32_t in_cell = (shift == 32 ? 0u : 1u << shift) - 1;
+    const auto one = hn::Set(d, 1.0), two = hn::Set(d, 2.0), half = hn::Set(d, 0.5), tiny = hn::Set(d, 1e-300), middle = hn::Set(d, 0x1p31);
+    const auto sign = hn::Set(du, 0x80000000u);
+    const auto promote = [&](const std::uint32_t* from) HWY_ATTR { return hn::PromoteTo(d, hn::BitCast(di, hn::Xor(hn::Load(du, from), sign))); };
+    // (xi + 1/2) (2^32 - 1) / 2^32 - 2^31
+    const auto table_mass = [&](const std::uint32_t* xi) HWY_ATTR {
+        return hn::Sub(hn::Mul(hn::Add(hn::Add(promote(xi), middle), half), hn::Set(d, k_total * 0x1p-32)), middle);
+    };
     Batch b{};
 
     for (std::size_t begin = 0; begin < count; begin += k_batch) {
@@ -121,60 +130,82 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
 
         // Row segments: found, then solved for v.
         for (int k = 0; k < n; ++k) {
-            const std::uint32_t y = p[k].y;
+            const std::uint32_t x = p[k].x, y = p[k].y;
             // edge > (y + 1/2) (2^32 - 1) / 2^32, in integers
-            const int s = find_from(row_edges, row_guide[std::uint64_t(y) >> rows.shift], y - (y >> 31));
-            const RowSegment place = row_segment(s, height);
-            b.row_above[k] = place.above, b.row_below[k] = place.below;
-            b.start[k] = place.start, b.length[k] = place.length;
-            b.sum_above[k] = row_sums[place.above], b.sum_below[k] = row_sums[place.below];
-            b.quanta[k] = double(std::int64_t(row_edges[s + 1] - row_edges[s]));
-            b.rest[k] = (double(std::int64_t(y)) + 0.5) * (k_total * 0x1p-32) - 0x1p31 - signed_edge(row_edges[s]);
-            const std::size_t cell = std::uint64_t(p[k].x) >> columns.shift;
-            hwy::Prefetch(columns.guide_of(place.above) + cell);
-            hwy::Prefetch(columns.guide_of(place.below) + cell);
+            const int s = find_from(row_edges, row_guide[std::uint64_t(y) >> row_shift], y - (y >> 31));
+            b.x[k] = x, b.y[k] = y;
+            b.segment[k] = s;
+            b.row_edge[k] = row_edges[s], b.row_next[k] = row_edges[s + 1];
+            b.begin[k] = row_begins[s];
+            const std::size_t above = std::size_t(std::max(s - 1, 0)), below = std::size_t(std::min(s, height - 1));
+            b.sum_above[k] = row_sums[above], b.sum_below[k] = row_sums[below];
+            const std::uint16_t* cell = guides + (std::uint64_t(x) >> shift);
+            hwy::Prefetch(cell + above * guide_stride);
+            hwy::Prefetch(cell + below * guide_stride);
         }
         for (int k = 0; k < k_batch; k += lanes) {
-            const auto above = hn::Load(d, b.sum_above + k), below = hn::Load(d, b.sum_below + k), quanta = hn::Mul(two, hn::Load(d, b.quanta + k));
-            const auto from = hn::Mul(quanta, hn::Div(above, hn::Max(hn::Add(above, below), tiny)));
+            const auto edge = promote(b.row_edge + k);
+            const auto quanta = hn::Mul(two, hn::Sub(promote(b.row_next + k), edge));
+            const auto from = hn::Load(d, b.begin + k);
             const Segments<decltype(d)> segment{d, from, hn::Sub(quanta, from)};
-            const auto t = segment.invert(hn::Load(d, b.rest + k));
-            const auto length = hn::Load(d, b.length + k);
-            const auto a = hn::Mul(hn::Sub(one, t), above), c = hn::Mul(t, below);
+            const auto t = segment.invert(hn::Sub(table_mass(b.y + k), edge));
+            // row_segment() in vectors
+            const auto s = hn::PromoteTo(d, hn::Load(di, b.segment + k));
+            const auto start = hn::Max(hn::Sub(s, half), hn::Zero(d)), end = hn::Min(hn::Add(s, half), hn::Set(d, double(height)));
+            const auto length = hn::Sub(end, start), reciprocal = hn::Sub(hn::Set(d, 3.0), hn::Mul(two, length));  // of 1/2 or 1
+            const auto a = hn::Mul(hn::Sub(one, t), hn::Load(d, b.sum_above + k)), c = hn::Mul(t, hn::Load(d, b.sum_below + k));
             const auto share = hn::Div(c, hn::Max(hn::Add(a, c), tiny));
             hn::Store(share, d, b.below + k);
             hn::Store(hn::Sub(one, share), d, b.above + k);
-            hn::Store(hn::Mul(hn::Mul(segment.at(t), hn::Div(one, length)), hn::Set(d, height * (1 / k_total))), d, b.pdf_v + k);
-            hn::Store(hn::Mul(hn::Add(hn::Load(d, b.start + k), hn::Mul(t, length)), hn::Set(d, 1.0 / height)), d, b.v + k);
+            hn::Store(hn::Mul(hn::Mul(segment.at(t), reciprocal), hn::Set(d, height * (1 / k_total))), d, b.pdf_v + k);
+            hn::Store(hn::Mul(hn::Add(start, hn::Mul(t, length)), hn::Set(d, 1.0 / height)), d, b.v + k);
+            hn::Store(table_mass(b.x + k), d, b.mass + k);
         }
 
         // Columns: the guides bracket, and a straight line through what they say of each row guesses.
         for (int k = 0; k < n; ++k) {
-            const std::size_t cell = std::uint64_t(p[k].x) >> columns.shift;
-            const std::uint16_t *above = columns.guide_of(b.row_above[k]) + cell, *below = columns.guide_of(b.row_below[k]) + cell;
-            const bool end = int(cell) + 1 >= columns.cells();
-            const int a0 = above[0], a1 = end ? width - 1 : above[1], b0 = below[0], b1 = end ? width - 1 : below[1];
-            b.first[k] = std::min(a0, b0), b.last[k] = std::max(a1, b1);
-            const float t = float(std::int32_t((p[k].x & in_cell) >> 1)) * (2 * cell_share);
-            const float length_a = float(a1 - a0 + 1), length_b = float(b1 - b0 + 1);
-            const float weight_a = float(b.above[k]) * length_b, weight_b = float(b.below[k]) * length_a;
-            const float at = (weight_a * (float(a0) + t * length_a) + weight_b * (float(b0) + t * length_b)) / (weight_a + weight_b);
-            b.guess[k] = int(at);
-            for (int row : {b.row_above[k], b.row_below[k]}) {
-                hwy::Prefetch(columns.edges_of(row) + b.guess[k]);
-                hwy::Prefetch(columns.shape_of(row) + b.guess[k]);
+            const int s = b.segment[k];
+            const std::size_t cell = std::uint64_t(b.x[k]) >> shift;
+            const std::uint16_t *above = guides + std::size_t(std::max(s - 1, 0)) * guide_stride + cell,
+                                *below = guides + std::size_t(std::min(s, height - 1)) * guide_stride + cell;
+            b.above_first[k] = above[0], b.above_last[k] = above[1];  // past the last cell there is a last column
+            b.below_first[k] = below[0], b.below_last[k] = below[1];
+        }
+        for (int k = 0; k < k_batch; k += lanes) {
+            const auto a0 = hn::Load(di, b.above_first + k), a1 = hn::Load(di, b.above_last + k);
+            const auto b0 = hn::Load(di, b.below_first + k), b1 = hn::Load(di, b.below_last + k);
+            const auto first = hn::Min(a0, b0), last = hn::Max(a1, b1);
+            const auto fa = hn::ConvertTo(df, a0), fb = hn::ConvertTo(df, b0), unit = hn::Set(df, 1.0f);
+            const auto length_a = hn::Add(hn::ConvertTo(df, hn::Sub(a1, a0)), unit), length_b = hn::Add(hn::ConvertTo(df, hn::Sub(b1, b0)), unit);
+            const auto place = hn::BitCast(di, hn::ShiftRight<1>(hn::And(hn::Load(du, b.x + k), hn::Set(du, in_cell))));
+            const auto t = hn::Mul(hn::ConvertTo(df, place), hn::Set(df, float(2 / (double(in_cell) + 1))));
+            const auto weight_a = hn::Mul(hn::DemoteTo(df, hn::Load(d, b.above + k)), length_b);
+            const auto weight_b = hn::Mul(hn::DemoteTo(df, hn::Load(d, b.below + k)), length_a);
+            const auto at = hn::Div(hn::Add(hn::Mul(weight_a, hn::Add(fa, hn::Mul(t, length_a))), hn::Mul(weight_b, hn::Add(fb, hn::Mul(t, length_b)))),
+                                    hn::Add(weight_a, weight_b));
+            const auto start = hn::Sub(hn::ConvertTo(di, at), hn::Set(di, int(hn::Lanes(W())) / 2 - 1));
+            hn::Store(first, di, b.first + k);
+            hn::Store(last, di, b.last + k);
+            hn::Store(hn::Max(hn::Min(start, last), first), di, b.start + k);
+        }
+        for (int k = 0; k < n; ++k) {
+            const int s = b.segment[k], start = b.start[k];
+            for (std::size_t row : {std::size_t(std::max(s - 1, 0)), std::size_t(std::min(s, height - 1))}) {
+                hwy::Prefetch(edges + row * edge_stride + start);
+                hwy::Prefetch(edges + row * edge_stride + start + k_window - 1);
+                hwy::Prefetch(shapes + row * shape_stride + start + k_window / 2 - 1);
             }
         }
         for (int k = 0; k < n; ++k) {
-            const Mixture mixture{columns.edges_of(b.row_above[k]), columns.edges_of(b.row_below[k]), b.above[k], b.below[k]};
-            const double mass = (double(std::int64_t(p[k].x)) + 0.5) * (k_total * 0x1p-32) - 0x1p31;
-            const int i = mixture.find(mass, b.first[k], b.last[k], b.guess[k]);
+            const int s = b.segment[k];
+            const std::size_t above = std::size_t(std::max(s - 1, 0)), below = std::size_t(std::min(s, height - 1));
+            const Mixture mixture{edges + above * edge_stride, edges + below * edge_stride, b.above[k], b.below[k]};
+            const int i = mixture.find(b.mass[k], b.first[k], b.last[k], b.start[k]);
             b.item[k] = i;
-            b.mass[k] = mass - mixture.edge(i);
-            b.quanta_above[k] = double(std::int64_t(mixture.above_edges[i + 1] - mixture.above_edges[i]));
-            b.quanta_below[k] = double(std::int64_t(mixture.below_edges[i + 1] - mixture.below_edges[i]));
-            b.shape_above[k] = columns.shape_of(b.row_above[k])[i];
-            b.shape_below[k] = columns.shape_of(b.row_below[k])[i];
+            b.above_edge[k] = mixture.above_edges[i], b.above_next[k] = mixture.above_edges[i + 1];
+            b.below_edge[k] = mixture.below_edges[i], b.below_next[k] = mixture.below_edges[i + 1];
+            b.above_shape[k] = shapes[above * shape_stride + i];
+            b.below_shape[k] = shapes[below * shape_stride + i];
         }
 
         alignas(64) float buffer[3][k_batch];
@@ -182,15 +213,17 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
         float *to_u = whole ? u + begin : buffer[0], *to_v = whole ? v + begin : buffer[1], *to_pdf = whole ? pdf_uv + begin : buffer[2];
         const auto under_one = hn::Set(df, 0x1.fffffep-1f);
         for (int k = 0; k < k_batch; k += lanes) {
-            const auto shape = hn::Set(d, 1.0 / 65535);
-            const auto a = hn::Mul(hn::Load(d, b.above + k), hn::Load(d, b.quanta_above + k));
-            const auto c = hn::Mul(hn::Load(d, b.below + k), hn::Load(d, b.quanta_below + k));
-            const auto a_begin = hn::Mul(a, hn::Mul(hn::Load(d, b.shape_above + k), shape));
-            const auto c_begin = hn::Mul(c, hn::Mul(hn::Load(d, b.shape_below + k), shape));
+            const auto shape = hn::Set(d, 1.0 / 65535), above = hn::Load(d, b.above + k), below = hn::Load(d, b.below + k);
+            const auto above_edge = promote(b.above_edge + k), below_edge = promote(b.below_edge + k);
+            const auto a = hn::Mul(above, hn::Sub(promote(b.above_next + k), above_edge));
+            const auto c = hn::Mul(below, hn::Sub(promote(b.below_next + k), below_edge));
+            const auto a_begin = hn::Mul(a, hn::Mul(hn::PromoteTo(d, hn::Load(di, b.above_shape + k)), shape));
+            const auto c_begin = hn::Mul(c, hn::Mul(hn::PromoteTo(d, hn::Load(di, b.below_shape + k)), shape));
             const auto from = hn::Mul(two, hn::Add(a_begin, c_begin));
             const Segments<decltype(d)> segment{d, from, hn::Sub(hn::Mul(two, hn::Add(a, c)), from)};
-            const auto t = segment.invert(hn::Max(hn::Load(d, b.mass + k), hn::Zero(d)));
-            auto x = hn::Mul(hn::Add(hn::Add(hn::Load(d, b.item + k), half), t), hn::Set(d, 1.0 / width));
+            const auto mass = hn::Sub(hn::Load(d, b.mass + k), hn::Add(hn::Mul(above, above_edge), hn::Mul(below, below_edge)));
+            const auto t = segment.invert(hn::Max(mass, hn::Zero(d)));
+            auto x = hn::Mul(hn::Add(hn::Add(hn::PromoteTo(d, hn::Load(di, b.item + k)), half), t), hn::Set(d, 1.0 / width));
             x = hn::IfThenElse(hn::Ge(x, one), hn::Sub(x, one), x);
             hn::StoreU(hn::Min(hn::DemoteTo(df, x), under_one), df, to_u + k);
             hn::StoreU(hn::Min(hn::DemoteTo(df, hn::Load(d, b.v + k)), under_one), df, to_v + k);
@@ -213,9 +246,9 @@ namespace domelight::simd {
 
 HWY_EXPORT(sample_bilinear);
 
-void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_sums, std::span<const UnitPoint> points, float* u,
-                     float* v, float* pdf_uv) {
-    HWY_DYNAMIC_DISPATCH(sample_bilinear)(rows, columns, row_sums, points.data(), points.size(), u, v, pdf_uv);
+void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_sums, const double* row_begins,
+                     std::span<const UnitPoint> points, float* u, float* v, float* pdf_uv) {
+    HWY_DYNAMIC_DISPATCH(sample_bilinear)(rows, columns, row_sums, row_begins, points.data(), points.size(), u, v, pdf_uv);
 }
 
 }  // namespace domelight::simd
