@@ -26,6 +26,7 @@ struct BilinearRows {
     void fill(int row, std::span<const double> begins, std::span<const double> ends);
     /// A row of zeros: uniform, where anything asks.
     void fill_uniform(int row);
+    void copy(int from, int to);
 
     int cells() const { return int((std::uint64_t(1) << 32) >> shift); }
     const std::uint32_t* edges_of(int row) const { return edges.data() + std::size_t(row) * (items + 1); }
@@ -53,7 +54,7 @@ class BilinearDistribution final : public Distribution2D {
     std::optional<UnitPoint> invert(double u, double v) const override;
     void sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v, std::span<float> pdf_uv) const override;
     int width() const override { return columns_.items; }
-    int height() const override { return columns_.count; }
+    int height() const override { return columns_.count - 2; }
     bool continuous() const override { return true; }
     std::size_t memory_bytes() const override {
         return rows_.memory_bytes() + columns_.memory_bytes() + (row_sums_.size() + row_begins_.size()) * sizeof(double);
@@ -61,8 +62,10 @@ class BilinearDistribution final : public Distribution2D {
 
   private:
     BilinearRows rows_;     // one density of height + 1 segments; its shapes are not used, row_sums_ says it more finely
-    BilinearRows columns_;  // for each row, segments from centre to centre; the last one goes around
-    std::vector<double> row_sums_;
+    // For each row, segments from centre to centre; the last one goes around. The first and the last row stand there twice, so that segment s of v always
+    // lies between rows s and s + 1 of the table.
+    BilinearRows columns_;
+    std::vector<double> row_sums_;    // of those rows
     std::vector<double> row_begins_;  // [height + 1]: the marginal's value at the beginning of each segment, in quanta a segment
 };
 

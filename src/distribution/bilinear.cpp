@@ -50,6 +50,12 @@ void BilinearRows::fill_uniform(int row) {
     fill(row, ones, ones);
 }
 
+void BilinearRows::copy(int from, int to) {
+    std::copy_n(edges_of(from), items + 1, edges.data() + std::size_t(to) * (items + 1));
+    std::copy_n(shape_of(from), items, shape.data() + std::size_t(to) * items);
+    std::copy_n(guide_of(from), cells() + 8, guide.data() + std::size_t(to) * (cells() + 8));
+}
+
 // ---- the density
 
 namespace {
@@ -82,12 +88,13 @@ struct Mixture {
 struct Row {
     double v, pdf_v;
     Mixture mixture;
-    int row_above, row_below;
+    int above;  ///< row of the table; the other one is the next
 };
 
 struct Tables {
     const BilinearRows &rows, &columns;
     const std::vector<double>&sums, &begins;
+    int height() const { return columns.count - 2; }
 
     LinearSegment marginal_segment(int s) const {
         const double quanta = rows.edges_of(0)[s + 1] - rows.edges_of(0)[s];
@@ -95,13 +102,12 @@ struct Tables {
     }
 
     Row at(int s, double t) const {
-        const RowSegment place = row_segment(s, columns.count);
-        const double a = (1 - t) * sums[place.above], b = t * sums[place.below];
+        const RowSegment place = row_segment(s, height());
+        const double a = (1 - t) * sums[s], b = t * sums[s + 1];
         const double below = b / std::max(a + b, 1e-300);
-        const double pdf_v = marginal_segment(s).at(t) * (1 / place.length) * (columns.count * (1 / k_total));
-        return {(place.start + t * place.length) * (1.0 / columns.count), pdf_v,
-                {columns.edges_of(place.above), columns.edges_of(place.below), columns.shape_of(place.above), columns.shape_of(place.below), 1 - below, below},
-                place.above, place.below};
+        const double pdf_v = marginal_segment(s).at(t) * (1 / place.length) * (height() * (1 / k_total));
+        return {(place.start + t * place.length) * (1.0 / height()), pdf_v,
+                {columns.edges_of(s), columns.edges_of(s + 1), columns.shape_of(s), columns.shape_of(s + 1), 1 - below, below}, s};
     }
 
     /// Draws v.
@@ -116,7 +122,7 @@ struct Tables {
     /// The segment of the mixture in which `mass` is reached.
     int find(const Row& row, std::uint32_t xi, double mass) const {
         const std::size_t cell = std::uint64_t(xi) >> columns.shift;
-        const std::uint16_t *above = columns.guide_of(row.row_above) + cell, *below = columns.guide_of(row.row_below) + cell;
+        const std::uint16_t *above = columns.guide_of(row.above) + cell, *below = columns.guide_of(row.above + 1) + cell;
         int first = std::min(above[0], below[0]), last = std::max(above[1], below[1]);
         while (first < last) {
             const int middle = (first + last) / 2;
@@ -126,11 +132,11 @@ struct Tables {
         return first;
     }
 
-    /// v's place: segment and position.
-    Row of(double v) const {
-        const int s = row_segment_at(v, columns.count);
-        const RowSegment place = row_segment(s, columns.count);
-        return at(s, std::clamp((std::clamp(v, 0.0, 1.0) * columns.count - place.start) / place.length, 0.0, 1.0));
+    /// v's segment and the position in it.
+    std::pair<int, double> place(double v) const {
+        const int s = row_segment_at(v, height());
+        const RowSegment p = row_segment(s, height());
+        return {s, std::clamp((std::clamp(v, 0.0, 1.0) * height() - p.start) / p.length, 0.0, 1.0)};
     }
 };
 
@@ -147,24 +153,28 @@ std::pair<int, double> column_place(double u, int items) {
 Result<BilinearDistribution> BilinearDistribution::build(const Weights& weights, int threads) {
     BilinearDistribution d;
     const int w = std::max(0, weights.width), h = std::max(0, weights.height);
-    if (w > 0 && h > 0 && w <= 65535 && h <= 65535) d.columns_ = BilinearRows(h, w);
-    d.row_sums_.resize(h);
+    if (w > 0 && h > 0 && w <= 65535 && h <= 65535) d.columns_ = BilinearRows(h + 2, w);
+    d.row_sums_.resize(h + 2);
     const auto add = [&](int y, std::span<const float> row, std::span<const double> sums) {
-        d.row_sums_[y] = sums.back();
-        if (sums.back() == 0) return d.columns_.fill_uniform(y);
+        d.row_sums_[y + 1] = sums.back();
+        if (sums.back() == 0) return d.columns_.fill_uniform(y + 1);
         std::vector<double> nodes(w + 1);
         std::copy(row.begin(), row.end(), nodes.begin());
         nodes[w] = nodes[0];
-        d.columns_.fill(y, std::span(nodes).first(w), std::span(nodes).last(w));
+        d.columns_.fill(y + 1, std::span(nodes).first(w), std::span(nodes).last(w));
     };
     if (auto read = for_each_weight_row(weights, threads, add); !read) return read.error();
+    for (auto [from, to] : {std::pair{1, 0}, {h, h + 1}}) {
+        d.row_sums_[to] = d.row_sums_[from];
+        d.columns_.copy(from, to);
+    }
 
     std::vector<double> begins(h + 1), ends(h + 1);
     double total = 0;
     for (int s = 0; s <= h; ++s) {
-        const RowSegment place = row_segment(s, h);
-        begins[s] = d.row_sums_[place.above] * place.length;
-        ends[s] = d.row_sums_[place.below] * place.length;
+        const double length = row_segment(s, h).length;
+        begins[s] = d.row_sums_[s] * length;
+        ends[s] = d.row_sums_[s + 1] * length;
         total += begins[s] + ends[s];
     }
     if (total == 0) return build(uniform_weights(w, h), threads);
@@ -197,19 +207,19 @@ void BilinearDistribution::sample(std::span<const UnitPoint> points, std::span<f
 }
 
 double BilinearDistribution::pdf_uv(double u, double v) const {
-    const Row row = Tables{rows_, columns_, row_sums_, row_begins_}.of(v);
-    const auto [i, t] = column_place(u, width());
-    return row.pdf_v * row.mixture.segment(i).at(t) * (width() * (1 / k_total));
+    const Tables tables{rows_, columns_, row_sums_, row_begins_};
+    const auto [s, t] = tables.place(v);
+    const auto [i, r] = column_place(u, width());
+    const Row row = tables.at(s, t);
+    return row.pdf_v * row.mixture.segment(i).at(r) * (width() * (1 / k_total));
 }
 
 std::optional<UnitPoint> BilinearDistribution::invert(double u, double v) const {
-    const Tables tables{rows_, columns_, row_sums_, row_begins_};
     if (!(pdf_uv(u, v) > 0)) return std::nullopt;
-    const int s = row_segment_at(v, height());
-    const RowSegment place = row_segment(s, height());
-    const double t = std::clamp((v * height() - place.start) / place.length, 0.0, 1.0);
-    const Mixture mixture = tables.at(s, t).mixture;
+    const Tables tables{rows_, columns_, row_sums_, row_begins_};
+    const auto [s, t] = tables.place(v);
     const auto [i, r] = column_place(u, width());
+    const Mixture mixture = tables.at(s, t).mixture;
     const auto quantum = [](double mass) { return unit_fixed((mass + 0x1p31) * (1 / k_total)); };
     return UnitPoint{quantum(mixture.edge(i) + mixture.segment(i).before(r)),
                      quantum(signed_edge(rows_.edges_of(0)[s]) + tables.marginal_segment(s).before(t))};

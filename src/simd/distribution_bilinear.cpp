@@ -10,6 +10,7 @@
 #include "distribution/bilinear_place.h"
 
 #include <algorithm>
+#include <cstring>
 
 HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {
@@ -87,19 +88,27 @@ struct Segments {
     }
 };
 
-/// One batch's numbers between the steps.
+/// One batch's numbers between the steps. Pairs are neighbours in a table, fetched and kept together.
 struct Batch {
-    alignas(64) std::uint32_t x[k_batch], y[k_batch];                   // the points
-    alignas(64) std::int32_t segment[k_batch];                          // of the rows
-    alignas(64) std::uint32_t row_edge[k_batch], row_next[k_batch];     // its quanta before and after
-    alignas(64) double sum_above[k_batch], sum_below[k_batch], begin[k_batch];
+    alignas(64) std::int32_t segment[k_batch];                    // of the rows
+    alignas(64) std::uint64_t row_edges[k_batch];                 // the quanta before and after it
+    alignas(64) double sums[2 * k_batch], begin[k_batch];
     alignas(64) double above[k_batch], below[k_batch], pdf_v[k_batch], v[k_batch], mass[k_batch];
-    alignas(64) std::int32_t above_first[k_batch], above_last[k_batch], below_first[k_batch], below_last[k_batch];  // what the guides say
+    alignas(64) std::uint32_t above_cell[k_batch], below_cell[k_batch];  // guide cells and their next
     alignas(64) std::int32_t first[k_batch], last[k_batch], start[k_batch];
-    alignas(64) std::int32_t item[k_batch];                             // the column segment
-    alignas(64) std::uint32_t above_edge[k_batch], above_next[k_batch], below_edge[k_batch], below_next[k_batch];
+    alignas(64) std::int32_t item[k_batch];                       // the column segment
+    alignas(64) std::uint64_t above_edges[k_batch], below_edges[k_batch];
     alignas(64) std::int32_t above_shape[k_batch], below_shape[k_batch];
 };
+
+/// Two neighbours of a table as one number.
+template <typename Pair, typename T>
+HWY_INLINE Pair pair_at(const T* table) {
+    static_assert(sizeof(Pair) == 2 * sizeof(T));
+    Pair pair;
+    std::memcpy(&pair, table, sizeof(Pair));
+    return pair;
+}
 
 void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_sums, const double* row_begins, const UnitPoint* points,
                      std::size_t count, float* u, float* v, float* pdf_uv) {
@@ -107,77 +116,87 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
     const hn::Rebind<float, decltype(d)> df;
     const hn::Rebind<std::int32_t, decltype(d)> di;
     const hn::Rebind<std::uint32_t, decltype(d)> du;
+    using VD = hn::Vec<decltype(d)>;
+    using VU = hn::Vec<decltype(du)>;
     const int lanes = int(hn::Lanes(d));
     const std::uint32_t* row_edges = rows.edges_of(0);
     const std::uint16_t* row_guide = rows.guide_of(0);
-    const int width = columns.items, height = columns.count, row_shift = rows.shift, shift = columns.shift;
+    const int width = columns.items, height = columns.count - 2, row_shift = rows.shift, shift = columns.shift;
     const std::uint32_t* edges = columns.edges.data();
     const std::uint16_t *shapes = columns.shape.data(), *guides = columns.guide.data();
     const std::size_t edge_stride = std::size_t(width) + 1, shape_stride = std::size_t(width), guide_stride = std::size_t(columns.cells()) + 8;
     const std::uint32_t in_cell = (shift == 32 ? 0u : 1u << shift) - 1;
-    const auto one = hn::Set(d, 1.0), two = hn::Set(d, 2.0), half = hn::Set(d, 0.5), tiny = hn::Set(d, 1e-300), middle = hn::Set(d, 0x1p31);
-    const auto sign = hn::Set(du, 0x80000000u);
-    const auto promote = [&](const std::uint32_t* from) HWY_ATTR { return hn::PromoteTo(d, hn::BitCast(di, hn::Xor(hn::Load(du, from), sign))); };
+    const VD one = hn::Set(d, 1.0), two = hn::Set(d, 2.0), half = hn::Set(d, 0.5), tiny = hn::Set(d, 1e-300), middle = hn::Set(d, 0x1p31);
+    // Unsigned numbers as double, less 2^31
+    const auto promote = [&](VU from) HWY_ATTR { return hn::PromoteTo(d, hn::BitCast(di, hn::Xor(from, hn::Set(du, 0x80000000u)))); };
+    const auto load_pairs = [&](const std::uint64_t* from, VD& before, VD& after) HWY_ATTR {
+        VU low, high;
+        hn::LoadInterleaved2(du, reinterpret_cast<const std::uint32_t*>(from), low, high);
+        before = promote(low), after = promote(high);
+    };
     // (xi + 1/2) (2^32 - 1) / 2^32 - 2^31
-    const auto table_mass = [&](const std::uint32_t* xi) HWY_ATTR {
+    const auto table_mass = [&](VU xi) HWY_ATTR {
         return hn::Sub(hn::Mul(hn::Add(hn::Add(promote(xi), middle), half), hn::Set(d, k_total * 0x1p-32)), middle);
     };
     Batch b{};
+    UnitPoint rest[k_batch] = {};
 
     for (std::size_t begin = 0; begin < count; begin += k_batch) {
         const int n = int(std::min<std::size_t>(k_batch, count - begin));
         const UnitPoint* p = points + begin;
+        if (n < k_batch) p = static_cast<const UnitPoint*>(std::memcpy(rest, p, n * sizeof(UnitPoint)));
 
         // Row segments: found, then solved for v.
         for (int k = 0; k < n; ++k) {
             const std::uint32_t x = p[k].x, y = p[k].y;
             // edge > (y + 1/2) (2^32 - 1) / 2^32, in integers
             const int s = find_from(row_edges, row_guide[std::uint64_t(y) >> row_shift], y - (y >> 31));
-            b.x[k] = x, b.y[k] = y;
             b.segment[k] = s;
-            b.row_edge[k] = row_edges[s], b.row_next[k] = row_edges[s + 1];
+            b.row_edges[k] = pair_at<std::uint64_t>(row_edges + s);
             b.begin[k] = row_begins[s];
-            const std::size_t above = std::size_t(std::max(s - 1, 0)), below = std::size_t(std::min(s, height - 1));
-            b.sum_above[k] = row_sums[above], b.sum_below[k] = row_sums[below];
-            const std::uint16_t* cell = guides + (std::uint64_t(x) >> shift);
-            hwy::Prefetch(cell + above * guide_stride);
-            hwy::Prefetch(cell + below * guide_stride);
+            std::memcpy(b.sums + 2 * k, row_sums + s, 2 * sizeof(double));
+            const std::uint16_t* cell = guides + std::size_t(s) * guide_stride + (std::uint64_t(x) >> shift);
+            hwy::Prefetch(cell);
+            hwy::Prefetch(cell + guide_stride);
         }
         for (int k = 0; k < k_batch; k += lanes) {
-            const auto edge = promote(b.row_edge + k);
-            const auto quanta = hn::Mul(two, hn::Sub(promote(b.row_next + k), edge));
-            const auto from = hn::Load(d, b.begin + k);
+            VU x, y;
+            hn::LoadInterleaved2(du, &p[k].x, x, y);
+            VD edge, next, sum_above, sum_below;
+            load_pairs(b.row_edges + k, edge, next);
+            hn::LoadInterleaved2(d, b.sums + 2 * k, sum_above, sum_below);
+            const VD quanta = hn::Mul(two, hn::Sub(next, edge)), from = hn::Load(d, b.begin + k);
             const Segments<decltype(d)> segment{d, from, hn::Sub(quanta, from)};
-            const auto t = segment.invert(hn::Sub(table_mass(b.y + k), edge));
+            const VD t = segment.invert(hn::Sub(table_mass(y), edge));
             // row_segment() in vectors
-            const auto s = hn::PromoteTo(d, hn::Load(di, b.segment + k));
-            const auto start = hn::Max(hn::Sub(s, half), hn::Zero(d)), end = hn::Min(hn::Add(s, half), hn::Set(d, double(height)));
-            const auto length = hn::Sub(end, start), reciprocal = hn::Sub(hn::Set(d, 3.0), hn::Mul(two, length));  // of 1/2 or 1
-            const auto a = hn::Mul(hn::Sub(one, t), hn::Load(d, b.sum_above + k)), c = hn::Mul(t, hn::Load(d, b.sum_below + k));
-            const auto share = hn::Div(c, hn::Max(hn::Add(a, c), tiny));
+            const VD s = hn::PromoteTo(d, hn::Load(di, b.segment + k));
+            const VD start = hn::Max(hn::Sub(s, half), hn::Zero(d)), end = hn::Min(hn::Add(s, half), hn::Set(d, double(height)));
+            const VD length = hn::Sub(end, start), reciprocal = hn::Sub(hn::Set(d, 3.0), hn::Mul(two, length));  // of 1/2 or 1
+            const VD a = hn::Mul(hn::Sub(one, t), sum_above), c = hn::Mul(t, sum_below);
+            const VD share = hn::Div(c, hn::Max(hn::Add(a, c), tiny));
             hn::Store(share, d, b.below + k);
             hn::Store(hn::Sub(one, share), d, b.above + k);
             hn::Store(hn::Mul(hn::Mul(segment.at(t), reciprocal), hn::Set(d, height * (1 / k_total))), d, b.pdf_v + k);
             hn::Store(hn::Mul(hn::Add(start, hn::Mul(t, length)), hn::Set(d, 1.0 / height)), d, b.v + k);
-            hn::Store(table_mass(b.x + k), d, b.mass + k);
+            hn::Store(table_mass(x), d, b.mass + k);
         }
 
         // Columns: the guides bracket, and a straight line through what they say of each row guesses.
         for (int k = 0; k < n; ++k) {
-            const int s = b.segment[k];
-            const std::size_t cell = std::uint64_t(b.x[k]) >> shift;
-            const std::uint16_t *above = guides + std::size_t(std::max(s - 1, 0)) * guide_stride + cell,
-                                *below = guides + std::size_t(std::min(s, height - 1)) * guide_stride + cell;
-            b.above_first[k] = above[0], b.above_last[k] = above[1];  // past the last cell there is a last column
-            b.below_first[k] = below[0], b.below_last[k] = below[1];
+            const std::uint16_t* cell = guides + std::size_t(b.segment[k]) * guide_stride + (std::uint64_t(p[k].x) >> shift);
+            b.above_cell[k] = pair_at<std::uint32_t>(cell);  // past the last cell there is a last column
+            b.below_cell[k] = pair_at<std::uint32_t>(cell + guide_stride);
         }
         for (int k = 0; k < k_batch; k += lanes) {
-            const auto a0 = hn::Load(di, b.above_first + k), a1 = hn::Load(di, b.above_last + k);
-            const auto b0 = hn::Load(di, b.below_first + k), b1 = hn::Load(di, b.below_last + k);
+            const VU low = hn::Set(du, 0xffffu), above = hn::Load(du, b.above_cell + k), below = hn::Load(du, b.below_cell + k);
+            const auto a0 = hn::BitCast(di, hn::And(above, low)), a1 = hn::BitCast(di, hn::ShiftRight<16>(above));
+            const auto b0 = hn::BitCast(di, hn::And(below, low)), b1 = hn::BitCast(di, hn::ShiftRight<16>(below));
             const auto first = hn::Min(a0, b0), last = hn::Max(a1, b1);
             const auto fa = hn::ConvertTo(df, a0), fb = hn::ConvertTo(df, b0), unit = hn::Set(df, 1.0f);
             const auto length_a = hn::Add(hn::ConvertTo(df, hn::Sub(a1, a0)), unit), length_b = hn::Add(hn::ConvertTo(df, hn::Sub(b1, b0)), unit);
-            const auto place = hn::BitCast(di, hn::ShiftRight<1>(hn::And(hn::Load(du, b.x + k), hn::Set(du, in_cell))));
+            VU x, y;
+            hn::LoadInterleaved2(du, &p[k].x, x, y);
+            const auto place = hn::BitCast(di, hn::ShiftRight<1>(hn::And(x, hn::Set(du, in_cell))));
             const auto t = hn::Mul(hn::ConvertTo(df, place), hn::Set(df, float(2 / (double(in_cell) + 1))));
             const auto weight_a = hn::Mul(hn::DemoteTo(df, hn::Load(d, b.above + k)), length_b);
             const auto weight_b = hn::Mul(hn::DemoteTo(df, hn::Load(d, b.below + k)), length_a);
@@ -189,23 +208,27 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
             hn::Store(hn::Max(hn::Min(start, last), first), di, b.start + k);
         }
         for (int k = 0; k < n; ++k) {
-            const int s = b.segment[k], start = b.start[k];
-            for (std::size_t row : {std::size_t(std::max(s - 1, 0)), std::size_t(std::min(s, height - 1))}) {
-                hwy::Prefetch(edges + row * edge_stride + start);
-                hwy::Prefetch(edges + row * edge_stride + start + k_window - 1);
-                hwy::Prefetch(shapes + row * shape_stride + start + k_window / 2 - 1);
-            }
+            const std::size_t row = std::size_t(b.segment[k]);
+            const std::uint32_t* window = edges + row * edge_stride + b.start[k];
+            const std::uint16_t* shape = shapes + row * shape_stride + b.start[k] + (k_window / 2 - 1);
+            hwy::Prefetch(window);
+            hwy::Prefetch(window + (k_window - 1));
+            hwy::Prefetch(window + edge_stride);
+            hwy::Prefetch(window + edge_stride + (k_window - 1));
+            hwy::Prefetch(shape);
+            hwy::Prefetch(shape + shape_stride);
         }
         for (int k = 0; k < n; ++k) {
-            const int s = b.segment[k];
-            const std::size_t above = std::size_t(std::max(s - 1, 0)), below = std::size_t(std::min(s, height - 1));
-            const Mixture mixture{edges + above * edge_stride, edges + below * edge_stride, b.above[k], b.below[k]};
+            const std::size_t row = std::size_t(b.segment[k]);
+            const std::uint32_t* above = edges + row * edge_stride;
+            const Mixture mixture{above, above + edge_stride, b.above[k], b.below[k]};
             const int i = mixture.find(b.mass[k], b.first[k], b.last[k], b.start[k]);
             b.item[k] = i;
-            b.above_edge[k] = mixture.above_edges[i], b.above_next[k] = mixture.above_edges[i + 1];
-            b.below_edge[k] = mixture.below_edges[i], b.below_next[k] = mixture.below_edges[i + 1];
-            b.above_shape[k] = shapes[above * shape_stride + i];
-            b.below_shape[k] = shapes[below * shape_stride + i];
+            b.above_edges[k] = pair_at<std::uint64_t>(above + i);
+            b.below_edges[k] = pair_at<std::uint64_t>(above + edge_stride + i);
+            const std::uint16_t* shape = shapes + row * shape_stride + i;
+            b.above_shape[k] = shape[0];
+            b.below_shape[k] = shape[shape_stride];
         }
 
         alignas(64) float buffer[3][k_batch];
@@ -213,10 +236,12 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
         float *to_u = whole ? u + begin : buffer[0], *to_v = whole ? v + begin : buffer[1], *to_pdf = whole ? pdf_uv + begin : buffer[2];
         const auto under_one = hn::Set(df, 0x1.fffffep-1f);
         for (int k = 0; k < k_batch; k += lanes) {
+            VD above_edge, above_next, below_edge, below_next;
+            load_pairs(b.above_edges + k, above_edge, above_next);
+            load_pairs(b.below_edges + k, below_edge, below_next);
             const auto shape = hn::Set(d, 1.0 / 65535), above = hn::Load(d, b.above + k), below = hn::Load(d, b.below + k);
-            const auto above_edge = promote(b.above_edge + k), below_edge = promote(b.below_edge + k);
-            const auto a = hn::Mul(above, hn::Sub(promote(b.above_next + k), above_edge));
-            const auto c = hn::Mul(below, hn::Sub(promote(b.below_next + k), below_edge));
+            const auto a = hn::Mul(above, hn::Sub(above_next, above_edge));
+            const auto c = hn::Mul(below, hn::Sub(below_next, below_edge));
             const auto a_begin = hn::Mul(a, hn::Mul(hn::PromoteTo(d, hn::Load(di, b.above_shape + k)), shape));
             const auto c_begin = hn::Mul(c, hn::Mul(hn::PromoteTo(d, hn::Load(di, b.below_shape + k)), shape));
             const auto from = hn::Mul(two, hn::Add(a_begin, c_begin));
