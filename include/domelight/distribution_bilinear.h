@@ -16,7 +16,8 @@ struct BilinearRows {
     static constexpr std::uint32_t k_total = 0xffffffffu;
     int count = 0, items = 0;
     int shift = 0;  ///< guide cell of xi: xi >> shift
-    std::vector<std::uint32_t, LargeAllocator<std::uint32_t>> edges;  ///< [count][items + 1], then 16 more: quanta before each segment; the last is k_total
+    /// [count][items + 1], then 16 more: quanta before each segment, from 0 to k_total, less 2^31: signed, as vectors convert to double.
+    std::vector<std::int32_t, LargeAllocator<std::int32_t>> edges;
     std::vector<std::uint16_t, LargeAllocator<std::uint16_t>> shape;  ///< [count][items]: r in 1 / 65535
     std::vector<std::uint16_t, LargeAllocator<std::uint16_t>> guide;  ///< [count][cells + 8]: first segment that ends at the cell's first quantum or later
 
@@ -29,7 +30,9 @@ struct BilinearRows {
     void copy(int from, int to);
 
     int cells() const { return int((std::uint64_t(1) << 32) >> shift); }
-    const std::uint32_t* edges_of(int row) const { return edges.data() + std::size_t(row) * (items + 1); }
+    const std::int32_t* edges_of(int row) const { return edges.data() + std::size_t(row) * (items + 1); }
+    /// Quanta of a segment.
+    double quanta(int row, int i) const { return double(edges_of(row)[i + 1]) - edges_of(row)[i]; }
     const std::uint16_t* shape_of(int row) const { return shape.data() + std::size_t(row) * items; }
     const std::uint16_t* guide_of(int row) const { return guide.data() + std::size_t(row) * (cells() + 8); }
     std::size_t memory_bytes() const { return edges.size() * sizeof(edges[0]) + (shape.size() + guide.size()) * sizeof(shape[0]); }

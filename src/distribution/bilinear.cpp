@@ -12,16 +12,24 @@ namespace domelight {
 
 // ---- tables
 
+namespace {
+
+std::int32_t signed_quanta(std::uint64_t quanta) {
+    return std::int32_t(std::int64_t(quanta) - (std::int64_t(1) << 31));
+}
+
+}  // namespace
+
 BilinearRows::BilinearRows(int count_, int items_) : count(count_), items(items_) {
     shift = 32 - (int(std::bit_width(unsigned(items))) - 1);  // the largest power of two up to the number of items
     edges.resize(std::size_t(count) * (items + 1) + 16);
     shape.resize(std::size_t(count) * items);
     guide.resize(std::size_t(count) * (cells() + 8));
-    std::fill_n(edges.end() - 16, 16, k_total);  // whole vectors are read
+    std::fill_n(edges.end() - 16, 16, signed_quanta(k_total));  // whole vectors are read
 }
 
 void BilinearRows::fill(int row, std::span<const double> begins, std::span<const double> ends) {
-    std::uint32_t* e = edges.data() + std::size_t(row) * (items + 1);
+    std::int32_t* e = edges.data() + std::size_t(row) * (items + 1);
     std::uint16_t *s = shape.data() + std::size_t(row) * items, *g = guide.data() + std::size_t(row) * (cells() + 8);
     std::vector<double> sums(items);
     double sum = 0;
@@ -34,9 +42,9 @@ void BilinearRows::fill(int row, std::span<const double> begins, std::span<const
         s[i] = std::uint16_t(std::clamp(int(r), std::min(least, most), most));
     }
     std::size_t filled = 0;
-    e[0] = 0;
+    e[0] = signed_quanta(0);
     share_quanta([&](int i) { return begins[i] + ends[i] > 0; }, sums, k_total, [&](int i, std::uint64_t end) {
-        e[i + 1] = std::uint32_t(end);
+        e[i + 1] = signed_quanta(end);
         const std::size_t cells_begun = (end >> shift) + 1;
         for (std::size_t k = 0; k < 8; ++k) g[filled + k] = std::uint16_t(i);
         for (std::size_t k = filled + 8; k < cells_begun; ++k) g[k] = std::uint16_t(i);
@@ -61,25 +69,21 @@ void BilinearRows::copy(int from, int to) {
 namespace {
 
 constexpr double k_total = BilinearRows::k_total;
-/// xi on the tables' scale, less 2^31: edges are read as signed numbers, which vectors convert to double.
+/// xi on the tables' scale, less 2^31 as they are.
 double table_mass(std::uint32_t xi) {
     return (xi + 0.5) * (k_total * 0x1p-32) - 0x1p31;
-}
-double signed_edge(std::uint32_t edge) {
-    return double(edge) - 0x1p31;
 }
 
 /// The mixture of two rows at some v, on the tables' scale.
 struct Mixture {
-    const std::uint32_t *above_edges, *below_edges;
+    const std::int32_t *above_edges, *below_edges;
     const std::uint16_t *above_shape, *below_shape;
     double above, below;  // shares, together 1
 
-    double edge(int i) const { return above * signed_edge(above_edges[i]) + below * signed_edge(below_edges[i]); }
+    double edge(int i) const { return above * above_edges[i] + below * below_edges[i]; }
     LinearSegment segment(int i) const {
-        const double a = above * double(above_edges[i + 1] - above_edges[i]), b = below * double(below_edges[i + 1] - below_edges[i]);
-        const double a_begin = a * (above_shape[i] * (1.0 / 65535)), b_begin = b * (below_shape[i] * (1.0 / 65535));
-        const double begin = 2 * (a_begin + b_begin);
+        const double a = above * (double(above_edges[i + 1]) - above_edges[i]), b = below * (double(below_edges[i + 1]) - below_edges[i]);
+        const double begin = (a * above_shape[i] + b * below_shape[i]) * (2.0 / 65535);
         return {begin, 2 * (a + b) - begin};
     }
 };
@@ -97,8 +101,7 @@ struct Tables {
     int height() const { return columns.count - 2; }
 
     LinearSegment marginal_segment(int s) const {
-        const double quanta = rows.edges_of(0)[s + 1] - rows.edges_of(0)[s];
-        return {begins[s], 2 * quanta - begins[s]};
+        return {begins[s], 2 * rows.quanta(0, s) - begins[s]};
     }
 
     Row at(int s, double t) const {
@@ -112,11 +115,11 @@ struct Tables {
 
     /// Draws v.
     Row draw(std::uint32_t xi) const {
-        const std::uint32_t* e = rows.edges_of(0);
+        const std::int32_t* e = rows.edges_of(0);
         const double mass = table_mass(xi);
         int s = rows.guide_of(0)[std::uint64_t(xi) >> rows.shift];
-        while (signed_edge(e[s + 1]) <= mass) ++s;
-        return at(s, marginal_segment(s).invert(mass - signed_edge(e[s])));
+        while (e[s + 1] <= mass) ++s;
+        return at(s, marginal_segment(s).invert(mass - e[s]));
     }
 
     /// The segment of the mixture in which `mass` is reached.
@@ -182,8 +185,8 @@ Result<BilinearDistribution> BilinearDistribution::build(const Weights& weights,
     d.rows_.fill(0, begins, ends);
     d.row_begins_.resize(h + 1);
     for (int s = 0; s <= h; ++s) {
-        const double both = begins[s] + ends[s], quanta = d.rows_.edges_of(0)[s + 1] - d.rows_.edges_of(0)[s];
-        d.row_begins_[s] = both > 0 ? 2 * quanta * (begins[s] / both) : 0;
+        const double both = begins[s] + ends[s];
+        d.row_begins_[s] = both > 0 ? 2 * d.rows_.quanta(0, s) * (begins[s] / both) : 0;
     }
     return d;
 }
@@ -222,7 +225,7 @@ std::optional<UnitPoint> BilinearDistribution::invert(double u, double v) const 
     const Mixture mixture = tables.at(s, t).mixture;
     const auto quantum = [](double mass) { return unit_fixed((mass + 0x1p31) * (1 / k_total)); };
     return UnitPoint{quantum(mixture.edge(i) + mixture.segment(i).before(r)),
-                     quantum(signed_edge(rows_.edges_of(0)[s]) + tables.marginal_segment(s).before(t))};
+                     quantum(rows_.edges_of(0)[s] + tables.marginal_segment(s).before(t))};
 }
 
 }  // namespace domelight

@@ -19,21 +19,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr int k_batch = 64;
 constexpr double k_total = BilinearRows::k_total;
 
-HWY_INLINE double signed_edge(std::uint32_t edge) {
-    return double(std::int64_t(edge)) - 0x1p31;
-}
-
-/// A vector of edges, less 2^31.
-template <class D>
-HWY_INLINE hn::Vec<D> signed_edges(D d, const std::uint32_t* edges) {
-    const hn::Rebind<std::int32_t, D> di;
-    const hn::Rebind<std::uint32_t, D> du;
-    return hn::PromoteTo(d, hn::BitCast(di, hn::Xor(hn::LoadU(du, edges), hn::Set(du, 0x80000000u))));
-}
-
-/// The first item from `from` on whose edge is over `target`.
-HWY_INLINE int find_from(const std::uint32_t* edges, int from, std::uint32_t target) {
-    const hn::CappedTag<std::uint32_t, 16> d;
+/// The first item from `from` on whose end is over `target`.
+HWY_INLINE int find_from(const std::int32_t* edges, int from, std::int32_t target) {
+    const hn::CappedTag<std::int32_t, 16> d;
     const auto below = hn::Set(d, target);
     for (;; from += int(hn::Lanes(d))) {
         const auto found = hn::FindFirstTrue(d, hn::Lt(below, hn::LoadU(d, edges + 1 + from)));
@@ -46,23 +34,26 @@ using W = hn::CappedTag<double, k_window>;
 
 /// Two rows' edges and the shares to mix them with.
 struct Mixture {
-    const std::uint32_t *above_edges, *below_edges;
+    const std::int32_t *above_edges, *below_edges;
     double above, below;
 
-    HWY_INLINE double edge(int i) const { return above * signed_edge(above_edges[i]) + below * signed_edge(below_edges[i]); }
+    HWY_INLINE double edge(int i) const { return above * above_edges[i] + below * below_edges[i]; }
 
-    /// The segment in [first, last] in which `mass` is reached, given `start` in that range, a little before it: nearly always in the vector of edges
-    /// that begins there.
-    HWY_INLINE int find(double mass, int first, int last, int start) const {
+    /// The segment in which `mass` is reached, given `start`, a little before it: nearly always among the vector of edges that begins there. If not,
+    /// it is halved down from what the two rows' guide cells (each: first column, last column) bracket.
+    HWY_INLINE int find(double mass, int start, std::uint32_t above_cell, std::uint32_t below_cell) const {
         const W d;
+        const hn::Rebind<std::int32_t, W> di;
+        std::int64_t found = -1;
         if (hn::Lanes(d) > 2) {
-            const auto mixed = hn::Add(hn::Mul(hn::Set(d, above), signed_edges(d, above_edges + start)),
-                                       hn::Mul(hn::Set(d, below), signed_edges(d, below_edges + start)));
-            const auto found = hn::FindFirstTrue(d, hn::Lt(hn::Set(d, mass), mixed));
+            const auto mixed = hn::Add(hn::Mul(hn::Set(d, above), hn::PromoteTo(d, hn::LoadU(di, above_edges + start))),
+                                       hn::Mul(hn::Set(d, below), hn::PromoteTo(d, hn::LoadU(di, below_edges + start))));
+            found = hn::FindFirstTrue(d, hn::Lt(hn::Set(d, mass), mixed));
             if (HWY_LIKELY(found > 0)) return start + int(found) - 1;
-            if (found == 0) last = start - 1;
-            else first = start + int(hn::Lanes(d)) - 1;
         }
+        int first = int(std::min(above_cell & 0xffff, below_cell & 0xffff)), last = int(std::max(above_cell >> 16, below_cell >> 16));
+        if (found == 0) last = start - 1;
+        else if (hn::Lanes(d) > 2) first = start + int(hn::Lanes(d)) - 1;
         while (first < last) {
             const int middle = (first + last) / 2;
             if (edge(middle + 1) > mass) last = middle;
@@ -95,7 +86,7 @@ struct Batch {
     alignas(64) double sums[2 * k_batch], begin[k_batch];
     alignas(64) double above[k_batch], below[k_batch], pdf_v[k_batch], v[k_batch], mass[k_batch];
     alignas(64) std::uint32_t above_cell[k_batch], below_cell[k_batch];  // guide cells and their next
-    alignas(64) std::int32_t first[k_batch], last[k_batch], start[k_batch];
+    alignas(64) std::int32_t start[k_batch];                      // of the window of columns to search
     alignas(64) std::int32_t item[k_batch];                       // the column segment
     alignas(64) std::uint64_t above_edges[k_batch], below_edges[k_batch];
     alignas(64) std::int32_t above_shape[k_batch], below_shape[k_batch];
@@ -119,24 +110,23 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
     using VD = hn::Vec<decltype(d)>;
     using VU = hn::Vec<decltype(du)>;
     const int lanes = int(hn::Lanes(d));
-    const std::uint32_t* row_edges = rows.edges_of(0);
+    const std::int32_t* row_edges = rows.edges_of(0);
     const std::uint16_t* row_guide = rows.guide_of(0);
     const int width = columns.items, height = columns.count - 2, row_shift = rows.shift, shift = columns.shift;
-    const std::uint32_t* edges = columns.edges.data();
+    const std::int32_t* edges = columns.edges.data();
     const std::uint16_t *shapes = columns.shape.data(), *guides = columns.guide.data();
     const std::size_t edge_stride = std::size_t(width) + 1, shape_stride = std::size_t(width), guide_stride = std::size_t(columns.cells()) + 8;
     const std::uint32_t in_cell = (shift == 32 ? 0u : 1u << shift) - 1;
     const VD one = hn::Set(d, 1.0), two = hn::Set(d, 2.0), half = hn::Set(d, 0.5), tiny = hn::Set(d, 1e-300), middle = hn::Set(d, 0x1p31);
-    // Unsigned numbers as double, less 2^31
-    const auto promote = [&](VU from) HWY_ATTR { return hn::PromoteTo(d, hn::BitCast(di, hn::Xor(from, hn::Set(du, 0x80000000u)))); };
     const auto load_pairs = [&](const std::uint64_t* from, VD& before, VD& after) HWY_ATTR {
-        VU low, high;
-        hn::LoadInterleaved2(du, reinterpret_cast<const std::uint32_t*>(from), low, high);
-        before = promote(low), after = promote(high);
+        hn::Vec<decltype(di)> low, high;
+        hn::LoadInterleaved2(di, reinterpret_cast<const std::int32_t*>(from), low, high);
+        before = hn::PromoteTo(d, low), after = hn::PromoteTo(d, high);
     };
     // (xi + 1/2) (2^32 - 1) / 2^32 - 2^31
     const auto table_mass = [&](VU xi) HWY_ATTR {
-        return hn::Sub(hn::Mul(hn::Add(hn::Add(promote(xi), middle), half), hn::Set(d, k_total * 0x1p-32)), middle);
+        const VD number = hn::Add(hn::PromoteTo(d, hn::BitCast(di, hn::Xor(xi, hn::Set(du, 0x80000000u)))), middle);
+        return hn::Sub(hn::Mul(hn::Add(number, half), hn::Set(d, k_total * 0x1p-32)), middle);
     };
     Batch b{};
     UnitPoint rest[k_batch] = {};
@@ -150,7 +140,7 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
         for (int k = 0; k < n; ++k) {
             const std::uint32_t x = p[k].x, y = p[k].y;
             // edge > (y + 1/2) (2^32 - 1) / 2^32, in integers
-            const int s = find_from(row_edges, row_guide[std::uint64_t(y) >> row_shift], y - (y >> 31));
+            const int s = find_from(row_edges, row_guide[std::uint64_t(y) >> row_shift], std::int32_t((y - (y >> 31)) ^ 0x80000000u));
             b.segment[k] = s;
             b.row_edges[k] = pair_at<std::uint64_t>(row_edges + s);
             b.begin[k] = row_begins[s];
@@ -198,18 +188,14 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
             hn::LoadInterleaved2(du, &p[k].x, x, y);
             const auto place = hn::BitCast(di, hn::ShiftRight<1>(hn::And(x, hn::Set(du, in_cell))));
             const auto t = hn::Mul(hn::ConvertTo(df, place), hn::Set(df, float(2 / (double(in_cell) + 1))));
-            const auto weight_a = hn::Mul(hn::DemoteTo(df, hn::Load(d, b.above + k)), length_b);
-            const auto weight_b = hn::Mul(hn::DemoteTo(df, hn::Load(d, b.below + k)), length_a);
-            const auto at = hn::Div(hn::Add(hn::Mul(weight_a, hn::Add(fa, hn::Mul(t, length_a))), hn::Mul(weight_b, hn::Add(fb, hn::Mul(t, length_b)))),
-                                    hn::Add(weight_a, weight_b));
+            const auto from_a = hn::Add(fa, hn::Mul(t, length_a)), from_b = hn::Add(fb, hn::Mul(t, length_b));
+            const auto at = hn::Add(from_a, hn::Mul(hn::DemoteTo(df, hn::Load(d, b.below + k)), hn::Sub(from_b, from_a)));
             const auto start = hn::Sub(hn::ConvertTo(di, at), hn::Set(di, int(hn::Lanes(W())) / 2 - 1));
-            hn::Store(first, di, b.first + k);
-            hn::Store(last, di, b.last + k);
             hn::Store(hn::Max(hn::Min(start, last), first), di, b.start + k);
         }
         for (int k = 0; k < n; ++k) {
             const std::size_t row = std::size_t(b.segment[k]);
-            const std::uint32_t* window = edges + row * edge_stride + b.start[k];
+            const std::int32_t* window = edges + row * edge_stride + b.start[k];
             const std::uint16_t* shape = shapes + row * shape_stride + b.start[k] + (k_window / 2 - 1);
             hwy::Prefetch(window);
             hwy::Prefetch(window + (k_window - 1));
@@ -220,9 +206,9 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
         }
         for (int k = 0; k < n; ++k) {
             const std::size_t row = std::size_t(b.segment[k]);
-            const std::uint32_t* above = edges + row * edge_stride;
+            const std::int32_t* above = edges + row * edge_stride;
             const Mixture mixture{above, above + edge_stride, b.above[k], b.below[k]};
-            const int i = mixture.find(b.mass[k], b.first[k], b.last[k], b.start[k]);
+            const int i = mixture.find(b.mass[k], b.start[k], b.above_cell[k], b.below_cell[k]);
             b.item[k] = i;
             b.above_edges[k] = pair_at<std::uint64_t>(above + i);
             b.below_edges[k] = pair_at<std::uint64_t>(above + edge_stride + i);
@@ -239,12 +225,12 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
             VD above_edge, above_next, below_edge, below_next;
             load_pairs(b.above_edges + k, above_edge, above_next);
             load_pairs(b.below_edges + k, below_edge, below_next);
-            const auto shape = hn::Set(d, 1.0 / 65535), above = hn::Load(d, b.above + k), below = hn::Load(d, b.below + k);
+            const auto above = hn::Load(d, b.above + k), below = hn::Load(d, b.below + k);
             const auto a = hn::Mul(above, hn::Sub(above_next, above_edge));
             const auto c = hn::Mul(below, hn::Sub(below_next, below_edge));
-            const auto a_begin = hn::Mul(a, hn::Mul(hn::PromoteTo(d, hn::Load(di, b.above_shape + k)), shape));
-            const auto c_begin = hn::Mul(c, hn::Mul(hn::PromoteTo(d, hn::Load(di, b.below_shape + k)), shape));
-            const auto from = hn::Mul(two, hn::Add(a_begin, c_begin));
+            const auto a_begin = hn::Mul(a, hn::PromoteTo(d, hn::Load(di, b.above_shape + k)));
+            const auto c_begin = hn::Mul(c, hn::PromoteTo(d, hn::Load(di, b.below_shape + k)));
+            const auto from = hn::Mul(hn::Add(a_begin, c_begin), hn::Set(d, 2.0 / 65535));
             const Segments<decltype(d)> segment{d, from, hn::Sub(hn::Mul(two, hn::Add(a, c)), from)};
             const auto mass = hn::Sub(hn::Load(d, b.mass + k), hn::Add(hn::Mul(above, above_edge), hn::Mul(below, below_edge)));
             const auto t = segment.invert(hn::Max(mass, hn::Zero(d)));
