@@ -1,8 +1,9 @@
 // Drawing from an environment: million samples a second, densities included, by method, on random and on stratified points, and as a ratio to plain binary
 // search in the same run; table time and memory; the error of an estimate with 4096 low-discrepancy points.
 //
-//   distribution_bench [--quick] [FILE.hdr]
+//   distribution_bench [--quick] [--set AVX2|SSE4|SCALAR] [FILE.hdr]
 //
+// --quick: 4096 x 2048 only. --set: no better instruction set than this one.
 // Without a file: the 4k environment under DOMELIGHT_DATA, else the built-in sky. CPU time of this thread, medians of interleaved rounds.
 
 #include <fmt/core.h>
@@ -261,6 +262,7 @@ int main(int argc, char** argv) {
     std::string file;
     for (int i = 1; i < argc; ++i) {
         if (!std::strcmp(argv[i], "--quick")) quick = true;
+        else if (!std::strcmp(argv[i], "--set") && i + 1 < argc) simd::limit_instruction_set(argv[++i]);
         else file = argv[i];
     }
     const char* data = std::getenv("DOMELIGHT_DATA");

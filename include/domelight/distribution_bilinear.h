@@ -60,15 +60,14 @@ class BilinearDistribution final : public Distribution2D {
     int height() const override { return columns_.count - 2; }
     bool continuous() const override { return true; }
     std::size_t memory_bytes() const override {
-        return rows_.memory_bytes() + columns_.memory_bytes() + (row_sums_.size() + row_begins_.size()) * sizeof(double);
+        return rows_.memory_bytes() + columns_.memory_bytes() + row_begins_.size() * sizeof(double);
     }
 
   private:
-    BilinearRows rows_;     // one density of height + 1 segments; its shapes are not used, row_sums_ says it more finely
+    BilinearRows rows_;     // one density of height + 1 segments; its shapes are not used, row_begins_ says them more finely
     // For each row, segments from centre to centre; the last one goes around. The first and the last row stand there twice, so that segment s of v always
     // lies between rows s and s + 1 of the table.
     BilinearRows columns_;
-    std::vector<double> row_sums_;    // of those rows
     std::vector<double> row_begins_;  // [height + 1]: the marginal's value at the beginning of each segment, in quanta a segment
 };
 

@@ -97,7 +97,7 @@ struct Row {
 
 struct Tables {
     const BilinearRows &rows, &columns;
-    const std::vector<double>&sums, &begins;
+    const std::vector<double>& begins;
     int height() const { return columns.count - 2; }
 
     LinearSegment marginal_segment(int s) const {
@@ -106,9 +106,10 @@ struct Tables {
 
     Row at(int s, double t) const {
         const RowSegment place = row_segment(s, height());
-        const double a = (1 - t) * sums[s], b = t * sums[s + 1];
-        const double below = b / std::max(a + b, 1e-300);
-        const double pdf_v = marginal_segment(s).at(t) * (1 / place.length) * (height() * (1 / k_total));
+        // The segment runs from the sum of one row to that of the next, so the lower row's share is its part of the value.
+        const LinearSegment segment = marginal_segment(s);
+        const double value = segment.at(t), below = segment.end * t / std::max(value, 1e-300);
+        const double pdf_v = value * (1 / place.length) * (height() * (1 / k_total));
         return {(place.start + t * place.length) * (1.0 / height()), pdf_v,
                 {columns.edges_of(s), columns.edges_of(s + 1), columns.shape_of(s), columns.shape_of(s + 1), 1 - below, below}, s};
     }
@@ -157,9 +158,9 @@ Result<BilinearDistribution> BilinearDistribution::build(const Weights& weights,
     BilinearDistribution d;
     const int w = std::max(0, weights.width), h = std::max(0, weights.height);
     if (w > 0 && h > 0 && w <= 65535 && h <= 65535) d.columns_ = BilinearRows(h + 2, w);
-    d.row_sums_.resize(h + 2);
+    std::vector<double> row_sums(h + 2);
     const auto add = [&](int y, std::span<const float> row, std::span<const double> sums) {
-        d.row_sums_[y + 1] = sums.back();
+        row_sums[y + 1] = sums.back();
         if (sums.back() == 0) return d.columns_.fill_uniform(y + 1);
         std::vector<double> nodes(w + 1);
         std::copy(row.begin(), row.end(), nodes.begin());
@@ -168,7 +169,7 @@ Result<BilinearDistribution> BilinearDistribution::build(const Weights& weights,
     };
     if (auto read = for_each_weight_row(weights, threads, add); !read) return read.error();
     for (auto [from, to] : {std::pair{1, 0}, {h, h + 1}}) {
-        d.row_sums_[to] = d.row_sums_[from];
+        row_sums[to] = row_sums[from];
         d.columns_.copy(from, to);
     }
 
@@ -176,8 +177,8 @@ Result<BilinearDistribution> BilinearDistribution::build(const Weights& weights,
     double total = 0;
     for (int s = 0; s <= h; ++s) {
         const double length = row_segment(s, h).length;
-        begins[s] = d.row_sums_[s] * length;
-        ends[s] = d.row_sums_[s + 1] * length;
+        begins[s] = row_sums[s] * length;
+        ends[s] = row_sums[s + 1] * length;
         total += begins[s] + ends[s];
     }
     if (total == 0) return build(uniform_weights(w, h), threads);
@@ -192,7 +193,7 @@ Result<BilinearDistribution> BilinearDistribution::build(const Weights& weights,
 }
 
 DistributionSample BilinearDistribution::sample(UnitPoint point) const {
-    const Tables tables{rows_, columns_, row_sums_, row_begins_};
+    const Tables tables{rows_, columns_, row_begins_};
     const Row row = tables.draw(point.y);
     const double mass = table_mass(point.x);
     const int i = tables.find(row, point.x, mass);
@@ -206,11 +207,11 @@ DistributionSample BilinearDistribution::sample(UnitPoint point) const {
 
 void BilinearDistribution::sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v, std::span<float> pdf_uv) const {
     assert(u.size() == points.size() && v.size() == points.size() && pdf_uv.size() == points.size());
-    simd::sample_bilinear(rows_, columns_, row_sums_.data(), row_begins_.data(), points, u.data(), v.data(), pdf_uv.data());
+    simd::sample_bilinear(rows_, columns_, row_begins_.data(), points, u.data(), v.data(), pdf_uv.data());
 }
 
 double BilinearDistribution::pdf_uv(double u, double v) const {
-    const Tables tables{rows_, columns_, row_sums_, row_begins_};
+    const Tables tables{rows_, columns_, row_begins_};
     const auto [s, t] = tables.place(v);
     const auto [i, r] = column_place(u, width());
     const Row row = tables.at(s, t);
@@ -219,7 +220,7 @@ double BilinearDistribution::pdf_uv(double u, double v) const {
 
 std::optional<UnitPoint> BilinearDistribution::invert(double u, double v) const {
     if (!(pdf_uv(u, v) > 0)) return std::nullopt;
-    const Tables tables{rows_, columns_, row_sums_, row_begins_};
+    const Tables tables{rows_, columns_, row_begins_};
     const auto [s, t] = tables.place(v);
     const auto [i, r] = column_place(u, width());
     const Mixture mixture = tables.at(s, t).mixture;

@@ -39,21 +39,32 @@ struct Mixture {
 
     HWY_INLINE double edge(int i) const { return above * above_edges[i] + below * below_edges[i]; }
 
+    /// The first of a vector of edges from `start` on that is over `mass`, or -1.
+    HWY_INLINE std::intptr_t window(double mass, int start) const {
+        const W d;
+        const hn::Rebind<std::int32_t, W> di;
+        const auto mixed = hn::Add(hn::Mul(hn::Set(d, above), hn::PromoteTo(d, hn::LoadU(di, above_edges + start))),
+                                   hn::Mul(hn::Set(d, below), hn::PromoteTo(d, hn::LoadU(di, below_edges + start))));
+        return hn::FindFirstTrue(d, hn::Lt(hn::Set(d, mass), mixed));
+    }
+
     /// The segment in which `mass` is reached, given `start`, a little before it: nearly always among the vector of edges that begins there. If not,
     /// it is halved down from what the two rows' guide cells (each: first column, last column) bracket.
     HWY_INLINE int find(double mass, int start, std::uint32_t above_cell, std::uint32_t below_cell) const {
         const W d;
-        const hn::Rebind<std::int32_t, W> di;
-        std::int64_t found = -1;
-        if (hn::Lanes(d) > 2) {
-            const auto mixed = hn::Add(hn::Mul(hn::Set(d, above), hn::PromoteTo(d, hn::LoadU(di, above_edges + start))),
-                                       hn::Mul(hn::Set(d, below), hn::PromoteTo(d, hn::LoadU(di, below_edges + start))));
-            found = hn::FindFirstTrue(d, hn::Lt(hn::Set(d, mass), mixed));
-            if (HWY_LIKELY(found > 0)) return start + int(found) - 1;
-        }
+        const int lanes = int(hn::Lanes(d));
+        const auto from = window(mass, start);
+        if (HWY_LIKELY(from > 0)) return start + int(from) - 1;
         int first = int(std::min(above_cell & 0xffff, below_cell & 0xffff)), last = int(std::max(above_cell >> 16, below_cell >> 16));
-        if (found == 0) last = start - 1;
-        else if (hn::Lanes(d) > 2) first = start + int(hn::Lanes(d)) - 1;
+        if (lanes > 2) {
+            if (from == 0) last = start - 1, start = std::max(first, start - lanes + 1);
+            else first = start += lanes - 1;
+            if (first >= last) return first;
+            const auto again = window(mass, start);
+            if (again > 0) return start + int(again) - 1;
+            if (again == 0) last = start - 1;
+            else first = start + lanes - 1;
+        }
         while (first < last) {
             const int middle = (first + last) / 2;
             if (edge(middle + 1) > mass) last = middle;
@@ -83,7 +94,7 @@ struct Segments {
 struct Batch {
     alignas(64) std::int32_t segment[k_batch];                    // of the rows
     alignas(64) std::uint64_t row_edges[k_batch];                 // the quanta before and after it
-    alignas(64) double sums[2 * k_batch], begin[k_batch];
+    alignas(64) double begin[k_batch];
     alignas(64) double above[k_batch], below[k_batch], pdf_v[k_batch], v[k_batch], mass[k_batch];
     alignas(64) std::uint32_t above_cell[k_batch], below_cell[k_batch];  // guide cells and their next
     alignas(64) std::int32_t start[k_batch];                      // of the window of columns to search
@@ -101,7 +112,7 @@ HWY_INLINE Pair pair_at(const T* table) {
     return pair;
 }
 
-void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_sums, const double* row_begins, const UnitPoint* points,
+void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_begins, const UnitPoint* points,
                      std::size_t count, float* u, float* v, float* pdf_uv) {
     const hn::ScalableTag<double> d;
     const hn::Rebind<float, decltype(d)> df;
@@ -144,7 +155,6 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
             b.segment[k] = s;
             b.row_edges[k] = pair_at<std::uint64_t>(row_edges + s);
             b.begin[k] = row_begins[s];
-            std::memcpy(b.sums + 2 * k, row_sums + s, 2 * sizeof(double));
             const std::uint16_t* cell = guides + std::size_t(s) * guide_stride + (std::uint64_t(x) >> shift);
             hwy::Prefetch(cell);
             hwy::Prefetch(cell + guide_stride);
@@ -152,9 +162,8 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
         for (int k = 0; k < k_batch; k += lanes) {
             VU x, y;
             hn::LoadInterleaved2(du, &p[k].x, x, y);
-            VD edge, next, sum_above, sum_below;
+            VD edge, next;
             load_pairs(b.row_edges + k, edge, next);
-            hn::LoadInterleaved2(d, b.sums + 2 * k, sum_above, sum_below);
             const VD quanta = hn::Mul(two, hn::Sub(next, edge)), from = hn::Load(d, b.begin + k);
             const Segments<decltype(d)> segment{d, from, hn::Sub(quanta, from)};
             const VD t = segment.invert(hn::Sub(table_mass(y), edge));
@@ -162,11 +171,10 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
             const VD s = hn::PromoteTo(d, hn::Load(di, b.segment + k));
             const VD start = hn::Max(hn::Sub(s, half), hn::Zero(d)), end = hn::Min(hn::Add(s, half), hn::Set(d, double(height)));
             const VD length = hn::Sub(end, start), reciprocal = hn::Sub(hn::Set(d, 3.0), hn::Mul(two, length));  // of 1/2 or 1
-            const VD a = hn::Mul(hn::Sub(one, t), sum_above), c = hn::Mul(t, sum_below);
-            const VD share = hn::Div(c, hn::Max(hn::Add(a, c), tiny));
+            const VD value = segment.at(t), share = hn::Div(hn::Mul(segment.end, t), hn::Max(value, tiny));
             hn::Store(share, d, b.below + k);
             hn::Store(hn::Sub(one, share), d, b.above + k);
-            hn::Store(hn::Mul(hn::Mul(segment.at(t), reciprocal), hn::Set(d, height * (1 / k_total))), d, b.pdf_v + k);
+            hn::Store(hn::Mul(hn::Mul(value, reciprocal), hn::Set(d, height * (1 / k_total))), d, b.pdf_v + k);
             hn::Store(hn::Mul(hn::Add(start, hn::Mul(t, length)), hn::Set(d, 1.0 / height)), d, b.v + k);
             hn::Store(table_mass(x), d, b.mass + k);
         }
@@ -257,9 +265,9 @@ namespace domelight::simd {
 
 HWY_EXPORT(sample_bilinear);
 
-void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_sums, const double* row_begins,
+void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_begins,
                      std::span<const UnitPoint> points, float* u, float* v, float* pdf_uv) {
-    HWY_DYNAMIC_DISPATCH(sample_bilinear)(rows, columns, row_sums, row_begins, points.data(), points.size(), u, v, pdf_uv);
+    HWY_DYNAMIC_DISPATCH(sample_bilinear)(rows, columns, row_begins, points.data(), points.size(), u, v, pdf_uv);
 }
 
 }  // namespace domelight::simd
