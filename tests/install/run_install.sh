@@ -49,6 +49,11 @@ claim "examples/bake_minimal.cpp bakes" "$work/build/bake_minimal" "$work/white.
 claim "what it bakes of a white environment is white" \
     python3 -c 'import sys; d = open(sys.argv[1], "rb").read(); sys.exit(d.count(b"\x00\x3c") < 0.99 * 4 * 6 * sum((256 >> l) ** 2 for l in range(5)))' \
     "$work/specular.ktx2"
+white_light() {
+    # Under a white environment a white matte surface is white, whatever the points.
+    "$work/build/sample_minimal" "$work/white.hdr" | awk '{ exit !($1 > 0.99 && $1 < 1.01 && $1 == $2 && $2 == $3) }'
+}
+claim "examples/sample_minimal.cpp lights a white surface white under a white sky" white_light
 claim "examples/bake_minimal.cpp says what is wrong" no_file
 sed -i 's/domelight 0.1 REQUIRED/domelight 99 REQUIRED/' "$work/project/CMakeLists.txt"
 claim "another version is refused" refuses_another_version
