@@ -1,98 +1,73 @@
 #include "domelight/parallel.h"
 
 #include <sched.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
-#include <condition_variable>
-#include <mutex>
+#include <exception>
+#include <memory>
 #include <thread>
 #include <vector>
 
 namespace domelight {
 namespace {
 
-/// Takes the next item until none is left.
-struct Work {
-    int count;
-    const std::function<void(int)>& task;
-    std::atomic<int> next{0};
-
-    void run() {
-        for (int i; (i = next.fetch_add(1, std::memory_order_relaxed)) < count;) task(i);
-    }
-};
-
-/// Threads that wait for work: starting one takes as long as a row of an image. It serves one caller at a time.
-class Pool {
+/// A thread that runs one piece of work after the other and sleeps in between. Starting a thread for each costs some
+/// 50 us, and a bake has hundreds of parallel loops.
+class Helper {
   public:
-    /// Runs `work` on the calling thread and `helpers` of the pool's.
-    void run(Work& work, int helpers) {
-        {
-            const std::lock_guard lock(mutex_);
-            while (int(threads_.size()) < helpers) threads_.emplace_back([this] { serve(); });
-            work_ = &work;
-            wanted_ = helpers;
-        }
-        for (int i = 0; i < helpers; ++i) wake_.notify_one();
-        work.run();
-        std::unique_lock lock(mutex_);
-        // Those that have not woken by now need not.
-        wanted_ = 0;
-        done_.wait(lock, [this] { return working_ == 0; });
-        work_ = nullptr;
+    Helper() : thread_([this] { serve(); }) {}
+    ~Helper() {
+        state_.store(k_stop);
+        state_.notify_one();
+    }
+    Helper(const Helper&) = delete;
+    Helper& operator=(const Helper&) = delete;
+
+    /// Asks for `work()`, which must last until finish() returns.
+    void start(const std::function<void()>& work) {
+        work_ = &work;
+        state_.store(k_asked, std::memory_order_release);
+        state_.notify_one();
+    }
+    /// Waits for the work's end; work not yet begun is taken back (another has done it all by then).
+    void finish() {
+        int asked = k_asked;
+        if (state_.compare_exchange_strong(asked, k_idle)) return;
+        while (state_.load(std::memory_order_acquire) == k_busy) state_.wait(k_busy);
     }
 
   private:
+    enum State : int { k_idle, k_asked, k_busy, k_stop };
+
     void serve() {
-        std::unique_lock lock(mutex_);
         for (;;) {
-            wake_.wait(lock, [this] { return wanted_ > 0; });
-            --wanted_;
-            ++working_;
-            Work& work = *work_;
-            lock.unlock();
-            work.run();
-            lock.lock();
-            if (--working_ == 0) done_.notify_one();
+            int state = state_.load(std::memory_order_acquire);
+            if (state == k_stop) return;
+            if (state == k_idle) {
+                state_.wait(k_idle);
+            } else if (state_.compare_exchange_strong(state, k_busy)) {
+                (*work_)();
+                state_.store(k_idle, std::memory_order_release);
+                state_.notify_one();
+            }
         }
     }
 
-    std::mutex mutex_;
-    std::condition_variable wake_, done_;
-    std::vector<std::thread> threads_;
-    Work* work_ = nullptr;
-    int wanted_ = 0, working_ = 0;
+    std::atomic<int> state_{k_idle};
+    const std::function<void()>* work_ = nullptr;
+    std::jthread thread_;  // last: it uses the rest, and its end is waited for first
 };
 
-/// The process's pool, for who comes first; none while somebody uses it.
-class PoolLease {
-  public:
-    PoolLease() {
-        if (taken().test_and_set(std::memory_order_acquire)) return;
-        static Pool* pool = nullptr;
-        static pid_t owner = 0;
-        // A forked child has its parent's pool but none of its threads. The threads of a process end with it: the
-        // pool is never destroyed.
-        if (owner != getpid()) pool = new Pool, owner = getpid();
-        pool_ = pool;
-    }
-    ~PoolLease() {
-        if (pool_) taken().clear(std::memory_order_release);
-    }
-    PoolLease(const PoolLease&) = delete;
-    PoolLease& operator=(const PoolLease&) = delete;
-    Pool* operator->() const { return pool_; }
-    explicit operator bool() const { return pool_; }
+/// The helpers of one thread that calls parallel_for. Each caller has its own, so calls from several threads do not
+/// meet.
+std::vector<std::unique_ptr<Helper>>& helpers_of_this_thread() {
+    thread_local std::vector<std::unique_ptr<Helper>> helpers;
+    return helpers;
+}
 
-  private:
-    static std::atomic_flag& taken() {
-        static std::atomic_flag flag;
-        return flag;
-    }
-    Pool* pool_ = nullptr;
-};
+/// Whether this thread is inside a parallel loop: a loop inside it runs on this thread alone, whose helpers are taken.
+thread_local bool t_inside = false;
 
 }  // namespace
 
@@ -106,16 +81,29 @@ int resolve_threads(int threads) {
 
 void parallel_for(int count, int threads, const std::function<void(int)>& task) {
     const int workers = std::min(resolve_threads(threads), count);
-    Work work{count, task};
-    if (workers <= 1) {
-        work.run();
-    } else if (const PoolLease pool; pool) {
-        pool->run(work, workers - 1);
-    } else {
-        std::vector<std::jthread> own;
-        for (int t = 1; t < workers; ++t) own.emplace_back([&] { work.run(); });
-        work.run();
+    if (workers <= 1 || t_inside) {
+        for (int i = 0; i < count; ++i) task(i);
+        return;
     }
+    std::atomic<int> next{0};
+    std::atomic<bool> failed{false};
+    std::exception_ptr failure;  // written by whoever sets `failed`
+    const std::function<void()> work = [&] {
+        t_inside = true;
+        try {
+            for (int i; (i = next.fetch_add(1, std::memory_order_relaxed)) < count;) task(i);
+        } catch (...) {
+            if (!failed.exchange(true)) failure = std::current_exception();
+            next.store(count, std::memory_order_relaxed);
+        }
+        t_inside = false;
+    };
+    auto& helpers = helpers_of_this_thread();
+    while (int(helpers.size()) < workers - 1) helpers.push_back(std::make_unique<Helper>());
+    for (int t = 0; t < workers - 1; ++t) helpers[t]->start(work);
+    work();
+    for (int t = 0; t < workers - 1; ++t) helpers[t]->finish();
+    if (failure) std::rethrow_exception(failure);
 }
 
 void parallel_ranges(int count, int grain, int threads, const std::function<void(int, int)>& task) {

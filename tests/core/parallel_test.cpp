@@ -1,13 +1,14 @@
 #include "domelight/parallel.h"
 
+#include "test.h"
+
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <new>
 #include <thread>
 #include <vector>
-
-#include "test.h"
 
 TEST_CASE("parallel_for: every index once, on any number of threads") {
     for (int threads : {0, 1, 2, 3, 8}) {
@@ -25,19 +26,40 @@ TEST_CASE("parallel_ranges: pieces cover the range without overlap") {
     for (int o : owner) REQUIRE(o == 1);
 }
 
-TEST_CASE("parallel_for: callers on several threads, and calls within calls, all get their work done") {
+TEST_CASE("parallel_for: many short loops in a row, of changing numbers of threads, from several threads at once") {
+    std::vector<std::jthread> callers;
+    std::vector<int> wrong(3, 0);
+    for (int caller = 0; caller < 3; ++caller)
+        callers.emplace_back([&wrong, caller] {
+            for (int round = 0; round < 2000; ++round) {
+                const int count = round % 7;
+                std::vector<int> seen(7, 0);
+                domelight::parallel_for(count, 1 + round % 5, [&](int i) { ++seen[i]; });
+                for (int i = 0; i < 7; ++i) wrong[caller] += seen[i] != (i < count);
+            }
+        });
+    callers.clear();
+    for (int w : wrong) CHECK(w == 0);
+}
+
+TEST_CASE("parallel_for: what a task throws reaches the caller, whichever thread ran it") {
+    for (int threads : {1, 2, 4})
+        for (int at : {0, 50, 99}) {
+            CHECK_THROWS_AS(domelight::parallel_for(100, threads,
+                                                    [&](int i) {
+                                                        if (i == at) throw std::bad_alloc();
+                                                    }),
+                            std::bad_alloc);
+            std::atomic<int> sum{0};
+            domelight::parallel_for(100, threads, [&](int i) { sum += i; });
+            CHECK(sum == 4950);
+        }
+}
+
+TEST_CASE("parallel_for: loops inside loops end too") {
     std::atomic<int> sum{0};
-    const auto work = [&] {
-        for (int repeat = 0; repeat < 50; ++repeat)
-            domelight::parallel_for(20, 3, [&](int) { ++sum; });
-    };
-    {
-        std::jthread a(work), b(work);
-        work();
-    }
-    CHECK(sum == 3 * 50 * 20);
-    domelight::parallel_for(4, 2, [&](int) { domelight::parallel_for(5, 2, [&](int) { ++sum; }); });
-    CHECK(sum == 3 * 50 * 20 + 20);
+    domelight::parallel_for(4, 3, [&](int) { domelight::parallel_for(5, 2, [&](int j) { sum += j; }); });
+    CHECK(sum == 40);
 }
 
 TEST_CASE("parallel_for: a forked child has threads of its own") {
