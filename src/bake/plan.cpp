@@ -86,18 +86,36 @@ Result<void> check_values(const BakeOptions& o) {
     return {};
 }
 
-/// Number of levels from the options, or from the target's smallest size.
-Result<int> level_count(const Target& target, const BakeOptions& o, int size) {
+bool is_chain(Container container) {
+    return container != Container::exr && container != Container::hdr;
+}
+
+/// How many levels a lat-long map of a height can have in one texture. Its width halves with its height only while that
+/// is even: below 130 x 65 a texture has 65 x 32, which is no lat-long shape.
+int most_texture_levels(int height) {
+    int levels = 1;
+    for (; height % 2 == 0; height /= 2) ++levels;
+    return levels;
+}
+
+/// Number of levels from the options, or from the target's smallest size. `chain`: they go into one texture.
+Result<int> level_count(const Target& target, const BakeOptions& o, int size, Layout layout, bool chain) {
     const std::size_t listed = std::max(o.roughness.size(), o.exponents.size());
     const char* list = o.exponents.empty() ? "--roughness" : "--exponents";
     if (listed && o.levels && std::size_t(*o.levels) != listed)
         return option_error("--levels", fmt::format("{} levels, but {} names {}", *o.levels, list, listed));
+    const int most = layout == Layout::latlong && chain ? most_texture_levels(size) : most_levels(size);
     int levels = listed ? int(listed) : o.levels ? *o.levels : 1;
     if (!listed && !o.levels)
-        while (levels < most_levels(size) && (size >> levels) >= target.smallest) ++levels;
+        while (levels < std::min(most_levels(size), most) && (size >> levels) >= target.smallest) ++levels;
     if (levels < 1 || levels > most_levels(size))
         return option_error(listed ? list : "--levels", fmt::format("{} levels, but a map of size {} has from 1 to {}",
                                                                     levels, size, most_levels(size)));
+    if (levels > most)
+        return option_error(
+            "--size",
+            fmt::format("a lat-long map of height {} halves exactly {} times, not {}", size, most - 1, levels - 1),
+            fmt::format("Use a multiple of {}, or --format exr.", 1 << (levels - 1)));
     return levels;
 }
 
@@ -150,7 +168,7 @@ Result<TargetPlan> plan_target(const Target& target, const BakeOptions& o) {
         const int scale =
             plan.layout == Layout::latlong ? 2 : 1;  // a lat-long map is as fine as a cube when it is twice as high
         const int size = o.size.value_or(scale * target.size);
-        const auto levels = level_count(target, o, size);
+        const auto levels = level_count(target, o, size, plan.layout, is_chain(plan.container));
         if (!levels) return levels.error();
         const auto exponents = o.exponents.empty() ? default_exponents(*levels) : o.exponents;
         for (int l = 0; l < *levels; ++l) {

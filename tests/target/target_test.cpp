@@ -109,6 +109,12 @@ TEST_CASE("plan: options override the target, level by level") {
     CHECK(sizes(plan_of("generic", options)).front() == 1024);  // as fine as a cube of 512^2
     CHECK(sizes(plan_of("generic", options)).size() == 8);      // to 8 rows
 
+    // One texture holds 200 x 100, 100 x 50, 50 x 25, but then 25 x 12: files of a level each may go on.
+    options.size = 100;
+    CHECK(sizes(plan_of("generic", options)) == std::vector{100, 50, 25});
+    options.format = Container::exr;
+    CHECK(sizes(plan_of("generic", options)) == std::vector{100, 50, 25, 12});
+
     options = {};
     options.lobe = Lobe::phong_brdf;
     options.exponents = {std::numeric_limits<double>::infinity(), 64, 0};
@@ -140,6 +146,7 @@ TEST_CASE("plan: contradictions are errors that name the option") {
     CHECK(where([](BakeOptions& o) { o.targets = {"three"}, o.lobe = Lobe::charlie; }) == "--lobe");
     CHECK(where([](BakeOptions& o) { o.targets = {}; }) == "--for");
     CHECK(where([](BakeOptions& o) { o.sh_bands = 65; }) == "--sh-bands");
+    CHECK(where([](BakeOptions& o) { o.layout = Layout::latlong, o.size = 100, o.levels = 4; }) == "--size");
 }
 
 TEST_CASE("target: filament's cube lies as cmgen's does, from the same image with its convention") {
