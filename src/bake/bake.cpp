@@ -115,7 +115,7 @@ class TargetBake {
         report_.sh.files.reserve(2);
     }
 
-    /// Encodes everything and starts the writing.
+    /// Encodes and writes everything, or starts to.
     void start(FilterJob::Maps& maps, const FilterResult& result, std::vector<StageTime>& stages) {
         const StageClock clock(stages, "encode");
         report_.sh =
@@ -200,11 +200,11 @@ class TargetBake {
             write_small(report_.sh.files, target_.sh_text_file, filament_sh_text(report_.sh));
     }
 
-    void write_small(std::vector<BakedFile>& files, const std::string& name, std::string text) {
+    void write_small(std::vector<BakedFile>& files, const std::string& name, const std::string& text) {
         BakedFile& file = files.emplace_back();
         file.file = name;
         if (options_.hashes) file.sha256 = sha256({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-        background_.start([this, name, text = std::move(text)] { return write_text(name, text); });
+        background_.done(write_text(name, text));
     }
 
     Result<void> write_text(const std::string& name, const std::string& text) {
@@ -224,17 +224,17 @@ class TargetBake {
                                                       : (three ? Encoding::rgba16f : Encoding::rg16f);
         brdf.encoding = encoding_name(encoding);
         brdf.file.file = fmt::format("{}.ktx2", target_.brdf_file.empty() ? "brdf" : target_.brdf_file);
-        auto texture = std::make_shared<Texture>(
-            encode_table(plan_.brdf_form == BrdfForm::multiscatter ? brdf_table_multiscatter(brdf_) : brdf_, encoding));
-        texture->metadata = {
+        Texture texture =
+            encode_table(plan_.brdf_form == BrdfForm::multiscatter ? brdf_table_multiscatter(brdf_) : brdf_, encoding);
+        texture.metadata = {
             {"domelight.version", version()},
             {"domelight.quantity", fmt::format("brdf {}", brdf_form_name(plan_.brdf_form))},
             {"domelight.convention", "u = NdotV, v = roughness, texel centres, row 0 is the smoothest"}};
         const auto path = staging_.stage(brdf.file.file);
-        background_.start([texture, path, &file = brdf.file, hashes = options_.hashes]() -> Result<void> {
-            if (auto ok = write_ktx2(path, *texture); !ok) return ok;
-            return hash_into(file, path, hashes);
-        });
+        background_.done([&]() -> Result<void> {
+            if (auto ok = write_ktx2(path, texture); !ok) return ok;
+            return hash_into(brdf.file, path, options_.hashes);
+        }());
     }
 
     ImageF brdf_image() const {

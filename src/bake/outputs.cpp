@@ -3,7 +3,9 @@
 #include "domelight/image_io.h"
 
 #include "bake/mirror.h"
+#include "codec/chain_encoder.h"
 #include "core/sha256.h"
+#include "io/texture_stream.h"
 
 #include <fmt/core.h>
 
@@ -13,12 +15,16 @@ namespace domelight {
 
 void Background::start(std::function<Result<void>()> task) {
     if (at_once_) {
-        std::promise<Result<void>> done;
-        tasks_.push_back(done.get_future());
-        done.set_value(task());
+        done(task());
     } else {
         tasks_.push_back(std::async(std::launch::async, std::move(task)));
     }
+}
+
+void Background::done(Result<void> result) {
+    std::promise<Result<void>> promise;
+    tasks_.push_back(promise.get_future());
+    promise.set_value(std::move(result));
 }
 
 Result<void> Background::wait() {
@@ -48,29 +54,52 @@ namespace {
 
 const char* const k_face_names[] = {"px", "nx", "py", "ny", "pz", "nz"};
 
-Result<void> write_texture(const std::filesystem::path& file, const Texture& texture, const MapFormat& format) {
-    switch (format.container) {
+Result<TextureLayout> layout_of(const ChainEncoder& encoder, Container container) {
+    const auto bytes = encoder.level_bytes();
+    switch (container) {
         case Container::ktx1:
-            return write_ktx1(file, texture);
+            return ktx1_layout(encoder.head(), bytes);
         case Container::dds:
-            return write_dds(file, texture);
+            return dds_layout(encoder.head(), bytes);
         default:
-            return write_ktx2(file, texture, format.zstd ? Supercompression::zstd : Supercompression::none);
+            return ktx2_layout(encoder.head(), bytes, Supercompression::none, bytes);
     }
 }
 
-void write_chain(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
-                 Staging& staging, Background& background) {
+/// Compressed levels must be complete before the first byte can be placed: encoded now, the rest in the background.
+void write_compressed_chain(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
+                            const BakeOptions& options, const std::filesystem::path& path, Background& background) {
     std::vector<EncodingReport> encoded;
     auto texture = std::make_shared<Texture>(encode_texture(levels, format.encoding, options.threads, &encoded));
     texture->metadata = format.metadata;
     for (std::size_t l = 0; l < encoded.size(); ++l) report.levels[l].encoding = encoded[l];
-    report.file.file = format.name + container_extension(format.container);
-    const auto path = staging.stage(report.file.file);
-    background.start([texture, path, format, &file = report.file, hashes = options.hashes]() -> Result<void> {
-        if (auto ok = write_texture(path, *texture, format); !ok) return ok;
+    background.start([texture, path, &file = report.file, hashes = options.hashes]() -> Result<void> {
+        if (auto ok = write_ktx2(path, *texture, Supercompression::zstd); !ok) return ok;
         return hash_into(file, path, hashes);
     });
+}
+
+Result<void> write_plain_chain(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
+                               const BakeOptions& options, const std::filesystem::path& path) {
+    ChainEncoder encoder(levels, format.encoding, format.metadata);
+    const auto layout = layout_of(encoder, format.container);
+    if (!layout) return layout.error().at(path.string());
+    auto hash = encode_to_file(path, encoder, *layout, options.threads, options.hashes);
+    if (!hash) return hash.error();
+    report.file.sha256 = *std::move(hash);
+    const auto encoded = encoder.reports();
+    for (std::size_t l = 0; l < encoded.size(); ++l) report.levels[l].encoding = encoded[l];
+    return {};
+}
+
+void write_chain(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
+                 Staging& staging, Background& background) {
+    report.file.file = format.name + container_extension(format.container);
+    const auto path = staging.stage(report.file.file);
+    if (format.container == Container::ktx2 && format.zstd)
+        write_compressed_chain(report, levels, format, options, path, background);
+    else
+        background.done(write_plain_chain(report, levels, format, options, path));
 }
 
 /// One picture, written and hashed in the background.

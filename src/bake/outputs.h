@@ -20,6 +20,8 @@ class Background {
     ~Background() { (void)!wait(); }
     /// `task` must not use what it does not own and what may go before wait() returns.
     void start(std::function<Result<void>()> task);
+    /// Counts something that has been done already among the tasks, for the sake of its error.
+    void done(Result<void> result);
     /// Waits for all tasks; their first error in the order they were started.
     Result<void> wait();
 
@@ -39,9 +41,9 @@ struct MapFormat {
     std::map<std::string, std::string> metadata;
 };
 
-/// Encodes a map's levels now and starts writing them. Fills in `report`, whose role, lobe, quantity, layout and levels
-/// (one for each of `levels`) are set; its file names are valid at once, its hashes after `background.wait()`. `report`
-/// must stay where it is until then.
+/// Encodes a map's levels now and writes them, or starts to. Fills in `report`, whose role, lobe, quantity, layout and
+/// levels (one for each of `levels`) are set; its file names are valid at once, its hashes after `background.wait()`.
+/// `report` must stay where it is until then.
 void write_map(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
                Staging& staging, Background& background);
 

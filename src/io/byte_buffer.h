@@ -2,7 +2,9 @@
 // Little-endian numbers appended to a byte vector.
 
 #include <cstdint>
+#include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace domelight {
@@ -29,6 +31,9 @@ class ByteBuffer {
     void align(std::size_t alignment) {
         while (bytes_.size() % alignment) u8(0);
     }
+    void append(std::span<const std::uint8_t> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
+    /// The bytes so far, of which none remain here.
+    std::vector<std::uint8_t> take() { return std::exchange(bytes_, {}); }
     std::size_t size() const { return bytes_.size(); }
     const std::vector<std::uint8_t>& bytes() const { return bytes_; }
 

@@ -1,16 +1,15 @@
 // Writes DDS with a DX10 header.
-#include "domelight/image_io.h"
 #include "domelight/texture.h"
 
 #include "io/byte_buffer.h"
 #include "io/dds.h"
 #include "io/dds_formats.h"
-#include "io/output_file.h"
+#include "io/texture_layout.h"
 
 namespace domelight {
 
-Result<void> write_dds(const std::filesystem::path& file, const Texture& texture) {
-    const bool cube = texture.faces == 6, mips = texture.levels.size() > 1;
+Result<TextureLayout> dds_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes) {
+    const bool cube = texture.faces == 6, mips = level_bytes.size() > 1;
     ByteBuffer head;
     head.text("DDS ");
     head.u32(124);
@@ -20,7 +19,7 @@ Result<void> write_dds(const std::filesystem::path& file, const Texture& texture
     head.u32(std::uint32_t(texture.width));
     head.u32(std::uint32_t(texture.width * encoding_bytes(texture.encoding)));  // pitch
     head.u32(0);                                                                // depth
-    head.u32(std::uint32_t(texture.levels.size()));
+    head.u32(std::uint32_t(level_bytes.size()));
     for (int i = 0; i < 11; ++i) head.u32(0);
     head.u32(32);  // pixel format: what it is stands in the DX10 header
     head.u32(k_ddpf_four_cc);
@@ -35,17 +34,22 @@ Result<void> write_dds(const std::filesystem::path& file, const Texture& texture
     head.u32(1);  // array size, in cubes
     head.u32(0);  // alpha mode unknown: it is 1 everywhere
 
-    return write_file_atomically(file, [&](const std::filesystem::path& path) {
-        OutputFile out(path);
-        out.write(head.bytes());
-        // Unlike in KTX all levels of a face come before the next face.
-        for (int face = 0; face < texture.faces; ++face)
-            for (const auto& level : texture.levels) {
-                const std::size_t bytes = level.size() / std::size_t(texture.faces);
-                out.write(std::span(level).subspan(bytes * std::size_t(face), bytes));
-            }
-        return out.finish();
-    });
+    TextureLayout layout;
+    layout.frame.push_back({0, head.take()});
+    layout.size = layout.frame.back().bytes.size();
+    // Unlike in KTX all levels of a face come before the next face.
+    for (int face = 0; face < texture.faces; ++face)
+        for (std::size_t l = 0; l < level_bytes.size(); ++l) {
+            layout.blocks.push_back({layout.size, int(l), face, 1});
+            layout.size += level_bytes[l] / std::uint64_t(texture.faces);
+        }
+    return layout;
+}
+
+Result<void> write_dds(const std::filesystem::path& file, const Texture& texture) {
+    const auto layout = dds_layout(texture, level_bytes_of(texture));
+    if (!layout) return layout.error().at(file.string());
+    return write_with_layout(file, *layout, texture.faces, texture.levels);
 }
 
 }  // namespace domelight

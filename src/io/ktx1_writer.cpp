@@ -1,10 +1,9 @@
 // Writes KTX 1.1 (Khronos KTX File Format Specification, version 1.1): what Filament loads.
-#include "domelight/image_io.h"
 #include "domelight/texture.h"
 
 #include "io/byte_buffer.h"
 #include "io/ktx1.h"
-#include "io/output_file.h"
+#include "io/texture_layout.h"
 
 #include <string>
 
@@ -44,7 +43,7 @@ bool is_reserved(const std::string& key) {
 
 }  // namespace
 
-Result<void> write_ktx1(const std::filesystem::path& file, const Texture& texture) {
+Result<TextureLayout> ktx1_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes) {
     ByteBuffer key_values;
     for (const auto& [key, value] : texture.metadata) {
         if (is_reserved(key)) continue;
@@ -69,27 +68,31 @@ Result<void> write_ktx1(const std::filesystem::path& file, const Texture& textur
     head.u32(0);  // depth
     head.u32(0);  // array elements
     head.u32(std::uint32_t(texture.faces));
-    head.u32(std::uint32_t(texture.levels.size()));
+    head.u32(std::uint32_t(level_bytes.size()));
     head.u32(std::uint32_t(key_values.size()));
 
-    for (std::size_t l = 0; l < texture.levels.size(); ++l)
-        if (texture.levels[l].size() / std::size_t(texture.faces) > 0xffffffffu)
-            return Error{"a face of more than 4 GiB does not fit into KTX 1", file.string(), "write KTX2"};
+    TextureLayout layout;
+    head.append(key_values.bytes());
+    for (std::size_t l = 0; l < level_bytes.size(); ++l) {
+        // For a cube, imageSize counts one face. Rows, faces and levels are multiples of 4 bytes in all our encodings:
+        // no padding.
+        const std::uint64_t face_bytes = level_bytes[l] / std::uint64_t(texture.faces);
+        if (face_bytes > 0xffffffffu)
+            return Error{"a face of more than 4 GiB does not fit into KTX 1", "", "write KTX2"};
+        head.u32(std::uint32_t(face_bytes));
+        layout.frame.push_back({layout.size, head.take()});
+        layout.size += layout.frame.back().bytes.size();
+        layout.blocks.push_back({layout.size, int(l), 0, texture.faces});
+        layout.size += level_bytes[l];
+    }
+    if (head.size() > 0) layout.frame.push_back({0, head.take()});  // no levels at all
+    return layout;
+}
 
-    return write_file_atomically(file, [&](const std::filesystem::path& path) {
-        OutputFile out(path);
-        out.write(head.bytes());
-        out.write(key_values.bytes());
-        for (const auto& level : texture.levels) {
-            // For a cube, imageSize counts one face. Rows, faces and levels are multiples of 4 bytes in all our
-            // encodings: no padding.
-            ByteBuffer size;
-            size.u32(std::uint32_t(level.size() / std::size_t(texture.faces)));
-            out.write(size.bytes());
-            out.write(level);
-        }
-        return out.finish();
-    });
+Result<void> write_ktx1(const std::filesystem::path& file, const Texture& texture) {
+    const auto layout = ktx1_layout(texture, level_bytes_of(texture));
+    if (!layout) return layout.error().at(file.string());
+    return write_with_layout(file, *layout, texture.faces, texture.levels);
 }
 
 }  // namespace domelight

@@ -1,10 +1,9 @@
 // Writes KTX 2.0 (Khronos KTX File Format Specification, version 2.0; section numbers are its).
-#include "domelight/image_io.h"
 #include "domelight/texture.h"
 
 #include "io/byte_buffer.h"
 #include "io/ktx2.h"
-#include "io/output_file.h"
+#include "io/texture_layout.h"
 
 #include <zstd.h>
 
@@ -135,15 +134,9 @@ Result<std::vector<TexelBytes>> compress_levels(const Texture& texture) {
 
 }  // namespace
 
-Result<void> write_ktx2(const std::filesystem::path& file, const Texture& texture, Supercompression compression) {
-    std::vector<TexelBytes> packed;
-    if (compression == Supercompression::zstd) {
-        auto compressed = compress_levels(texture);
-        if (!compressed) return compressed.error().at(file.string());
-        packed = *std::move(compressed);
-    }
-    const auto& stored = packed.empty() ? texture.levels : packed;
-    const std::size_t level_count = texture.levels.size();
+Result<TextureLayout> ktx2_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes,
+                                  Supercompression compression, std::span<const std::uint64_t> stored_bytes) {
+    const std::size_t level_count = level_bytes.size();
 
     ByteBuffer descriptor, key_values;
     append_descriptor(descriptor, texture.encoding);
@@ -153,12 +146,13 @@ Result<void> write_ktx2(const std::filesystem::path& file, const Texture& textur
 
     // Levels lie from the smallest to the largest, each on a multiple of lcm(texel bytes, 4); packed ones without gaps
     // (section 3.9.7).
-    const std::uint64_t alignment = packed.empty() ? std::uint64_t(encoding_bytes(texture.encoding)) : 1;
+    const std::uint64_t alignment =
+        compression == Supercompression::none ? std::uint64_t(encoding_bytes(texture.encoding)) : 1;
     std::vector<std::uint64_t> offset(level_count);
     std::uint64_t end = key_values_at + key_values.size();
     for (std::size_t l = level_count; l-- > 0;) {
         offset[l] = align_up(end, alignment);
-        end = offset[l] + stored[l].size();
+        end = offset[l] + stored_bytes[l];
     }
 
     ByteBuffer head;
@@ -182,22 +176,39 @@ Result<void> write_ktx2(const std::filesystem::path& file, const Texture& textur
     head.u64(0);
     for (std::size_t l = 0; l < level_count; ++l) {
         head.u64(offset[l]);
-        head.u64(stored[l].size());
-        head.u64(texture.levels[l].size());
+        head.u64(stored_bytes[l]);
+        head.u64(level_bytes[l]);
     }
 
-    return write_file_atomically(file, [&](const std::filesystem::path& path) {
-        OutputFile out(path);
-        out.write(head.bytes());
-        out.write(descriptor.bytes());
-        out.write(key_values.bytes());
-        const std::vector<std::uint8_t> zeros(alignment, 0);
-        for (std::size_t l = level_count; l-- > 0;) {
-            out.write(std::span(zeros).first(std::size_t(offset[l] - out.position())));
-            out.write(stored[l]);
-        }
-        return out.finish();
-    });
+    head.append(descriptor.bytes());
+    head.append(key_values.bytes());
+
+    TextureLayout layout;
+    layout.frame.push_back({0, head.take()});
+    layout.size = layout.frame.back().bytes.size();
+    for (std::size_t l = level_count; l-- > 0;) {
+        if (offset[l] > layout.size)
+            layout.frame.push_back({layout.size, std::vector<std::uint8_t>(std::size_t(offset[l] - layout.size), 0)});
+        layout.blocks.push_back({offset[l], int(l), 0, texture.faces});
+        layout.size = offset[l] + stored_bytes[l];
+    }
+    return layout;
+}
+
+Result<void> write_ktx2(const std::filesystem::path& file, const Texture& texture, Supercompression compression) {
+    const auto level_bytes = level_bytes_of(texture);
+    if (compression == Supercompression::none) {
+        const auto layout = ktx2_layout(texture, level_bytes, compression, level_bytes);
+        if (!layout) return layout.error().at(file.string());
+        return write_with_layout(file, *layout, texture.faces, texture.levels);
+    }
+    const auto packed = compress_levels(texture);
+    if (!packed) return packed.error().at(file.string());
+    std::vector<std::uint64_t> packed_bytes;
+    for (const TexelBytes& level : *packed) packed_bytes.push_back(level.size());
+    const auto layout = ktx2_layout(texture, level_bytes, compression, packed_bytes);
+    if (!layout) return layout.error().at(file.string());
+    return write_with_layout(file, *layout, texture.faces, *packed);
 }
 
 }  // namespace domelight

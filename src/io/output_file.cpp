@@ -34,6 +34,20 @@ void OutputFile::write(std::span<const char> bytes) {
     write(std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()));
 }
 
+void OutputFile::write_at(std::uint64_t offset, std::span<const std::uint8_t> bytes) {
+    while (!error_ && !bytes.empty()) {
+        const ssize_t n = ::pwrite(descriptor_, bytes.data(), bytes.size(), off_t(offset));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) {
+            int none = 0;
+            error_.compare_exchange_strong(none, n < 0 ? errno : ENOSPC);
+            return;
+        }
+        offset += std::uint64_t(n);
+        bytes = bytes.subspan(std::size_t(n));
+    }
+}
+
 void OutputFile::seek(std::uint64_t position) {
     if (error_) return;
     if (::lseek(descriptor_, off_t(position), SEEK_SET) < 0) error_ = errno;

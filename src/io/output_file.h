@@ -2,6 +2,7 @@
 
 #include "domelight/result.h"
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -20,6 +21,8 @@ class OutputFile {
 
     void write(std::span<const std::uint8_t> bytes);
     void write(std::span<const char> bytes);
+    /// At a place of its own, leaving position() as it is. May be called from several threads at once.
+    void write_at(std::uint64_t offset, std::span<const std::uint8_t> bytes);
     void seek(std::uint64_t position);
     std::uint64_t position() const { return position_; }
     bool failed() const { return error_ != 0; }
@@ -28,7 +31,7 @@ class OutputFile {
 
   private:
     int descriptor_ = -1;
-    int error_ = 0;  ///< errno of the first failure
+    std::atomic<int> error_{0};  ///< errno of the first failure
     std::uint64_t position_ = 0;
 };
 

@@ -1,8 +1,10 @@
 #include "domelight/image_io.h"
 #include "domelight/texture.h"
 
+#include "codec/chain_encoder.h"
 #include "io/io_helpers.h"
 #include "io/output_file.h"
+#include "io/texture_stream.h"
 #include "test.h"
 
 #include <fcntl.h>
@@ -39,7 +41,7 @@ int in_child(Work work) {
     return status;
 }
 
-/// All writers on one folder's files, under the names a b c ...; how many failed.
+/// All writers on one folder's files, under the names a to h; how many failed.
 int write_everything(const TemporaryFolder& folder) {
     const Texture texture = sample_texture(Encoding::rgba16f, 64, 6, 3);
     ImageF image(256, 256, 3);
@@ -53,6 +55,15 @@ int write_everything(const TemporaryFolder& folder) {
     return failed(write_ktx2(folder / "a", texture)) +
            failed(write_ktx2(folder / "b", texture, Supercompression::zstd)) +
            failed(write_ktx1(folder / "c", texture)) + failed(write_dds(folder / "d", texture)) +
+           failed([&]() -> Result<void> {
+               std::vector<FilteredMap> chain(1);
+               chain[0].latlong = image;
+               ChainEncoder encoder(chain, Encoding::rgba32f);
+               const auto bytes = encoder.level_bytes();
+               const auto hash = encode_to_file(folder / "h", encoder, *dds_layout(encoder.head(), bytes), 3, true);
+               if (!hash) return hash.error();
+               return {};
+           }()) +
            failed(write_hdr(folder / "e", image, 1)) + failed(write_exr(folder / "f", image, {.threads = 1})) +
            failed(write_png(folder / "g", pixels));
 }
@@ -121,7 +132,7 @@ TEST_CASE("write_file_atomically: a device is written to, and a full one reporte
 
 TEST_CASE("every writer: no room is one error, the old file stays, the new one goes") {
     const TemporaryFolder folder;
-    for (const char* name : {"a", "b", "c", "d", "e", "f", "g"})
+    for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h"})
         REQUIRE(write_file_atomically(folder / name, bytes_of("old")));
     for (rlim_t room : {rlim_t(0), rlim_t(100), rlim_t(10000)}) {
         const int status = in_child([&] {
@@ -131,10 +142,10 @@ TEST_CASE("every writer: no room is one error, the old file stays, the new one g
             return write_everything(folder);
         });
         REQUIRE(WIFEXITED(status));
-        CHECK(WEXITSTATUS(status) == 7);
-        for (const char* name : {"a", "b", "c", "d", "e", "f", "g"})
+        CHECK(WEXITSTATUS(status) == 8);
+        for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h"})
             REQUIRE(file_bytes(folder / name) == bytes_of("old"));
-        CHECK(entries(folder) == 7);
+        CHECK(entries(folder) == 8);
     }
 }
 

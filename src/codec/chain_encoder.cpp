@@ -1,0 +1,104 @@
+#include "codec/chain_encoder.h"
+
+#include "simd/encode_row.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace domelight {
+
+namespace {
+
+/// Rows of a face whose sums are added before those of the next rows, in all faces at once. Part of the result's
+/// definition.
+constexpr int k_rows_per_sum = 16;
+
+/// Solid angle of a cube's texels in row `y` of size^2 up to a common factor: the density at the texel's centre,
+/// (1 + s^2 + t^2)^(-3/2). Off by O(1 / size^2), which a report of relative energy does not show, and without
+/// arctangents.
+void cube_row_weights(int size, int y, float* weight) {
+    const float step = 2.0f / float(size), t = (float(y) + 0.5f) * step - 1;
+    for (int x = 0; x < size; ++x) {
+        const float s = (float(x) + 0.5f) * step - 1, q = 1 + s * s + t * t;
+        weight[x] = 1 / (q * std::sqrt(q));
+    }
+}
+
+EncodingReport report_from(const EncodeSums& sums) {
+    EncodingReport report;
+    report.clipped_texels = sums.clipped;
+    if (sums.power > 0) report.clipped_energy = sums.lost / sums.power;
+    if (sums.norm > 0) report.rms_error = std::sqrt(sums.error / sums.norm);
+    return report;
+}
+
+}  // namespace
+
+ChainEncoder::ChainEncoder(std::span<const FilteredMap> levels, Encoding encoding,
+                           std::map<std::string, std::string> metadata) {
+    assert(!levels.empty());
+    const bool cube = !levels[0].cube.empty();
+    head_.encoding = encoding;
+    head_.metadata = std::move(metadata);
+    head_.width = cube ? levels[0].cube.size() : levels[0].latlong.width();
+    head_.height = cube ? levels[0].cube.size() : levels[0].latlong.height();
+    head_.faces = cube ? 6 : 1;
+    for (const FilteredMap& map : levels) {
+        Level& level = levels_.emplace_back();
+        level.pixels = map.pixels().data();
+        level.width = cube ? map.cube.size() : map.latlong.width();
+        level.height = cube ? map.cube.size() : map.latlong.height();
+        level.sums.resize(std::size_t(level.height) * head_.faces);
+        if (!cube) continue;
+        const int half = (level.height + 1) / 2;
+        level.weights.resize(std::size_t(half) * level.width);
+        for (int y = 0; y < half; ++y)
+            cube_row_weights(level.width, y, level.weights.data() + std::size_t(y) * level.width);
+    }
+}
+
+std::size_t ChainEncoder::row_bytes(int level) const {
+    return std::size_t(levels_[level].width) * std::size_t(encoding_bytes(head_.encoding));
+}
+
+std::vector<std::uint64_t> ChainEncoder::level_bytes() const {
+    std::vector<std::uint64_t> bytes;
+    for (int l = 0; l < level_count(); ++l)
+        bytes.push_back(std::uint64_t(row_bytes(l)) * levels_[l].height * head_.faces);
+    return bytes;
+}
+
+void ChainEncoder::encode(int level_index, int first, int count, std::uint8_t* out) {
+    Level& level = levels_[level_index];
+    const std::size_t bytes = row_bytes(level_index), width = std::size_t(level.width);
+    std::vector<float> latlong_weight(level.weights.empty() ? width : 0);
+    for (int row = first; row < first + count; ++row, out += bytes) {
+        const int y = row % level.height;
+        const float* weight = latlong_weight.data();
+        if (level.weights.empty()) {
+            latlong_weight.assign(width, float(std::sin(k_pi * (y + 0.5) / level.height)));
+        } else {
+            weight = level.weights.data() + width * std::size_t(std::min(y, level.height - 1 - y));
+        }
+        level.sums[row] =
+            simd::encode_row(head_.encoding, level.pixels + 3 * width * std::size_t(row), level.width, weight, out);
+    }
+}
+
+std::vector<EncodingReport> ChainEncoder::reports() const {
+    std::vector<EncodingReport> reports;
+    for (const Level& level : levels_) {
+        EncodeSums total;
+        for (int begin = 0; begin < level.height; begin += k_rows_per_sum) {
+            EncodeSums part;
+            for (int y = begin; y < std::min(begin + k_rows_per_sum, level.height); ++y)
+                for (int face = 0; face < head_.faces; ++face) part += level.sums[face * level.height + y];
+            total += part;
+        }
+        reports.push_back(report_from(total));
+    }
+    return reports;
+}
+
+}  // namespace domelight
