@@ -3,6 +3,7 @@
 #include "io/output_file.h"
 
 #include <png.h>
+#include <zlib.h>
 
 #include <csetjmp>
 #include <string>
@@ -41,6 +42,10 @@ bool write_with(png_structp png, png_infop info, ImageView<const std::uint8_t> p
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_set_compression_level(png, compression_level);
+    // One filter for all rows, and runs instead of matches: a picture of smooth shades is as small as with zlib's own
+    // choices, in a third of the time.
+    png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_PAETH);
+    png_set_compression_strategy(png, Z_RLE);
     png_write_info(png, info);
     for (int y = 0; y < pixels.height; ++y) png_write_row(png, pixels.row(y));
     png_write_end(png, info);
