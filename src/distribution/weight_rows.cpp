@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -44,6 +45,7 @@ Result<void> for_each_weight_row(const Weights& weights, int threads,
         std::vector<double> sums(width);
         for (int y = begin; y < end; ++y) {
             const std::span<const float> row = weights.row(y, room);
+            assert(int(row.size()) == width);
             bad[y] = running_sums(row, sums);
             if (bad[y] >= 0) bad_weight[y] = row[bad[y]];
             else use(y, row, sums);
