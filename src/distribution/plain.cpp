@@ -17,7 +17,6 @@ PlainDistribution1D::Sample PlainDistribution1D::sample_linear(double xi) const 
     const double total = cumulative_[n], target = xi * total;
     int i = 0;
     while (i < n - 1 && cumulative_[i + 1] <= target) ++i;
-    while (values_[i] == 0) --i;  // rounding of the last sums may lead past the last value that is not zero
     const double t = (target - cumulative_[i]) / values_[i];
     return {(i + std::clamp(t, 0.0, 1 - 0x1p-40)) / n, values_[i] * n / total, i};
 }
@@ -27,7 +26,7 @@ PlainDistribution1D::Sample PlainDistribution1D::sample_walk(double xi) const {
     double rest = xi * cumulative_[n];
     int i = 0;
     while (i < n - 1 && rest >= values_[i]) rest -= values_[i++];
-    while (values_[i] == 0) --i;
+    while (values_[i] == 0) --i;  // what rounding left of the rest may lead past the last value that is not zero
     return {(i + std::clamp(rest / values_[i], 0.0, 1 - 0x1p-40)) / n, values_[i] * n / cumulative_[n], i};
 }
 

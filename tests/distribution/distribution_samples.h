@@ -77,6 +77,16 @@ inline NamedWeights patched_weights(int width, int height, unsigned seed) {
     return w;
 }
 
+/// Rows that have nothing to do with each other: a few spikes at random in each, over a little noise.
+inline NamedWeights spiky_weights(int width, int height, unsigned seed) {
+    NamedWeights w = random_weights(width, height, seed);
+    w.name = "spikes " + std::to_string(width) + "x" + std::to_string(height);
+    std::mt19937 random(seed);
+    for (int y = 0; y < height; ++y)
+        for (int k = 0; k < 4; ++k) *w.image.at(int(random() % unsigned(width)), y) = 200;
+    return w;
+}
+
 /// The background that float tables lose: 0.01 beside six texels of 1e5 on 3996.
 inline NamedWeights sun_and_background() {
     NamedWeights w{"six of 1e5 over .01", ImageF(74, 54, 1, 0.01f)};
@@ -98,6 +108,7 @@ inline std::vector<NamedWeights> hard_weights() {
     all.push_back(random_weights(47, 19, 4));
     all.push_back(patched_weights(40, 20, 5));
     all.push_back(patched_weights(33, 17, 6));
+    all.push_back(spiky_weights(300, 5, 7));
     all.push_back(constant_weights("all black", 16, 8, 0));
     all.push_back(sky_weights(64));
     return all;

@@ -66,6 +66,19 @@ TEST_CASE("PlainDistribution1D: linear search and the shader's walk give the sam
     }
 }
 
+TEST_CASE("PlainDistribution1D: rounding leads the shader's walk past no last value") {
+    std::mt19937 random(12);
+    std::uniform_real_distribution<double> value;
+    int black = 0;
+    for (int repeat = 0; repeat < 2000; ++repeat) {
+        std::vector<double> row(20);
+        for (int i = 0; i < 17; ++i) row[i] = value(random);
+        const auto s = PlainDistribution1D(row).sample_walk(std::nextafter(1.0, 0.0));
+        black += !(s.pdf > 0) || !(s.x < 17.0 / 20);
+    }
+    CHECK(black == 0);
+}
+
 TEST_CASE("PlainDistribution1D: the average, and a known map") {
     const PlainDistribution1D d(std::vector<double>{1, 0, 3});
     CHECK(d.mean() == doctest::Approx(4.0 / 3));
