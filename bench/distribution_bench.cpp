@@ -1,5 +1,5 @@
-// Drawing from an environment: million samples a second, densities included, by method, on random and on stratified points, and as a ratio to plain binary
-// search in the same run; table time and memory; the error of an estimate with 4096 low-discrepancy points.
+// Drawing from an environment: million samples a second, densities included, by method, on random and on stratified points, and as a ratio to plain
+// binary search in the same run; table time and memory; the error of an estimate with 4096 low-discrepancy points.
 //
 //   distribution_bench [--quick] [--set AVX2|SSE4|SCALAR] [FILE.hdr]
 //
@@ -56,7 +56,8 @@ ImageF weights_of(const ImageF& rgb, int height) {
                 for (int j = 0; j < step; ++j)
                     for (int i = 0; i < step; ++i) sum += luminance(x * step + i, y * step + j) / (step * step);
             } else {
-                const double fx = (x + 0.5) * scale - 0.5, fy = (y + 0.5) * scale - 0.5, ix = std::floor(fx), iy = std::floor(fy), s = fx - ix, t = fy - iy;
+                const double fx = (x + 0.5) * scale - 0.5, fy = (y + 0.5) * scale - 0.5, ix = std::floor(fx), iy = std::floor(fy), s = fx - ix,
+                             t = fy - iy;
                 const auto row = [&](int j) { return luminance(int(ix), j) * (1 - s) + luminance(int(ix) + 1, j) * s; };
                 sum = row(int(iy)) * (1 - t) + row(int(iy) + 1) * t;
             }
@@ -100,7 +101,8 @@ std::vector<UnitPoint> stratified_points(int count) {
     for (int y = 0; y < n; ++y)
         for (int x = 0; x < n; ++x) {
             const std::uint64_t bits = random();
-            points[std::size_t(y) * n + x] = {std::uint32_t((x + std::uint32_t(bits) * 0x1p-32) * cell), std::uint32_t((y + std::uint32_t(bits >> 32) * 0x1p-32) * cell)};
+            points[std::size_t(y) * n + x] = {std::uint32_t((x + std::uint32_t(bits) * 0x1p-32) * cell),
+                                              std::uint32_t((y + std::uint32_t(bits >> 32) * 0x1p-32) * cell)};
         }
     return points;
 }
@@ -146,7 +148,7 @@ double relative_error(const Distribution2D& d, const Distribution2D& exact, bool
     return std::sqrt(square) / mean;
 }
 
-constexpr DistributionMethod k_methods[] = {DistributionMethod::binary,       DistributionMethod::guided,   DistributionMethod::alias,
+constexpr DistributionMethod k_methods[] = {DistributionMethod::binary, DistributionMethod::guided, DistributionMethod::alias,
                                             DistributionMethod::hierarchical, DistributionMethod::bilinear};
 
 struct Figures {
@@ -225,18 +227,19 @@ void run(const ImageF& weights, int rounds, int count) {
     }
 
     fmt::print("  million samples a second with density: batched (one at a time)\n");
-    fmt::print("  {:<14} {:>16} {:>16} {:>8} {:>8} {:>10} {:>8} {:>12} {:>12}\n", "method", "random", "stratified", "ratio", "ratio", "table ms", "MB",
-               "RMSE Hamm.", "RMSE random");
+    fmt::print("  {:<14} {:>16} {:>16} {:>8} {:>8} {:>10} {:>8} {:>12} {:>12}\n", "method", "random", "stratified", "ratio", "ratio", "table ms",
+               "MB", "RMSE Hamm.", "RMSE random");
     const Figures plain = figures[DistributionMethod::binary];
     for (auto method : k_methods) {
         const Figures& f = figures[method];
-        fmt::print("  {:<14} {:>8.1f} ({:>5.1f}) {:>8.1f} ({:>5.1f}) {:>8.2f} {:>8.2f} {:>10.1f} {:>8.2f} {:>12.2e} {:>12.2e}\n", method_name(method), f.random,
-                   f.random_one, f.stratified, f.stratified_one, f.random / plain.random, f.stratified / plain.stratified, f.build_ms, f.megabytes, f.error,
-                   f.error_random);
+        fmt::print("  {:<14} {:>8.1f} ({:>5.1f}) {:>8.1f} ({:>5.1f}) {:>8.2f} {:>8.2f} {:>10.1f} {:>8.2f} {:>12.2e} {:>12.2e}\n", method_name(method),
+                   f.random, f.random_one, f.stratified, f.stratified_one, f.random / plain.random, f.stratified / plain.stratified, f.build_ms,
+                   f.megabytes, f.error, f.error_random);
     }
     // The yardstick is the faster of its two forms.
     const double binary_random = std::max(plain.random, plain.random_one), binary_stratified = std::max(plain.stratified, plain.stratified_one);
-    const Figures guided = figures[DistributionMethod::guided], alias = figures[DistributionMethod::alias], bilinear = figures[DistributionMethod::bilinear];
+    const Figures guided = figures[DistributionMethod::guided], alias = figures[DistributionMethod::alias],
+                  bilinear = figures[DistributionMethod::bilinear];
     const auto line = [&](const char* what, double is, const char* sign, double aim, bool reached) {
         fmt::print("  {:<52} {:>8.2f}  ({} {}){}\n", what, is, sign, aim, judge(asked, reached));
     };
@@ -261,9 +264,12 @@ int main(int argc, char** argv) {
     bool quick = false;
     std::string file;
     for (int i = 1; i < argc; ++i) {
-        if (!std::strcmp(argv[i], "--quick")) quick = true;
-        else if (!std::strcmp(argv[i], "--set") && i + 1 < argc) simd::limit_instruction_set(argv[++i]);
-        else file = argv[i];
+        if (!std::strcmp(argv[i], "--quick"))
+            quick = true;
+        else if (!std::strcmp(argv[i], "--set") && i + 1 < argc)
+            simd::limit_instruction_set(argv[++i]);
+        else
+            file = argv[i];
     }
     const char* data = std::getenv("DOMELIGHT_DATA");
     if (file.empty() && data) file = std::string(data) + "/env_highres/spruit_sunrise_4k_from_ultrahdr.hdr";

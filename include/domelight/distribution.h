@@ -41,8 +41,8 @@ struct DistributionSample {
 /// A density over the unit square that points can be drawn from. Immutable once built, so any number of threads may draw.
 ///
 /// Every method maps the unit square onto itself; `sample` pushes a point of 32-bit fixed point through that map, `pdf_uv` is one over the map's
-/// Jacobian (with alias tables, which lay several pieces of the square over each texel, the sum over the pieces), and `invert` goes back. All-zero weights give the uniform distribution. No call returns NaN or a point outside [0, 1), and every
-/// `UnitPoint` is valid.
+/// Jacobian (with alias tables, which lay several pieces of the square over each texel, the sum over the pieces), and `invert` goes back. All-zero
+/// weights give the uniform distribution. No call returns NaN or a point outside [0, 1), and every `UnitPoint` is valid.
 class Distribution2D {
   public:
     virtual ~Distribution2D() = default;
@@ -57,8 +57,8 @@ class Distribution2D {
     /// square into pieces and put them together in another order).
     virtual std::optional<UnitPoint> invert(double u, double v) const;
 
-    /// Many points at once: u[i], v[i] in [0, 1) and pdf_uv[i] > 0 are those of sample(points[i]) rounded to float. With the piecewise-constant methods
-    /// (u, v) stays in its texel: int(double(u) * width) is the drawn column. All four spans have the same length.
+    /// Many points at once: u[i], v[i] in [0, 1) and pdf_uv[i] > 0 are those of sample(points[i]) rounded to float. With the piecewise-constant
+    /// methods (u, v) stays in its texel: int(double(u) * width) is the drawn column. All four spans have the same length.
     ///
     /// This default calls the scalar form; methods that can do better give the same bits.
     virtual void sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v, std::span<float> pdf_uv) const;
@@ -73,14 +73,14 @@ class Distribution2D {
 
 /// The ways to draw. Densities are proportional to the weights in each texel, but for `bilinear`.
 enum class DistributionMethod {
-    linear,        ///< plain: linear search of cumulative sums in double
-    walk,          ///< plain: the shader's loop, which walks until the sum reaches u
-    binary,        ///< binary search of float cumulative sums
-    guided,        ///< guide table into fixed-point cumulative sums; constant time, monotone
-    alias,         ///< alias tables; fastest on random points, tears neighbouring points apart
-    hierarchical,  ///< 2 x 2 warping down a pyramid; keeps points best apart, slowest
-    bilinear,      ///< continuous: bilinear between texel centres, u wraps, v clamps; guided, monotone
-    bilinear_plain ///< the same in double, by linear search
+    linear,         ///< plain: linear search of cumulative sums in double
+    walk,           ///< plain: the shader's loop, which walks until the sum reaches u
+    binary,         ///< binary search of float cumulative sums
+    guided,         ///< guide table into fixed-point cumulative sums; constant time, monotone
+    alias,          ///< alias tables; fastest on random points, tears neighbouring points apart
+    hierarchical,   ///< 2 x 2 warping down a pyramid; keeps points best apart, slowest
+    bilinear,       ///< continuous: bilinear between texel centres, u wraps, v clamps; guided, monotone
+    bilinear_plain  ///< the same in double, by linear search
 };
 
 /// "linear", "walk", ...; as in the enumeration.

@@ -11,9 +11,9 @@ namespace domelight {
 /// Alias tables of `count` discrete distributions over `items` items each, in quanta of 2^-32 (Walker 1974; Vose 1991).
 ///
 /// The 2^32 quanta are shared out exactly as in GuidedRows, then cut up and packed into 2^bits cells of equal size, 2^bits >= items: the first
-/// `split` quanta of a cell belong to the item of the cell's number, the rest to its alias. With xi's upper bits for the cell and its lower bits for the
-/// place in it, nothing is rounded: each item is drawn for exactly as many of the 2^32 numbers xi as it owns quanta, and cell and alias together take
-/// just 32 bits, which leaves the other half of an entry for the item's quanta, hence its density.
+/// `split` quanta of a cell belong to the item of the cell's number, the rest to its alias. With xi's upper bits for the cell and its lower bits for
+/// the place in it, nothing is rounded: each item is drawn for exactly as many of the 2^32 numbers xi as it owns quanta, and cell and alias together
+/// take just 32 bits, which leaves the other half of an entry for the item's quanta, hence its density.
 struct AliasRows {
     struct Entry {
         std::uint32_t last_quantum;     ///< quanta of the cell's own item, less 1
@@ -42,9 +42,9 @@ struct AliasRows {
 
 /// Marginal and conditional draws by alias tables: one fetch for a row, one or two for a column, no search.
 ///
-/// The fastest method where points are random. It takes neighbouring points apart, so a low-discrepancy set loses what it is good for: with 4096 Hammersley
-/// points the error is that of random points or worse. Densities are those of GuidedDistribution, to the bit. Resolves 2^32 positions in each
-/// direction. 8 bytes a texel where the width is a power of two, else up to twice that.
+/// The fastest method where points are random. It takes neighbouring points apart, so a low-discrepancy set loses what it is good for: with 4096
+/// Hammersley points the error is that of random points or worse. Densities are those of GuidedDistribution, to the bit. Resolves 2^32 positions in
+/// each direction. 8 bytes a texel where the width is a power of two, else up to twice that.
 class AliasDistribution final : public Distribution2D {
   public:
     /// Errors: as make_distribution.

@@ -19,7 +19,8 @@ struct BilinearRows {
     /// [count][items + 1], then 16 more: quanta before each segment, from 0 to k_total, less 2^31: signed, as vectors convert to double.
     std::vector<std::int32_t, LargeAllocator<std::int32_t>> edges;
     std::vector<std::uint16_t, LargeAllocator<std::uint16_t>> shape;  ///< [count][items]: r in 1 / 65535
-    std::vector<std::uint16_t, LargeAllocator<std::uint16_t>> guide;  ///< [count][cells + 8]: first segment that ends at the cell's first quantum or later
+    std::vector<std::uint16_t, LargeAllocator<std::uint16_t>>
+        guide;  ///< [count][cells + 8]: first segment that ends at the cell's first quantum or later
 
     BilinearRows() = default;
     BilinearRows(int count, int items);
@@ -38,11 +39,11 @@ struct BilinearRows {
     std::size_t memory_bytes() const { return edges.size() * sizeof(edges[0]) + (shape.size() + guide.size()) * sizeof(shape[0]); }
 };
 
-/// p(u, v) = bilinear interpolation of the weights between texel centres / mean weight; u wraps around, v is clamped in the half rows at the top and the
-/// bottom. The mean of the weights is the interpolation's integral, exactly.
+/// p(u, v) = bilinear interpolation of the weights between texel centres / mean weight; u wraps around, v is clamped in the half rows at the top and
+/// the bottom. The mean of the weights is the interpolation's integral, exactly.
 ///
-/// First v by its marginal: H + 1 segments (half a row, linear, ..., half a row). At v = (j + 1/2 + t) / H the density along u is the mixture of rows j
-/// and j + 1 in proportion to (1 - t) S_j and t S_{j+1}, with S a row's sum; its cumulative function is the mixture of theirs, and the root lies
+/// First v by its marginal: H + 1 segments (half a row, linear, ..., half a row). At v = (j + 1/2 + t) / H the density along u is the mixture of rows
+/// j and j + 1 in proportion to (1 - t) S_j and t S_{j+1}, with S a row's sum; its cumulative function is the mixture of theirs, and the root lies
 /// between the two rows' own, which the guides bracket. Choosing one of the rows at random would be exact too, but neither monotone nor invertible.
 ///
 /// Monotone in both directions (u from 1/2 / W on, around the seam). invert(sample(p)) gives p back to a few quanta of 2^-32, more only where a row
@@ -59,14 +60,12 @@ class BilinearDistribution final : public Distribution2D {
     int width() const override { return columns_.items; }
     int height() const override { return columns_.count - 2; }
     bool continuous() const override { return true; }
-    std::size_t memory_bytes() const override {
-        return rows_.memory_bytes() + columns_.memory_bytes() + row_begins_.size() * sizeof(double);
-    }
+    std::size_t memory_bytes() const override { return rows_.memory_bytes() + columns_.memory_bytes() + row_begins_.size() * sizeof(double); }
 
   private:
-    BilinearRows rows_;     // one density of height + 1 segments; its shapes are not used, row_begins_ says them more finely
-    // For each row, segments from centre to centre; the last one goes around. The first and the last row stand there twice, so that segment s of v always
-    // lies between rows s and s + 1 of the table.
+    BilinearRows rows_;  // one density of height + 1 segments; its shapes are not used, row_begins_ says them more finely
+    // For each row, segments from centre to centre; the last one goes around. The first and the last row stand there twice, so that segment s of v
+    // always lies between rows s and s + 1 of the table.
     BilinearRows columns_;
     std::vector<double> row_begins_;  // [height + 1]: the marginal's value at the beginning of each segment, in quanta a segment
 };

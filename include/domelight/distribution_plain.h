@@ -25,8 +25,8 @@ class PlainDistribution1D {
     };
     /// Looks for the interval with P(x_i) <= xi < P(x_{i+1}) from the left. xi in [0, 1).
     Sample sample_linear(double xi) const;
-    /// The loop of a fragment shader: walks along the values, taking each off what is left of xi * sum(f), until one is larger than the rest; the rest
-    /// over that value is the position in it. Needs no cumulative table.
+    /// The loop of a fragment shader: walks along the values, taking each off what is left of xi * sum(f), until one is larger than the rest; the
+    /// rest over that value is the position in it. Needs no cumulative table.
     Sample sample_walk(double xi) const;
     double pdf(double x) const;
     /// P(x), the xi that gives x.
@@ -39,7 +39,7 @@ class PlainDistribution1D {
 
   private:
     std::vector<double> values_, cumulative_;  // cumulative_[i] = sum of the values before i, [n + 1]
-    double sum_;      // of the values given
+    double sum_;                               // of the values given
 };
 
 /// Marginal and conditional (ibid., A.5.1): the row by the rows' averages, then the column by the row's values;

@@ -25,14 +25,17 @@ void AliasRows::fill(int row, std::span<const float> weights, std::span<const do
     std::vector<std::int32_t> stack(cells);  // small from the front, large from the back
     int small = 0, large = cells;
     std::uint64_t before = 0;
-    share_quanta([&](int i) { return weights[i] > 0; }, sums, std::uint64_t(1) << 32, [&](int i, std::uint64_t end) {
-        left[i] = end - before;
-        before = end;
-    });
+    share_quanta([&](int i) { return weights[i] > 0; }, sums, std::uint64_t(1) << 32,
+                 [&](int i, std::uint64_t end) {
+                     left[i] = end - before;
+                     before = end;
+                 });
     for (int i = 0; i < cells; ++i) {
         e[i].last_quantum = std::uint32_t(left[i] - 1);
-        if (left[i] < room) stack[small++] = i;
-        else stack[--large] = i;
+        if (left[i] < room)
+            stack[small++] = i;
+        else
+            stack[--large] = i;
     }
     while (small > 0) {
         // All cells together have room for all quanta exactly, so while one has room left some item has quanta left.

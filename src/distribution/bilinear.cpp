@@ -43,13 +43,14 @@ void BilinearRows::fill(int row, std::span<const double> begins, std::span<const
     }
     std::size_t filled = 0;
     e[0] = signed_quanta(0);
-    share_quanta([&](int i) { return begins[i] + ends[i] > 0; }, sums, k_total, [&](int i, std::uint64_t end) {
-        e[i + 1] = signed_quanta(end);
-        const std::size_t cells_begun = (end >> shift) + 1;
-        for (std::size_t k = 0; k < 8; ++k) g[filled + k] = std::uint16_t(i);
-        for (std::size_t k = filled + 8; k < cells_begun; ++k) g[k] = std::uint16_t(i);
-        filled = cells_begun;
-    });
+    share_quanta([&](int i) { return begins[i] + ends[i] > 0; }, sums, k_total,
+                 [&](int i, std::uint64_t end) {
+                     e[i + 1] = signed_quanta(end);
+                     const std::size_t cells_begun = (end >> shift) + 1;
+                     for (std::size_t k = 0; k < 8; ++k) g[filled + k] = std::uint16_t(i);
+                     for (std::size_t k = filled + 8; k < cells_begun; ++k) g[k] = std::uint16_t(i);
+                     filled = cells_begun;
+                 });
     g[cells()] = std::uint16_t(items - 1);  // the next cell's item bounds a search, also in the last cell
 }
 
@@ -100,9 +101,7 @@ struct Tables {
     const std::vector<double>& begins;
     int height() const { return columns.count - 2; }
 
-    LinearSegment marginal_segment(int s) const {
-        return {begins[s], 2 * rows.quanta(0, s) - begins[s]};
-    }
+    LinearSegment marginal_segment(int s) const { return {begins[s], 2 * rows.quanta(0, s) - begins[s]}; }
 
     Row at(int s, double t) const {
         const RowSegment place = row_segment(s, height());
@@ -110,8 +109,10 @@ struct Tables {
         const LinearSegment segment = marginal_segment(s);
         const double value = segment.at(t), below = segment.end * t / std::max(value, 1e-300);
         const double pdf_v = value * (1 / place.length) * (height() * (1 / k_total));
-        return {(place.start + t * place.length) * (1.0 / height()), pdf_v,
-                {columns.edges_of(s), columns.edges_of(s + 1), columns.shape_of(s), columns.shape_of(s + 1), 1 - below, below}, s};
+        return {(place.start + t * place.length) * (1.0 / height()),
+                pdf_v,
+                {columns.edges_of(s), columns.edges_of(s + 1), columns.shape_of(s), columns.shape_of(s + 1), 1 - below, below},
+                s};
     }
 
     /// Draws v.
@@ -130,8 +131,10 @@ struct Tables {
         int first = std::min(above[0], below[0]), last = std::max(above[1], below[1]);
         while (first < last) {
             const int middle = (first + last) / 2;
-            if (row.mixture.edge(middle + 1) > mass) last = middle;
-            else first = middle + 1;
+            if (row.mixture.edge(middle + 1) > mass)
+                last = middle;
+            else
+                first = middle + 1;
         }
         return first;
     }
@@ -225,8 +228,7 @@ std::optional<UnitPoint> BilinearDistribution::invert(double u, double v) const 
     const auto [i, r] = column_place(u, width());
     const Mixture mixture = tables.at(s, t).mixture;
     const auto quantum = [](double mass) { return unit_fixed((mass + 0x1p31) * (1 / k_total)); };
-    return UnitPoint{quantum(mixture.edge(i) + mixture.segment(i).before(r)),
-                     quantum(rows_.edges_of(0)[s] + tables.marginal_segment(s).before(t))};
+    return UnitPoint{quantum(mixture.edge(i) + mixture.segment(i).before(r)), quantum(rows_.edges_of(0)[s] + tables.marginal_segment(s).before(t))};
 }
 
 }  // namespace domelight

@@ -13,8 +13,8 @@ struct LinearSegment {
     double at(double t) const { return begin * (1 - t) + end * t; }
     /// Integral from 0 to t.
     double before(double t) const { return begin * t + 0.5 * (end - begin) * (t * t); }
-    /// The t with before(t) == mass, without cancellation whichever end is larger. Kept from the very ends, where the density may be zero: by less than
-    /// a sixteenth of a quantum.
+    /// The t with before(t) == mass, without cancellation whichever end is larger. Kept from the very ends, where the density may be zero: by less
+    /// than a sixteenth of a quantum.
     double invert(double mass) const {
         const double root = std::sqrt(std::max(begin * begin + 2 * (end - begin) * mass, 0.0));
         return std::clamp(2 * mass / std::max(begin + root, 1e-300), k_margin, 1 - k_margin);

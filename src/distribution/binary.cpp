@@ -48,8 +48,10 @@ Result<BinaryDistribution> BinaryDistribution::build(const Weights& weights, int
     const auto add = [&](int y, std::span<const float>, std::span<const double> sums) {
         rows[y] = sums.back();
         float* cdf = d.columns_.data() + std::size_t(y) * (d.width_ + 1);
-        if (sums.back() > 0) fill_cumulative(sums, cdf);
-        else std::fill_n(cdf, d.width_ + 1, 0.0f);
+        if (sums.back() > 0)
+            fill_cumulative(sums, cdf);
+        else
+            std::fill_n(cdf, d.width_ + 1, 0.0f);
     };
     if (auto read = for_each_weight_row(weights, threads, add); !read) return read.error();
     for (int y = 1; y < d.height_; ++y) rows[y] += rows[y - 1];

@@ -10,8 +10,7 @@ namespace domelight {
 
 Weights Weights::of(ImageView<const float> image) {
     assert(image.channels == 1);
-    return {image.width, image.height,
-            [image](int y, std::span<float>) { return std::span<const float>(image.row(y), std::size_t(image.width)); }};
+    return {image.width, image.height, [image](int y, std::span<float>) { return std::span<const float>(image.row(y), std::size_t(image.width)); }};
 }
 
 std::optional<UnitPoint> Distribution2D::invert(double, double) const {

@@ -40,14 +40,16 @@ void GuidedRows::fill(int row, std::span<const float> weights, std::span<const d
     l[-1] = 0xffffffffu;  // so that item 0 begins after it, at 0
     const std::uint64_t cell = std::uint64_t(1) << shift;
     std::size_t filled = 0;  // cells that know their item
-    share_quanta([&](int i) { return weights[i] > 0; }, sums, k_total, [&](int i, std::uint64_t end) {
-        l[i] = std::uint32_t(end - 1);
-        // Cells that begin before `end` begin in item i. Mostly few: eight are written blindly, what was too much is overwritten by later items.
-        const std::size_t cells_begun = (end + cell - 1) >> shift;
-        for (std::size_t k = 0; k < 8; ++k) g[filled + k] = std::uint16_t(i);
-        for (std::size_t k = filled + 8; k < cells_begun; ++k) g[k] = std::uint16_t(i);
-        filled = cells_begun;
-    });
+    share_quanta([&](int i) { return weights[i] > 0; }, sums, k_total,
+                 [&](int i, std::uint64_t end) {
+                     l[i] = std::uint32_t(end - 1);
+                     // Cells that begin before `end` begin in item i. Mostly few: eight are written blindly, what was too much is overwritten by
+                     // later items.
+                     const std::size_t cells_begun = (end + cell - 1) >> shift;
+                     for (std::size_t k = 0; k < 8; ++k) g[filled + k] = std::uint16_t(i);
+                     for (std::size_t k = filled + 8; k < cells_begun; ++k) g[k] = std::uint16_t(i);
+                     filled = cells_begun;
+                 });
 }
 
 void GuidedRows::fill_none(int row) {
@@ -105,8 +107,10 @@ Result<GuidedDistribution> GuidedDistribution::build(const Weights& weights, int
         d.conditional_ = GuidedRows(weights.height, weights.width);
     const auto add = [&](int y, std::span<const float> row, std::span<const double> sums) {
         rows[y] = sums.back();
-        if (sums.back() > 0) d.conditional_.fill(y, row, sums);
-        else d.conditional_.fill_none(y);
+        if (sums.back() > 0)
+            d.conditional_.fill(y, row, sums);
+        else
+            d.conditional_.fill_none(y);
     };
     if (auto read = for_each_weight_row(weights, threads, add); !read) return read.error();
 

@@ -31,7 +31,8 @@ Result<HierarchicalDistribution> HierarchicalDistribution::build(const Weights& 
         to.sums.resize(std::size_t(to.width) * to.height);
         for (int j = 0; j < to.height; ++j)
             for (int i = 0; i < to.width; ++i)
-                to.sums[std::size_t(j) * to.width + i] = float(from.at(2 * i, 2 * j) + from.at(2 * i + 1, 2 * j) + from.at(2 * i, 2 * j + 1) + from.at(2 * i + 1, 2 * j + 1));
+                to.sums[std::size_t(j) * to.width + i] =
+                    float(from.at(2 * i, 2 * j) + from.at(2 * i + 1, 2 * j) + from.at(2 * i, 2 * j + 1) + from.at(2 * i + 1, 2 * j + 1));
         d.levels_.push_back(std::move(to));
     }
     return d;
@@ -39,8 +40,8 @@ Result<HierarchicalDistribution> HierarchicalDistribution::build(const Weights& 
 
 /// How a cell is split into the 2 x 2 cells under it.
 struct HierarchicalDistribution::Split {
-    double left;            ///< share of the left column
-    double top[2];          ///< share of the upper cell in each column
+    double left;    ///< share of the left column
+    double top[2];  ///< share of the upper cell in each column
     double share(int i, int j) const { return (i ? 1 - left : left) * (j ? 1 - top[i] : top[i]); }
 };
 

@@ -6,7 +6,8 @@
 
 namespace domelight {
 
-PlainDistribution1D::PlainDistribution1D(std::span<const double> values) : values_(values.begin(), values.end()), cumulative_(values.size() + 1), sum_(0) {
+PlainDistribution1D::PlainDistribution1D(std::span<const double> values)
+    : values_(values.begin(), values.end()), cumulative_(values.size() + 1), sum_(0) {
     for (double f : values) sum_ += f;
     if (sum_ == 0) std::fill(values_.begin(), values_.end(), 1.0);
     for (std::size_t i = 0; i < values_.size(); ++i) cumulative_[i + 1] = cumulative_[i] + values_[i];

@@ -47,8 +47,10 @@ Result<void> for_each_weight_row(const Weights& weights, int threads,
             const std::span<const float> row = weights.row(y, room);
             assert(int(row.size()) == width);
             bad[y] = running_sums(row, sums);
-            if (bad[y] >= 0) bad_weight[y] = row[bad[y]];
-            else use(y, row, sums);
+            if (bad[y] >= 0)
+                bad_weight[y] = row[bad[y]];
+            else
+                use(y, row, sums);
         }
     });
     for (int y = 0; y < height; ++y)

@@ -8,8 +8,8 @@
 
 namespace domelight {
 
-/// Calls use(y, weights, sums) for every row, on up to `threads` threads; sums[x] is the sum of weights 0 .. x of the row, in double, from left to right.
-/// Errors: as make_distribution; `use` may then have been called for some rows.
+/// Calls use(y, weights, sums) for every row, on up to `threads` threads; sums[x] is the sum of weights 0 .. x of the row, in double, from left to
+/// right. Errors: as make_distribution; `use` may then have been called for some rows.
 Result<void> for_each_weight_row(const Weights& weights, int threads,
                                  const std::function<void(int y, std::span<const float> row, std::span<const double> sums)>& use);
 

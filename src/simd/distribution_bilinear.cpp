@@ -57,18 +57,24 @@ struct Mixture {
         if (HWY_LIKELY(from > 0)) return start + int(from) - 1;
         int first = int(std::min(above_cell & 0xffff, below_cell & 0xffff)), last = int(std::max(above_cell >> 16, below_cell >> 16));
         if (lanes > 2) {
-            if (from == 0) last = start - 1, start = std::max(first, start - lanes + 1);
-            else first = start += lanes - 1;
+            if (from == 0)
+                last = start - 1, start = std::max(first, start - lanes + 1);
+            else
+                first = start += lanes - 1;
             if (first >= last) return first;
             const auto again = window(mass, start);
             if (again > 0) return start + int(again) - 1;
-            if (again == 0) last = start - 1;
-            else first = start + lanes - 1;
+            if (again == 0)
+                last = start - 1;
+            else
+                first = start + lanes - 1;
         }
         while (first < last) {
             const int middle = (first + last) / 2;
-            if (edge(middle + 1) > mass) last = middle;
-            else first = middle + 1;
+            if (edge(middle + 1) > mass)
+                last = middle;
+            else
+                first = middle + 1;
         }
         return first;
     }
@@ -92,28 +98,29 @@ struct Segments {
 
 /// One batch's numbers between the steps. Pairs are neighbours in a table, fetched and kept together.
 struct Batch {
-    alignas(64) std::int32_t segment[k_batch];                    // of the rows
-    alignas(64) std::uint64_t row_edges[k_batch];                 // the quanta before and after it
+    alignas(64) std::int32_t segment[k_batch];        // of the rows
+    alignas(64) std::int32_t row_edges[2 * k_batch];  // the quanta before and after it
     alignas(64) double begin[k_batch];
     alignas(64) double above[k_batch], below[k_batch], pdf_v[k_batch], v[k_batch], mass[k_batch];
     alignas(64) std::uint32_t above_cell[k_batch], below_cell[k_batch];  // guide cells and their next
-    alignas(64) std::int32_t start[k_batch];                      // of the window of columns to search
-    alignas(64) std::int32_t item[k_batch];                       // the column segment
-    alignas(64) std::uint64_t above_edges[k_batch], below_edges[k_batch];
+    alignas(64) std::int32_t start[k_batch];                             // of the window of columns to search
+    alignas(64) std::int32_t item[k_batch];                              // the column segment
+    alignas(64) std::int32_t above_edges[2 * k_batch], below_edges[2 * k_batch];
     alignas(64) std::int32_t above_shape[k_batch], below_shape[k_batch];
 };
 
-/// Two neighbours of a table as one number.
-template <typename Pair, typename T>
-HWY_INLINE Pair pair_at(const T* table) {
-    static_assert(sizeof(Pair) == 2 * sizeof(T));
-    Pair pair;
-    std::memcpy(&pair, table, sizeof(Pair));
-    return pair;
+/// Copies two neighbours of a table, in one load and one store.
+HWY_INLINE void copy_pair(const std::int32_t* from, std::int32_t* to) {
+    std::memcpy(to, from, 2 * sizeof(*to));
 }
 
-void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_begins, const UnitPoint* points,
-                     std::size_t count, float* u, float* v, float* pdf_uv) {
+/// Two neighbours of a guide: the first in the lower half.
+HWY_INLINE std::uint32_t guide_pair(const std::uint16_t* guide) {
+    return std::uint32_t(guide[0]) | std::uint32_t(guide[1]) << 16;
+}
+
+void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_begins, const UnitPoint* points, std::size_t count,
+                     float* u, float* v, float* pdf_uv) {
     const hn::ScalableTag<double> d;
     const hn::Rebind<float, decltype(d)> df;
     const hn::Rebind<std::int32_t, decltype(d)> di;
@@ -129,9 +136,9 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
     const std::size_t edge_stride = std::size_t(width) + 1, shape_stride = std::size_t(width), guide_stride = std::size_t(columns.cells()) + 8;
     const std::uint32_t in_cell = (shift == 32 ? 0u : 1u << shift) - 1;
     const VD one = hn::Set(d, 1.0), two = hn::Set(d, 2.0), half = hn::Set(d, 0.5), tiny = hn::Set(d, 1e-300), middle = hn::Set(d, 0x1p31);
-    const auto load_pairs = [&](const std::uint64_t* from, VD& before, VD& after) HWY_ATTR {
+    const auto load_pairs = [&](const std::int32_t* from, VD& before, VD& after) HWY_ATTR {
         hn::Vec<decltype(di)> low, high;
-        hn::LoadInterleaved2(di, reinterpret_cast<const std::int32_t*>(from), low, high);
+        hn::LoadInterleaved2(di, from, low, high);
         before = hn::PromoteTo(d, low), after = hn::PromoteTo(d, high);
     };
     // (xi + 1/2) (2^32 - 1) / 2^32 - 2^31
@@ -153,7 +160,7 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
             // edge > (y + 1/2) (2^32 - 1) / 2^32, in integers
             const int s = find_from(row_edges, row_guide[std::uint64_t(y) >> row_shift], std::int32_t((y - (y >> 31)) ^ 0x80000000u));
             b.segment[k] = s;
-            b.row_edges[k] = pair_at<std::uint64_t>(row_edges + s);
+            copy_pair(row_edges + s, b.row_edges + 2 * k);
             b.begin[k] = row_begins[s];
             const std::uint16_t* cell = guides + std::size_t(s) * guide_stride + (std::uint64_t(x) >> shift);
             hwy::Prefetch(cell);
@@ -163,7 +170,7 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
             VU x, y;
             hn::LoadInterleaved2(du, &p[k].x, x, y);
             VD edge, next;
-            load_pairs(b.row_edges + k, edge, next);
+            load_pairs(b.row_edges + 2 * k, edge, next);
             const VD quanta = hn::Mul(two, hn::Sub(next, edge)), from = hn::Load(d, b.begin + k);
             const Segments<decltype(d)> segment{d, from, hn::Sub(quanta, from)};
             const VD t = segment.invert(hn::Sub(table_mass(y), edge));
@@ -182,8 +189,8 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
         // Columns: the guides bracket, and a straight line through what they say of each row guesses.
         for (int k = 0; k < n; ++k) {
             const std::uint16_t* cell = guides + std::size_t(b.segment[k]) * guide_stride + (std::uint64_t(p[k].x) >> shift);
-            b.above_cell[k] = pair_at<std::uint32_t>(cell);  // past the last cell there is a last column
-            b.below_cell[k] = pair_at<std::uint32_t>(cell + guide_stride);
+            b.above_cell[k] = guide_pair(cell);  // past the last cell there is a last column
+            b.below_cell[k] = guide_pair(cell + guide_stride);
         }
         for (int k = 0; k < k_batch; k += lanes) {
             const VU low = hn::Set(du, 0xffffu), above = hn::Load(du, b.above_cell + k), below = hn::Load(du, b.below_cell + k);
@@ -218,8 +225,8 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
             const Mixture mixture{above, above + edge_stride, b.above[k], b.below[k]};
             const int i = mixture.find(b.mass[k], b.start[k], b.above_cell[k], b.below_cell[k]);
             b.item[k] = i;
-            b.above_edges[k] = pair_at<std::uint64_t>(above + i);
-            b.below_edges[k] = pair_at<std::uint64_t>(above + edge_stride + i);
+            copy_pair(above + i, b.above_edges + 2 * k);
+            copy_pair(above + edge_stride + i, b.below_edges + 2 * k);
             const std::uint16_t* shape = shapes + row * shape_stride + i;
             b.above_shape[k] = shape[0];
             b.below_shape[k] = shape[shape_stride];
@@ -231,8 +238,8 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
         const auto under_one = hn::Set(df, 0x1.fffffep-1f);
         for (int k = 0; k < k_batch; k += lanes) {
             VD above_edge, above_next, below_edge, below_next;
-            load_pairs(b.above_edges + k, above_edge, above_next);
-            load_pairs(b.below_edges + k, below_edge, below_next);
+            load_pairs(b.above_edges + 2 * k, above_edge, above_next);
+            load_pairs(b.below_edges + 2 * k, below_edge, below_next);
             const auto above = hn::Load(d, b.above + k), below = hn::Load(d, b.below + k);
             const auto a = hn::Mul(above, hn::Sub(above_next, above_edge));
             const auto c = hn::Mul(below, hn::Sub(below_next, below_edge));
@@ -265,8 +272,8 @@ namespace domelight::simd {
 
 HWY_EXPORT(sample_bilinear);
 
-void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_begins,
-                     std::span<const UnitPoint> points, float* u, float* v, float* pdf_uv) {
+void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_begins, std::span<const UnitPoint> points, float* u,
+                     float* v, float* pdf_uv) {
     HWY_DYNAMIC_DISPATCH(sample_bilinear)(rows, columns, row_begins, points.data(), points.size(), u, v, pdf_uv);
 }
 

@@ -53,3 +53,21 @@ TEST_CASE("AliasDistribution: the density is GuidedDistribution's, to the bit") 
         CHECK(same);
     }
 }
+
+TEST_CASE("AliasRows: 4096 items leave 20 bits of position in each") {
+    const std::vector<float> row(4096, 1.0f);
+    std::vector<double> sums(4096);
+    for (int x = 0; x < 4096; ++x) sums[x] = x + 1;
+    AliasRows table(1, 4096);
+    table.fill(0, row, sums);
+    double last = 0;
+    bool rises = true;
+    for (std::uint32_t k = 0; k < 1u << 20; k += 1001) {
+        const auto draw = table.draw(0, 1234u << 20 | k);
+        rises &= draw.item == 1234 && draw.t > last;
+        last = draw.t;
+    }
+    CHECK(rises);
+    CHECK(table.draw(0, 1234u << 20).t < 0x1p-20);
+    CHECK(table.draw(0, (1235u << 20) - 1).t > 1 - 0x1p-20);
+}

@@ -130,9 +130,9 @@ inline std::vector<UnitPoint> random_points(int count, std::uint64_t seed) {
     return points;
 }
 
-inline const DistributionMethod k_all_methods[] = {DistributionMethod::linear,       DistributionMethod::walk,  DistributionMethod::binary,
-                                                   DistributionMethod::guided,       DistributionMethod::alias, DistributionMethod::hierarchical,
-                                                   DistributionMethod::bilinear,     DistributionMethod::bilinear_plain};
+inline const DistributionMethod k_all_methods[] = {DistributionMethod::linear,   DistributionMethod::walk,          DistributionMethod::binary,
+                                                   DistributionMethod::guided,   DistributionMethod::alias,         DistributionMethod::hierarchical,
+                                                   DistributionMethod::bilinear, DistributionMethod::bilinear_plain};
 
 inline std::unique_ptr<Distribution2D> made(const NamedWeights& weights, DistributionMethod method) {
     auto distribution = make_distribution(weights.weights(), method);

@@ -20,11 +20,15 @@ constexpr int k_draws = 60'000;
 double density_tolerance(DistributionMethod method) {
     switch (method) {
         // What follows counts from texels of 1e-3 of the mean on, and rows of 300 of them: a float's 2^-24 is 2 % of such a texel, 2^-32 is 7e-5.
-        case DistributionMethod::binary: return 5e-2;
+        case DistributionMethod::binary:
+            return 5e-2;
         case DistributionMethod::guided:
-        case DistributionMethod::alias: return 2e-4;
-        case DistributionMethod::bilinear: return 2e-5;  // 16-bit shapes: 2^-17 of the brightest neighbour's density
-        default: return 1e-6;  // hierarchical: floats summed level by level
+        case DistributionMethod::alias:
+            return 2e-4;
+        case DistributionMethod::bilinear:
+            return 2e-5;  // 16-bit shapes: 2^-17 of the brightest neighbour's density
+        default:
+            return 1e-6;  // hierarchical: floats summed level by level
     }
 }
 
@@ -35,7 +39,8 @@ std::vector<double> texel_probabilities(const Distribution2D& d) {
     for (int y = 0; y < h; ++y)
         for (int x = 0; x < w; ++x) {
             double& sum = p[std::size_t(y) * w + x];
-            if (!d.continuous()) sum = d.pdf_uv((x + 0.5) / w, (y + 0.5) / h);
+            if (!d.continuous())
+                sum = d.pdf_uv((x + 0.5) / w, (y + 0.5) / h);
             else
                 for (double a : {0.25, 0.75})
                     for (double b : {0.25, 0.75}) sum += d.pdf_uv((x + a) / w, (y + b) / h) / 4;
@@ -178,13 +183,10 @@ TEST_CASE("distribution: the numerical Jacobian of the map is one over the densi
 TEST_CASE("distribution: invert takes a sample back to its point") {
     const auto points = random_points(3000, 7);
     const std::map<DistributionMethod, double> quanta = {
-        {DistributionMethod::linear, 1},         // sums in double, 1e-16 of 2^32 quanta
-        {DistributionMethod::walk, 1},
-        {DistributionMethod::guided, 0},         // exact
-        {DistributionMethod::hierarchical, 1},
-        {DistributionMethod::bilinear, 4},       // double's rounding of v, amplified where rows differ
-        {DistributionMethod::bilinear_plain, 4},
-        {DistributionMethod::binary, 1024},      // floats
+        {DistributionMethod::linear, 1},                                              // sums in double, 1e-16 of 2^32 quanta
+        {DistributionMethod::walk, 1},           {DistributionMethod::guided, 0},     // exact
+        {DistributionMethod::hierarchical, 1},   {DistributionMethod::bilinear, 4},   // double's rounding of v, amplified where rows differ
+        {DistributionMethod::bilinear_plain, 4}, {DistributionMethod::binary, 1024},  // floats
     };
     for (const NamedWeights& weights : hard_weights())
         for (auto [method, most] : quanta) {
@@ -262,8 +264,8 @@ TEST_CASE("distribution: the fast methods draw what the plain ones draw") {
 }
 
 TEST_CASE("distribution: a texel of no weight is never drawn by the piecewise-constant methods") {
-    for (const NamedWeights& weights : {patched_weights(40, 20, 5), patched_weights(33, 17, 6), hot_texel(37, 11, 36, 10), hot_texel(37, 11, 0, 0),
-                                        hot_texel(64, 32, 63, 31)})
+    for (const NamedWeights& weights :
+         {patched_weights(40, 20, 5), patched_weights(33, 17, 6), hot_texel(37, 11, 36, 10), hot_texel(37, 11, 0, 0), hot_texel(64, 32, 63, 31)})
         for (DistributionMethod method : k_all_methods) {
             const auto d = made(weights, method);
             if (d->continuous()) continue;
@@ -324,8 +326,8 @@ TEST_CASE("distribution: the built-in sky and a photograph pass the chi-square t
     } else {
         MESSAGE("DOMELIGHT_DATA is not set: the built-in sky only");
     }
-    const DistributionMethod methods[] = {DistributionMethod::guided, DistributionMethod::alias, DistributionMethod::hierarchical, DistributionMethod::bilinear,
-                                          DistributionMethod::binary};
+    const DistributionMethod methods[] = {DistributionMethod::guided, DistributionMethod::alias, DistributionMethod::hierarchical,
+                                          DistributionMethod::bilinear, DistributionMethod::binary};
     for (const NamedWeights& weights : all)
         for (DistributionMethod method : methods) {
             CAPTURE(weights.name);

@@ -82,9 +82,9 @@ TEST_CASE("PlainDistribution1D: rounding leads the shader's walk past no last va
 TEST_CASE("PlainDistribution1D: the average, and a known map") {
     const PlainDistribution1D d(std::vector<double>{1, 0, 3});
     CHECK(d.mean() == doctest::Approx(4.0 / 3));
-    CHECK(d.sample_linear(0.125).x == doctest::Approx(0.5 / 3));   // half of the first quarter: half of the first third
-    CHECK(d.sample_linear(0.625).x == doctest::Approx(2.5 / 3));   // half of the last three quarters: half of the last third
-    CHECK(d.sample_linear(0.125).pdf == doctest::Approx(0.75));    // 1 / (4/3)
+    CHECK(d.sample_linear(0.125).x == doctest::Approx(0.5 / 3));  // half of the first quarter: half of the first third
+    CHECK(d.sample_linear(0.625).x == doctest::Approx(2.5 / 3));  // half of the last three quarters: half of the last third
+    CHECK(d.sample_linear(0.125).pdf == doctest::Approx(0.75));   // 1 / (4/3)
     CHECK(d.sample_linear(0.625).pdf == doctest::Approx(2.25));
 }
 
