@@ -46,8 +46,8 @@ struct BilinearRows {
 /// j and j + 1 in proportion to (1 - t) S_j and t S_{j+1}, with S a row's sum; its cumulative function is the mixture of theirs, and the root lies
 /// between the two rows' own, which the guides bracket. Choosing one of the rows at random would be exact too, but neither monotone nor invertible.
 ///
-/// Monotone in both directions (u from 1/2 / W on, around the seam). invert(sample(p)) gives p back to a few quanta of 2^-32, more only where a row
-/// outweighs its neighbour by 10^3 or more and (u, v) in double no longer say enough. 8 bytes a texel.
+/// Monotone in both directions (u from 1/2 / W on, around the seam). invert(sample(p)) == p exactly, but for a few quanta of 2^-32 where a row
+/// outweighs its neighbour by 10^4 or more: there (u, v) in double no longer say enough. 8 bytes a texel.
 class BilinearDistribution final : public Distribution2D {
   public:
     /// Errors: as make_distribution.
