@@ -42,8 +42,9 @@ struct AliasRows {
 
 /// Marginal and conditional draws by alias tables: one fetch for a row, one or two for a column, no search.
 ///
-/// The fastest method where points are random. It takes neighbouring points apart, so a low-discrepancy set loses what it is good for: with 4096
-/// Hammersley points the error is that of random points or worse. Densities are those of GuidedDistribution, to the bit. Resolves 2^32 positions in
+/// The fastest method where points are random. It takes neighbouring points apart, so a low-discrepancy set loses what it is good for, and a lattice
+/// does worse than random points: Hammersley points' lower bits, which choose between item and alias, are all alike (4096 of them on a 4096 x 2048
+/// sunrise: relative error 0.46, random points 0.04). Densities are those of GuidedDistribution, to the bit. Resolves 2^32 positions in
 /// each direction. 8 bytes a texel where the width is a power of two, else up to twice that.
 class AliasDistribution final : public Distribution2D {
   public:
