@@ -9,6 +9,7 @@ build_packages=(
     libhwy-dev          # SIMD chosen at run time
     libzstd-dev         # KTX2 supercompression
     libssl-dev          # SHA-256 (libcrypto only)
+    libembree-dev       # rays; brings oneTBB
     libfmt-dev nlohmann-json3-dev libcli11-dev
 )
 # ./test: the test framework, the benchmarks, and the scripts that drive the program.

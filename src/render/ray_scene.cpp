@@ -1,0 +1,153 @@
+#include "render/ray_scene.h"
+
+#include <fmt/core.h>
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+namespace domelight {
+namespace {
+
+bool count_bytes(void* sum, ssize_t bytes, bool) {
+    *static_cast<std::atomic<std::int64_t>*>(sum) += bytes;
+    return true;
+}
+
+/// One mesh's triangles; positions by way of `place`.
+template <typename Place>
+RTCGeometry make_triangles(RTCDevice device, const Mesh& mesh, const Place& place) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.positions.size()));
+    auto* indices = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.indices.size() / 3));
+    if (vertices)
+        for (const Vec3f& p : mesh.positions) {
+            const Vec3f w = place(p);
+            *vertices++ = w.x, *vertices++ = w.y, *vertices++ = w.z;
+        }
+    if (indices) std::copy(mesh.indices.begin(), mesh.indices.end(), indices);
+    rtcCommitGeometry(geometry);
+    return geometry;
+}
+
+}  // namespace
+
+RayScene::Impl::~Impl() {
+    if (world) rtcReleaseScene(world);
+    for (RTCScene object : objects)
+        if (object) rtcReleaseScene(object);
+    if (device) rtcReleaseDevice(device);
+}
+
+RayScene::RayScene() : impl_(std::make_unique<Impl>()) {}
+RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+const Scene& RayScene::scene() const {
+    return impl_->scene;
+}
+std::size_t RayScene::memory_bytes() const {
+    return impl_->bytes;
+}
+
+Result<RayScene> RayScene::build(Scene scene, int) {
+    RayScene out;
+    Impl& impl = *out.impl_;
+    impl.scene = std::move(scene);
+    const Scene& s = impl.scene;
+    if (s.triangle_count() == 0) return Error{"the scene has no triangles", "", ""};
+    // Embree's own worker threads are oneTBB's; "threads=1" would pin all of TBB to one core.
+    impl.device = rtcNewDevice(nullptr);
+    if (!impl.device) return Error{"Embree cannot start", "", ""};
+    std::atomic<std::int64_t> bytes{0};
+    rtcSetDeviceMemoryMonitorFunction(impl.device, count_bytes, &bytes);
+    impl.world = rtcNewScene(impl.device);
+    rtcSetSceneBuildQuality(impl.world, RTC_BUILD_QUALITY_HIGH);
+
+    std::vector<int> uses(s.meshes.size());
+    for (const Instance& i : s.instances) ++uses[i.mesh];
+    impl.objects.resize(s.meshes.size());
+    for (int i = 0; i < int(s.instances.size()); ++i) {
+        const Instance& instance = s.instances[i];
+        const Mesh& mesh = s.meshes[instance.mesh];
+        if (mesh.indices.empty()) continue;
+        RTCGeometry geometry;
+        if (uses[instance.mesh] == 1) {
+            // A mesh that stands once goes into the world itself: one level less to walk.
+            geometry = make_triangles(impl.device, mesh, [&](const Vec3f& p) { return instance.to_world.point(p); });
+        } else {
+            RTCScene& object = impl.objects[instance.mesh];
+            if (!object) {
+                object = rtcNewScene(impl.device);
+                rtcSetSceneBuildQuality(object, RTC_BUILD_QUALITY_HIGH);
+                RTCGeometry triangles = make_triangles(impl.device, mesh, [](const Vec3f& p) { return p; });
+                rtcAttachGeometry(object, triangles);
+                rtcReleaseGeometry(triangles);
+                rtcCommitScene(object);
+            }
+            geometry = rtcNewGeometry(impl.device, RTC_GEOMETRY_TYPE_INSTANCE);
+            rtcSetGeometryInstancedScene(geometry, object);
+            const Affine& m = instance.to_world;
+            const float columns[12] = {m.x.x, m.x.y, m.x.z, m.y.x, m.y.y, m.y.z, m.z.x, m.z.y, m.z.z,
+                                       m.translation.x, m.translation.y, m.translation.z};
+            rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+            rtcCommitGeometry(geometry);
+        }
+        const unsigned id = rtcAttachGeometry(impl.world, geometry);
+        rtcReleaseGeometry(geometry);
+        if (id >= impl.instance_of.size()) impl.instance_of.resize(id + 1, -1);
+        impl.instance_of[id] = i;
+    }
+    rtcCommitScene(impl.world);
+    rtcSetDeviceMemoryMonitorFunction(impl.device, nullptr, nullptr);
+    impl.bytes = std::size_t(std::max<std::int64_t>(0, bytes));
+    if (const RTCError error = rtcGetDeviceError(impl.device); error != RTC_ERROR_NONE)
+        return Error{error == RTC_ERROR_OUT_OF_MEMORY ? std::string("out of memory for the scene's acceleration structure")
+                                                      : fmt::format("Embree reports error {}", int(error)),
+                     "", ""};
+    return out;
+}
+
+Hit RayScene::Impl::intersect(const Ray& ray, bool coherent) const {
+    RTCRayHit r;
+    r.ray.org_x = ray.origin.x, r.ray.org_y = ray.origin.y, r.ray.org_z = ray.origin.z;
+    r.ray.dir_x = ray.direction.x, r.ray.dir_y = ray.direction.y, r.ray.dir_z = ray.direction.z;
+    r.ray.tnear = ray.near;
+    r.ray.tfar = std::numeric_limits<float>::infinity();
+    r.ray.time = 0;
+    r.ray.mask = ~0u;
+    r.ray.flags = 0;
+    r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    rtcIntersect1(world, &context, &r);
+    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    const bool instanced = r.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
+    const int instance = instance_of[instanced ? r.hit.instID[0] : r.hit.geomID];
+    Vec3f normal{r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z};
+    const Affine& m = scene.instances[instance].to_world;
+    if (instanced) normal = m.normal(normal);
+    // A mirrored instance turns its triangles round; glTF's front stays the front.
+    if (!instanced && m.determinant() < 0) normal = -normal;
+    return {r.ray.tfar, instance, int(r.hit.primID), r.hit.u, r.hit.v, normal};
+}
+
+bool RayScene::Impl::occluded(const Ray& ray) const {
+    RTCRay r;
+    r.org_x = ray.origin.x, r.org_y = ray.origin.y, r.org_z = ray.origin.z;
+    r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z;
+    r.tnear = ray.near;
+    r.tfar = std::numeric_limits<float>::infinity();
+    r.time = 0;
+    r.mask = ~0u;
+    r.flags = 0;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(world, &context, &r);
+    return r.tfar < 0;
+}
+
+}  // namespace domelight

@@ -1,0 +1,43 @@
+#pragma once
+// Embree, behind a few functions.
+
+#include <embree3/rtcore.h>
+
+#include "domelight/render.h"
+
+namespace domelight {
+
+/// A point of a surface that a ray met.
+struct Hit {
+    float distance = 0;
+    int instance = -1;  ///< -1: none
+    int triangle = 0;
+    float u = 0, v = 0;  ///< barycentric: (1 - u - v) a + u b + v c
+    Vec3f geometric_normal;  ///< in the world, not of unit length, to the front
+};
+
+struct Ray {
+    Vec3f origin, direction;
+    float near = 0;
+};
+
+struct RayScene::Impl {
+    Impl() = default;
+    ~Impl();
+    Scene scene;
+    RTCDevice device = nullptr;
+    RTCScene world = nullptr;
+    std::vector<RTCScene> objects;  ///< of meshes that have several instances
+    struct Geometry {
+        int instance;
+    };
+    std::vector<int> instance_of;     ///< of a geometry of `world`
+    std::vector<Affine> to_local_normal;
+    std::size_t bytes = 0;
+
+    Hit intersect(const Ray& ray, bool coherent) const;
+    /// Whether anything lies between.
+    bool occluded(const Ray& ray) const;
+};
+
+}  // namespace domelight
