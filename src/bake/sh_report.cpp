@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace domelight {
 namespace {
@@ -21,16 +22,33 @@ std::array<double, 3> channels(const Vec3d& v) {
     return {v.x, v.y, v.z};
 }
 
+/// Solid angles of a map's texels: of one face (all are alike), or of a lat-long row's texels.
+class SolidAngles {
+  public:
+    explicit SolidAngles(const FilteredMap& map) : cube_(!map.cube.empty()), width_(cube_ ? map.cube.size() : 1) {
+        const int height = cube_ ? width_ : map.latlong.height();
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width_; ++x)
+                omega_.push_back(cube_ ? cube_solid_angle(x, y, width_)
+                                       : latlong_solid_angle(y, map.latlong.width(), height));
+    }
+    double operator()(int x, int y) const { return cube_ ? omega_[std::size_t(y % width_) * width_ + x] : omega_[y]; }
+
+  private:
+    bool cube_;
+    int width_;
+    std::vector<double> omega_;
+};
+
 /// Mean of a map over the sphere: sum of omega E / sum of omega.
-std::array<double, 3> map_mean(const FilteredMap& map) {
+std::array<double, 3> map_mean(const FilteredMap& map, const SolidAngles& solid_angle) {
     const bool cube = !map.cube.empty();
     const auto image = cube ? map.cube.strip() : map.latlong.view();
     std::array<double, 3> sum{};
     double total = 0;
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
-            const double omega = cube ? cube_solid_angle(x, y % image.width, image.width)
-                                      : latlong_solid_angle(y, image.width, image.height);
+            const double omega = solid_angle(x, y);
             for (int c = 0; c < 3; ++c) sum[c] += omega * image.at(x, y)[c];
             total += omega;
         }
@@ -52,7 +70,8 @@ ShReport make_sh_report(std::span<const Vec3d> radiance, int bands, ShWindow win
 
     const bool cube = !irradiance_over_pi.cube.empty();
     const auto truth = cube ? irradiance_over_pi.cube.strip() : irradiance_over_pi.latlong.view();
-    const auto mean = map_mean(irradiance_over_pi);
+    const SolidAngles solid_angle(irradiance_over_pi);
+    const auto mean = map_mean(irradiance_over_pi, solid_angle);
     std::vector<RowError> rows(truth.height);
     parallel_ranges(truth.height, 8, threads, [&](int begin, int end) {
         for (int y = begin; y < end; ++y)
@@ -60,7 +79,7 @@ ShReport make_sh_report(std::span<const Vec3d> radiance, int bands, ShWindow win
                 const int n = truth.width, fy = y % n;
                 const Vec3d d = cube ? normalize(cube_direction(y / n, {(x + 0.5) / n, (fy + 0.5) / n}))
                                      : latlong_direction({(x + 0.5) / n, (y + 0.5) / truth.height});
-                const double omega = cube ? cube_solid_angle(x, fy, n) : latlong_solid_angle(y, n, truth.height);
+                const double omega = solid_angle(x, y);
                 const auto value = channels(sh_evaluate(over_pi, d));
                 for (int c = 0; c < 3; ++c) {
                     const double e = truth.at(x, y)[c], error = std::abs(value[c] - e);

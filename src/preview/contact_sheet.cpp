@@ -4,6 +4,7 @@
 #include "domelight/spherical_harmonics.h"
 
 #include "image/draw.h"
+#include "preview/agx_display.h"
 #include "preview/preview_map.h"
 #include "preview/tonemap.h"
 
@@ -12,7 +13,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace domelight {
 namespace {
@@ -21,6 +25,7 @@ constexpr Colour8 k_background{24, 25, 28}, k_bright{232, 234, 238}, k_text{205,
     k_edge{52, 54, 60};
 constexpr int k_margin = 32, k_gap = 16, k_line = 20;  // pixels; k_line: from one line of small text to the next
 constexpr double k_key = 0.18;
+constexpr double k_smooth_alpha = 0.03;  // wider lobes than this leave no detail as fine as the chrome balls' pixels
 
 /// A picture on the sheet, drawn row by row (`row` counts from the top of `where`), so that threads can share it.
 struct Panel {
@@ -40,22 +45,66 @@ std::string number(double v) {
     return fmt::format("{:.3g}", v);
 }
 
-/// E / pi of radiance coefficients as a lat-long map. Negative lobes are kept; bands from the 17th on are too fine for
-/// the sheet.
+/// A ball of some diameter under an orthographic view along -Z: what each of its pixels looks up. Drawn once for all
+/// maps of a layout.
+struct Ball {
+    bool cube, chrome;
+    int size, samples;             ///< samples^2 a pixel
+    std::vector<MapPlace> places;  ///< samples^2 for each pixel of the square, row by row; unused outside the disc
+    std::vector<float> opacity;    ///< of each pixel
+};
+
+Ball make_ball(const PreviewMap& map, int size, bool chrome, int samples, int threads) {
+    Ball ball{map.is_cube(), chrome, size, samples, {}, {}};
+    const int per_pixel = samples * samples;
+    ball.places.resize(std::size_t(size) * std::size_t(size) * std::size_t(per_pixel));
+    ball.opacity.resize(std::size_t(size) * std::size_t(size));
+    const float radius = 0.5f * float(size) - 0.5f, centre = 0.5f * float(size), step = 1 / float(samples);
+    parallel_ranges(size, 16, threads, [&](int begin, int end) {
+        for (int row = begin; row < end; ++row)
+            for (int i = 0; i < size; ++i) {
+                const float px = float(i) + 0.5f - centre, py = float(row) + 0.5f - centre;
+                const std::size_t pixel = std::size_t(row) * std::size_t(size) + std::size_t(i);
+                ball.opacity[pixel] = std::clamp(radius - std::sqrt(px * px + py * py) + 0.5f, 0.0f, 1.0f);
+                if (ball.opacity[pixel] == 0) continue;
+                for (int k = 0; k < per_pixel; ++k) {
+                    const float dx = (float(k % samples) + 0.5f) * step, dy = (float(k / samples) + 0.5f) * step;
+                    Vec3f n{(float(i) + dx - centre) / radius, (centre - float(row) - dy) / radius, 0};
+                    const float r2 = n.x * n.x + n.y * n.y;
+                    if (r2 > 0.9999f) n = n * (0.99995f / std::sqrt(r2));
+                    n.z = std::sqrt(std::max(0.0f, 1 - n.x * n.x - n.y * n.y));
+                    // Towards the viewer is +Z: r = 2 (n.z) n - z.
+                    const Vec3f d = chrome ? Vec3f{2 * n.z * n.x, 2 * n.z * n.y, 2 * n.z * n.z - 1} : n;
+                    ball.places[pixel * std::size_t(per_pixel) + std::size_t(k)] = map.place(d);
+                }
+            }
+    });
+    return ball;
+}
+
+/// E / pi of radiance coefficients as a cube. Negative lobes are kept; bands from the 17th on are too fine for the
+/// sheet.
 FilteredMap irradiance_picture(std::span<const Vec3d> radiance) {
     const std::vector<Vec3d> sh = sh_irradiance_over_pi(radiance.first(std::min<std::size_t>(radiance.size(), 256)));
-    const int rows = sh.size() > 25 ? 96 : 48;
+    const int n = sh.size() > 25 ? 64 : 32;
     FilteredMap picture;
-    picture.latlong = ImageF(2 * rows, rows, 3);
-    for (int y = 0; y < rows; ++y)
-        for (int x = 0; x < 2 * rows; ++x) {
-            const Vec3d v = sh_evaluate(sh, latlong_direction({(x + 0.5) / (2 * rows), (y + 0.5) / rows}));
-            float* p = picture.latlong.at(x, y);
-            p[0] = float(v.x);
-            p[1] = float(v.y);
-            p[2] = float(v.z);
-        }
+    picture.cube = Cubemap(n);
+    for (int face = 0; face < 6; ++face)
+        for (int y = 0; y < n; ++y)
+            for (int x = 0; x < n; ++x) {
+                const Vec3d v = sh_evaluate(sh, normalize(cube_direction(face, {(x + 0.5) / n, (y + 0.5) / n})));
+                float* p = picture.cube.face(face).at(x, y);
+                p[0] = float(v.x);
+                p[1] = float(v.y);
+                p[2] = float(v.z);
+            }
     return picture;
+}
+
+/// Packed colours to pixels.
+void store(std::span<const std::uint32_t> colours, std::uint8_t* pixel) {
+    for (const std::uint32_t colour : colours)
+        for (int c = 0; c < 3; ++c) *pixel++ = std::uint8_t(colour >> (8 * c));
 }
 
 /// Lays the sheet out from the top down, collecting panels and texts, and draws them at the end.
@@ -74,11 +123,8 @@ class Sheet {
     void latlong_panel(int x, int y, int width, const PreviewMap& map);
     void cross_panel(int x, int y, int width, const PreviewMap& map);
     void ball_panel(int x, int y, int size, const PreviewMap& map, bool chrome, int samples);
+    std::shared_ptr<const Ball> ball(bool cube, int size, bool chrome, int samples);
     void brdf_panel(int x, int y, int size);
-    void put(std::uint8_t* pixel, const Vec3f& radiance) const {
-        const auto c = look_.rgb8(radiance);
-        std::copy(c.begin(), c.end(), pixel);
-    }
     void axis_names(int x, int y, int width);
     void text(int x, int baseline, std::string s, Colour8 colour = k_text, Align align = Align::left,
               FontSize size = FontSize::small) {
@@ -91,9 +137,11 @@ class Sheet {
     const PreviewInput& in_;
     int width_, y_ = 0;
     double log_average_ = 0;
-    Display look_{Tonemap::agx_punchy, 1};
+    double sh_difference_ = 0;
+    AgxDisplay look_{1};
     PreviewMap environment_, irradiance_, sh_;
     std::vector<PreviewMap> levels_;
+    std::vector<std::shared_ptr<const Ball>> balls_;
     std::vector<Panel> panels_;
     std::vector<Text> texts_;
 };
@@ -138,7 +186,14 @@ Sheet::Sheet(const PreviewInput& input) : in_(input), width_(std::max(input.widt
     }
     const double automatic = log_average_ > 0 ? std::log2(k_key / log_average_) : 0;
     const double ev = std::clamp(in_.exposure_ev.value_or(automatic), -60.0, 60.0);
-    look_ = Display(Tonemap::agx_punchy, float(std::exp2(ev)));
+    look_ = AgxDisplay(float(std::exp2(ev)));
+    if (!sh_.empty() && !irradiance_.empty()) sh_difference_ = sh_difference();
+    // From here on the maps are for showing only.
+    std::vector<PreviewMap*> maps{&environment_, &irradiance_, &sh_};
+    for (PreviewMap& level : levels_) maps.push_back(&level);
+    parallel_for(int(maps.size()), in_.threads, [&](int i) {
+        maps[std::size_t(i)]->transform([&](const Texel4& radiance) { return look_.primaries(radiance); });
+    });
     header();
     environment_row();
     level_grid();
@@ -206,7 +261,7 @@ void Sheet::environment_row() {
         latlong_panel(x, y_ + s + 10, s, sh_);
         const int bands = int(std::lround(std::sqrt(double(in_.sh.size()))));
         caption(x, y_ + height, s, fmt::format("the same of {} harmonics, {} bands", in_.sh.size(), bands),
-                irradiance_.empty() ? "" : fmt::format("differs by {:.2f} % RMS", 100 * sh_difference()));
+                irradiance_.empty() ? "" : fmt::format("differs by {:.2f} % RMS", 100 * sh_difference_));
     }
     y_ += height + 2 * k_line + 34;
 }
@@ -231,7 +286,9 @@ void Sheet::level_grid() {
             continue;
         }
         const PreviewLevel& level = in_.specular[i];
-        ball_panel(x, y, cell, levels_[i], true, map_size(*level.map) > 64 ? 2 : 1);
+        // Where a rough lobe has smoothed the level, one look-up a pixel shows all there is.
+        const bool fine = map_size(*level.map) > 64 && level.alpha < k_smooth_alpha;
+        ball_panel(x, y, cell, levels_[i], true, fine ? 2 : 1);
         if (levels_[i].is_cube())
             cross_panel(x, y + cell + 10, cell, levels_[i]);
         else
@@ -261,11 +318,26 @@ void Sheet::footer() {
 
 void Sheet::latlong_panel(int x, int y, int width, const PreviewMap& map) {
     const int height = width / 2;
+    // The longitudes' sines and cosines, the same in every row.
+    std::vector<std::pair<float, float>> turn;
+    for (int i = 0; i < width; ++i) {
+        const Vec3d d = latlong_direction({(i + 0.5) / width, 0.5});
+        turn.emplace_back(float(d.x), float(d.z));
+    }
     panels_.push_back(
-        {{x, y, width, height}, [this, x, y, width, height, &map](ImageView<std::uint8_t> image, int row) {
-             for (int i = 0; i < width; ++i)
-                 put(image.at(x + i, y + row),
-                     map.sample_latlong(float((i + 0.5) / width), float((row + 0.5) / height)));
+        {{x, y, width, height},
+         [this, x, y, width, height, turn = std::move(turn), &map](ImageView<std::uint8_t> image, int row) {
+             const float v = (float(row) + 0.5f) / float(height);
+             const float up = float(std::cos(k_pi * v)), around = float(std::sin(k_pi * v));
+             const bool upright = map.is_upright_latlong();
+             std::vector<std::uint32_t> line(turn.size());
+             for (int i = 0; i < width; ++i) {
+                 const auto [cosine, sine] = turn[std::size_t(i)];
+                 const MapPlace place = upright ? MapPlace{0, (float(i) + 0.5f) / float(width), v}
+                                                : map.place({around * cosine, up, around * sine});
+                 line[std::size_t(i)] = look_.code(map.at(place));
+             }
+             store(line, image.at(x, y + row));
          }});
 }
 
@@ -273,72 +345,81 @@ void Sheet::latlong_panel(int x, int y, int width, const PreviewMap& map) {
 /// together.
 void Sheet::cross_panel(int x, int y, int width, const PreviewMap& map) {
     const int n = width / 4;
-    panels_.push_back(
-        {{x, y, 4 * n, 3 * n}, [this, x, y, n, &map](ImageView<std::uint8_t> image, int row) {
-             static constexpr int faces[3][4] = {{-1, 2, -1, -1}, {1, 4, 0, 5}, {-1, 3, -1, -1}};
-             for (int column = 0; column < 4; ++column) {
-                 const int face = faces[row / n][column];
-                 if (face < 0) continue;
-                 for (int i = 0; i < n; ++i)
-                     put(image.at(x + column * n + i, y + row),
-                         map.sample_face(face, (float(i) + 0.5f) / float(n), (float(row % n) + 0.5f) / float(n)));
-             }
-         }});
+    panels_.push_back({{x, y, 4 * n, 3 * n}, [this, x, y, n, &map](ImageView<std::uint8_t> image, int row) {
+                           static constexpr int faces[3][4] = {{-1, 2, -1, -1}, {1, 4, 0, 5}, {-1, 3, -1, -1}};
+                           for (int column = 0; column < 4; ++column) {
+                               const int face = faces[row / n][column];
+                               if (face < 0) continue;
+                               std::vector<std::uint32_t> line(static_cast<std::size_t>(n));
+                               for (int i = 0; i < n; ++i)
+                                   line[std::size_t(i)] = look_.code(map.at(
+                                       {face, (float(i) + 0.5f) / float(n), (float(row % n) + 0.5f) / float(n)}));
+                               store(line, image.at(x + column * n, y + row));
+                           }
+                       }});
+}
+
+std::shared_ptr<const Ball> Sheet::ball(bool cube, int size, bool chrome, int samples) {
+    for (const auto& b : balls_)
+        if (b->cube == cube && b->size == size && b->chrome == chrome && b->samples == samples) return b;
+    return nullptr;
 }
 
 /// A ball of diameter `size` under an orthographic view along -Z. `chrome`: looked up in the mirror direction of the
 /// view, else by the normal.
 void Sheet::ball_panel(int x, int y, int size, const PreviewMap& map, bool chrome, int samples) {
+    std::shared_ptr<const Ball> ball = this->ball(map.is_cube(), size, chrome, samples);
+    if (!ball) {
+        ball = std::make_shared<const Ball>(make_ball(map, size, chrome, samples, in_.threads));
+        balls_.push_back(ball);
+    }
     panels_.push_back(
-        {{x, y, size, size}, [this, x, y, size, chrome, samples, &map](ImageView<std::uint8_t> image, int row) {
-             const float radius = 0.5f * float(size) - 0.5f, centre = 0.5f * float(size);
-             for (int i = 0; i < size; ++i) {
-                 const float distance = std::hypot(float(i) + 0.5f - centre, float(row) + 0.5f - centre);
-                 const float opacity = std::clamp(radius - distance + 0.5f, 0.0f, 1.0f);
+        {{x, y, size, size}, [this, x, y, ball, &map](ImageView<std::uint8_t> image, int row) {
+             const std::uint32_t per_pixel = std::uint32_t(ball->samples * ball->samples);
+             const std::size_t first = std::size_t(row) * std::size_t(ball->size);
+             const MapPlace* place = ball->places.data() + first * std::size_t(per_pixel);
+             for (int i = 0; i < ball->size; ++i, place += per_pixel) {
+                 const float opacity = ball->opacity[first + std::size_t(i)];
                  if (opacity == 0) continue;
-                 Vec3f sum;  // of display values: a sun's edge stays smooth
-                 for (int k = 0; k < samples * samples; ++k) {
-                     const float dx = (float(k % samples) + 0.5f) / float(samples),
-                                 dy = (float(k / samples) + 0.5f) / float(samples);
-                     Vec3f n{(float(i) + dx - centre) / radius, (centre - float(row) - dy) / radius, 0};
-                     const float r2 = n.x * n.x + n.y * n.y;
-                     if (r2 > 0.9999f) n = n * (0.99995f / std::sqrt(r2));
-                     n.z = std::sqrt(std::max(0.0f, 1 - n.x * n.x - n.y * n.y));
-                     // Towards the viewer is +Z: r = 2 (n.z) n - z.
-                     const Vec3f d = chrome ? Vec3f{2 * n.z * n.x, 2 * n.z * n.y, 2 * n.z * n.z - 1} : n;
-                     sum = sum + look_.encoded(map.sample(d));
+                 // The mean is of display values: a sun's edge stays smooth. Red and blue are added
+                 // up in one number.
+                 std::uint32_t red_blue = 0, green = 0;
+                 for (std::uint32_t k = 0; k < per_pixel; ++k) {
+                     const std::uint32_t code = look_.code(map.at(place[k]));
+                     red_blue += code & 0xff00ff, green += code >> 8 & 0xff;
                  }
-                 sum = sum / float(samples * samples);
-                 blend(image, x + i, y + row, {to_byte(sum.x), to_byte(sum.y), to_byte(sum.z)}, opacity);
+                 const auto mean = [&](std::uint32_t sum) { return std::uint8_t((sum + per_pixel / 2) / per_pixel); };
+                 blend(image, x + i, y + row, {mean(red_blue & 0xffff), mean(green), mean(red_blue >> 16)}, opacity);
              }
          }});
 }
 
 void Sheet::brdf_panel(int x, int y, int size) {
-    panels_.push_back({{x, y, size, size}, [this, x, y, size](ImageView<std::uint8_t> image, int row) {
-                           const auto& t = in_.brdf;
-                           const auto place = [size](int i, int n) {
-                               return std::clamp((float(i) + 0.5f) / float(size) * float(n) - 0.5f, 0.0f, float(n - 1));
-                           };
-                           const float fy = place(row, t.height);
-                           const int j = std::min(int(fy), std::max(t.height - 2, 0)),
-                                     j1 = std::min(j + 1, t.height - 1);
-                           for (int i = 0; i < size; ++i) {
-                               const float fx = place(i, t.width);
-                               const int k = std::min(int(fx), std::max(t.width - 2, 0)),
-                                         k1 = std::min(k + 1, t.width - 1);
-                               const auto value = [&](int c) {
-                                   if (c >= t.channels) return 0.0f;
-                                   const float a = t.at(k, j)[c] * (1 - (fx - k)) + t.at(k1, j)[c] * (fx - k);
-                                   const float b = t.at(k, j1)[c] * (1 - (fx - k)) + t.at(k1, j1)[c] * (fx - k);
-                                   return a * (1 - (fy - j)) + b * (fy - j);
-                               };
-                               std::uint8_t* p = image.at(x + i, y + row);
-                               p[0] = to_byte(srgb_encode(std::clamp(value(0), 0.0f, 1.0f)));
-                               p[1] = to_byte(srgb_encode(std::clamp(value(1), 0.0f, 1.0f)));
-                               p[2] = 0;
-                           }
-                       }});
+    std::vector<std::uint8_t> codes;
+    for (int i = 0; i < 4096; ++i) codes.push_back(to_byte(srgb_encode(float(i) / 4095)));
+    panels_.push_back(
+        {{x, y, size, size}, [this, x, y, size, codes = std::move(codes)](ImageView<std::uint8_t> image, int row) {
+             const auto& t = in_.brdf;
+             const auto place = [size](int i, int n) {
+                 return std::clamp((float(i) + 0.5f) / float(size) * float(n) - 0.5f, 0.0f, float(n - 1));
+             };
+             const float fy = place(row, t.height);
+             const int j = std::min(int(fy), std::max(t.height - 2, 0)), j1 = std::min(j + 1, t.height - 1);
+             for (int i = 0; i < size; ++i) {
+                 const float fx = place(i, t.width);
+                 const int k = std::min(int(fx), std::max(t.width - 2, 0)), k1 = std::min(k + 1, t.width - 1);
+                 const auto value = [&](int c) {
+                     if (c >= t.channels) return 0.0f;
+                     const float a = t.at(k, j)[c] * (1 - (fx - k)) + t.at(k1, j)[c] * (fx - k);
+                     const float b = t.at(k, j1)[c] * (1 - (fx - k)) + t.at(k1, j1)[c] * (fx - k);
+                     return a * (1 - (fy - j)) + b * (fy - j);
+                 };
+                 std::uint8_t* p = image.at(x + i, y + row);
+                 p[0] = codes[std::size_t(std::clamp(value(0), 0.0f, 1.0f) * 4095 + 0.5f)];
+                 p[1] = codes[std::size_t(std::clamp(value(1), 0.0f, 1.0f) * 4095 + 0.5f)];
+                 p[2] = 0;
+             }
+         }});
 }
 
 /// The names of the four directions around the horizon, along the bottom of a lat-long picture.

@@ -9,29 +9,64 @@
 namespace domelight {
 namespace {
 
-/// Mean of up to 4 x 4 texels spread over the box [x0, x1) x [y0, y1).
-void box_mean(ImageView<const float> image, int x0, int x1, int y0, int y1, float* out) {
-    const int nx = std::min(x1 - x0, 4), ny = std::min(y1 - y0, 4);
-    float sum[3] = {0, 0, 0};
-    for (int j = 0; j < ny; ++j)
-        for (int i = 0; i < nx; ++i) {
-            const float* p =
-                image.at(x0 + ((2 * i + 1) * (x1 - x0)) / (2 * nx), y0 + ((2 * j + 1) * (y1 - y0)) / (2 * ny));
-            for (int c = 0; c < 3; ++c) sum[c] += p[c];
-        }
-    for (int c = 0; c < 3; ++c) out[c] = sum[c] / float(nx * ny);
+constexpr int k_most_samples = 4;
+
+/// Which texels of a row or column stand for one of `count` cells: up to 4 spread over it.
+struct Cell {
+    int samples = 0;
+    int at[k_most_samples];
+};
+
+std::vector<Cell> cells_of(int size, int count) {
+    std::vector<Cell> cells(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) {
+        const int begin = int(std::int64_t(i) * size / count), end = int(std::int64_t(i + 1) * size / count);
+        Cell& cell = cells[std::size_t(i)];
+        cell.samples = std::min(end - begin, k_most_samples);
+        for (int k = 0; k < cell.samples; ++k) cell.at[k] = begin + ((2 * k + 1) * (end - begin)) / (2 * cell.samples);
+    }
+    return cells;
 }
 
-/// Fills the inside of a bordered width x height block from an image.
-void shrink(ImageView<const float> image, int width, int height, float* block) {
+/// Fills the inside of a bordered width x height block from an image by the means of boxes.
+void shrink(ImageView<const float> image, int width, int height, Texel4* block) {
+    const std::vector<Cell> columns = cells_of(image.width, width), rows = cells_of(image.height, height);
     for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            box_mean(image, int(std::int64_t(x) * image.width / width), int(std::int64_t(x + 1) * image.width / width),
-                     int(std::int64_t(y) * image.height / height), int(std::int64_t(y + 1) * image.height / height),
-                     block + 3 * ((y + 1) * (width + 2) + x + 1));
+        for (int x = 0; x < width; ++x) {
+            const Cell &column = columns[std::size_t(x)], &row = rows[std::size_t(y)];
+            float sum[3] = {0, 0, 0};
+            for (int j = 0; j < row.samples; ++j)
+                for (int i = 0; i < column.samples; ++i) {
+                    const float* p = image.at(column.at[i], row.at[j]);
+                    for (int c = 0; c < 3; ++c) sum[c] += p[c];
+                }
+            const float scale = 1 / float(row.samples * column.samples);
+            block[(y + 1) * (width + 2) + x + 1] = Texel4::of(sum[0] * scale, sum[1] * scale, sum[2] * scale);
+        }
 }
 
 }  // namespace
+
+MapPlace cube_place(const Vec3f& d) {
+    const float ax = std::abs(d.x), ay = std::abs(d.y), az = std::abs(d.z);
+    float s, t, most;
+    int face;
+    // OpenGL 4.6, table 8.19.
+    if (ax >= ay && ax >= az) {
+        face = d.x < 0, most = ax, s = d.x < 0 ? d.z : -d.z, t = -d.y;
+    } else if (ay >= az) {
+        face = 2 + (d.y < 0), most = ay, s = d.x, t = d.y < 0 ? -d.z : d.z;
+    } else {
+        face = 4 + (d.z < 0), most = az, s = d.z < 0 ? -d.x : d.x, t = -d.y;
+    }
+    const float scale = 0.5f / most;
+    return {face, s * scale + 0.5f, t * scale + 0.5f};
+}
+
+MapPlace latlong_place(const Vec3f& d) {
+    const UV uv = latlong_uv(Vec3d(d));
+    return {0, float(uv.u), float(uv.v)};
+}
 
 PreviewMap::PreviewMap(const FilteredMap& map, int most) {
     if (!map.cube.empty())
@@ -48,65 +83,41 @@ PreviewMap::PreviewMap(ImageView<const float> latlong, int most, const Mat3& wor
 void PreviewMap::make_cube(const Cubemap& cube, int most) {
     cube_ = true;
     width_ = height_ = std::min(cube.size(), most);
-    const int n = width_, stride = 3 * (n + 2), block = stride * (n + 2);
-    texels_.assign(std::size_t(block) * 6, 0);
-    for (int f = 0; f < 6; ++f) shrink(cube.face(f), n, n, &texels_[std::size_t(f) * block]);
+    const int n = width_, stride = n + 2;
+    block_ = stride * stride;
+    texels_.resize(std::size_t(block_) * 6);
+    for (int f = 0; f < 6; ++f) shrink(cube.face(f), n, n, &texels_[std::size_t(f) * std::size_t(block_)]);
     // A border texel is the neighbour's that lies where the face's plane would go on.
+    const auto copy = [&](int f, int x, int y) {
+        const MapPlace p = cube_place(Vec3f(cube_direction(f, {(double(x) - 0.5) / n, (double(y) - 0.5) / n})));
+        const int px = std::clamp(int(p.u * float(n)), 0, n - 1), py = std::clamp(int(p.v * float(n)), 0, n - 1);
+        texels_[std::size_t(f) * std::size_t(block_) + std::size_t(y * stride + x)] =
+            texels_[std::size_t(p.face) * std::size_t(block_) + std::size_t((py + 1) * stride + px + 1)];
+    };
     for (int f = 0; f < 6; ++f)
-        for (int y = 0; y < n + 2; ++y)
-            for (int x = 0; x < n + 2; ++x) {
-                if (x > 0 && y > 0 && x <= n && y <= n) continue;
-                const CubePoint p = cube_point(cube_direction(f, {(x - 0.5) / n, (y - 0.5) / n}));
-                const int px = std::clamp(int(p.uv.u * n), 0, n - 1), py = std::clamp(int(p.uv.v * n), 0, n - 1);
-                std::copy_n(&texels_[std::size_t(p.face) * block + (py + 1) * stride + 3 * (px + 1)], 3,
-                            &texels_[std::size_t(f) * block + y * stride + 3 * x]);
-            }
+        for (int i = 0; i < n + 2; ++i) {
+            copy(f, i, 0);
+            copy(f, i, n + 1);
+            copy(f, 0, i);
+            copy(f, n + 1, i);
+        }
 }
 
 void PreviewMap::make_latlong(ImageView<const float> image, int most) {
     height_ = std::min(image.height, 2 * most);
     width_ = std::min(image.width, 4 * most);
-    const int stride = 3 * (width_ + 2);
-    texels_.assign(std::size_t(stride) * (height_ + 2), 0);
+    const int stride = width_ + 2;
+    block_ = stride * (height_ + 2);
+    texels_.resize(std::size_t(block_));
     shrink(image, width_, height_, texels_.data());
     for (int y = 1; y <= height_; ++y) {
-        float* row = &texels_[std::size_t(y) * stride];
-        std::copy_n(row + 3 * width_, 3, row);
-        std::copy_n(row + 3, 3, row + 3 * (width_ + 1));
+        Texel4* row = &texels_[std::size_t(y) * std::size_t(stride)];
+        row[0] = row[width_];
+        row[width_ + 1] = row[1];
     }
     std::copy_n(texels_.begin() + stride, stride, texels_.begin());
-    std::copy_n(texels_.begin() + std::size_t(height_) * stride, stride,
-                texels_.begin() + std::size_t(height_ + 1) * stride);
-}
-
-Vec3f PreviewMap::bilinear(const float* origin, int stride, float x, float y) const {
-    const int i = std::clamp(int(x), 0, width_), j = std::clamp(int(y), 0, height_);
-    const float fx = x - float(i), fy = y - float(j);
-    const float *a = origin + j * stride + 3 * i, *b = a + stride;
-    const auto mix = [&](int c) {
-        return (a[c] * (1 - fx) + a[3 + c] * fx) * (1 - fy) + (b[c] * (1 - fx) + b[3 + c] * fx) * fy;
-    };
-    return {mix(0), mix(1), mix(2)};
-}
-
-Vec3f PreviewMap::sample_face(int face, float u, float v) const {
-    const int stride = 3 * (width_ + 2);
-    return bilinear(&texels_[std::size_t(face) * stride * (height_ + 2)], stride, u * float(width_) + 0.5f,
-                    v * float(height_) + 0.5f);
-}
-
-Vec3f PreviewMap::sample_latlong(float u, float v) const {
-    if (cube_ || turned_) return sample(Vec3f(latlong_direction({u, v})));
-    return bilinear(texels_.data(), 3 * (width_ + 2), u * float(width_) + 0.5f, v * float(height_) + 0.5f);
-}
-
-Vec3f PreviewMap::sample(const Vec3f& d) const {
-    if (cube_) {
-        const CubePoint p = cube_point(Vec3d(d));
-        return sample_face(p.face, float(p.uv.u), float(p.uv.v));
-    }
-    const UV uv = latlong_uv(turned_ ? turn_ * Vec3d(d) : Vec3d(d));
-    return bilinear(texels_.data(), 3 * (width_ + 2), float(uv.u * width_) + 0.5f, float(uv.v * height_) + 0.5f);
+    std::copy_n(texels_.begin() + std::ptrdiff_t(height_) * stride, stride,
+                texels_.begin() + std::ptrdiff_t(height_ + 1) * stride);
 }
 
 }  // namespace domelight

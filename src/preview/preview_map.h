@@ -4,9 +4,23 @@
 #include "domelight/prefilter.h"
 #include "domelight/vec.h"
 
+#include "preview/texel4.h"
+
+#include <cstdint>
 #include <vector>
 
 namespace domelight {
+
+/// A place on a map of some layout, whatever its size: a cube's face and the point on it, or a lat-long image's point.
+/// Both coordinates 0..1. Pictures of several maps share their places.
+struct MapPlace {
+    std::int32_t face = 0;
+    float u = 0, v = 0;
+};
+
+/// Where a cube has a direction (any length but 0). In float: to about 1e-7 of a face.
+MapPlace cube_place(const Vec3f& d);
+MapPlace latlong_place(const Vec3f& d);
 
 /// A map made small and quick to look up: faces of at most `most` texels (lat-long: 2 most rows), averaged over boxes,
 /// with a border taken from the neighbours so that bilinear look-ups go on across edges.
@@ -19,22 +33,40 @@ class PreviewMap {
 
     bool empty() const { return texels_.empty(); }
     bool is_cube() const { return cube_; }
+    /// Whether a lat-long picture of this map is the map itself.
+    bool is_upright_latlong() const { return !cube_ && !turned_; }
+
+    MapPlace place(const Vec3f& d) const {
+        return cube_ ? cube_place(d) : latlong_place(turned_ ? Vec3f(turn_ * Vec3d(d)) : d);
+    }
+    /// Bilinear value at a place of this map's layout.
+    Texel4 at(const MapPlace& place) const {
+        const float x = place.u * float(width_) + 0.5f, y = place.v * float(height_) + 0.5f;
+        const int i = int(x), j = int(y);
+        const float fx = x - float(i), fy = y - float(j);
+        const Texel4 *a = &texels_[std::size_t(place.face) * std::size_t(block_) + std::size_t(j * (width_ + 2) + i)],
+                     *b = a + width_ + 2;
+        const auto upper = a[0].v + (a[1].v - a[0].v) * fx, lower = b[0].v + (b[1].v - b[0].v) * fx;
+        return {upper + (lower - upper) * fy};
+    }
     /// Bilinear value in a direction (any length but 0).
-    Vec3f sample(const Vec3f& d) const;
-    /// Bilinear value where a lat-long picture in the default convention has (u, v).
-    Vec3f sample_latlong(float u, float v) const;
-    /// Bilinear value on a cube's face at (u, v).
-    Vec3f sample_face(int face, float u, float v) const;
+    Vec3f sample(const Vec3f& d) const { return at(place(d)).rgb(); }
+
+    /// Replaces every texel by `change(texel)`.
+    template <typename Change>
+    void transform(const Change& change) {
+        for (Texel4& t : texels_) t = change(t);
+    }
 
   private:
     void make_cube(const Cubemap& cube, int most);
     void make_latlong(ImageView<const float> image, int most);
-    Vec3f bilinear(const float* origin, int stride, float x, float y) const;
 
     bool cube_ = false, turned_ = false;
     int width_ = 0, height_ = 0;  ///< without the border
+    int block_ = 0;               ///< texels of a face with its border
     Mat3 turn_;
-    std::vector<float> texels_;  ///< RGB, (width_ + 2) x (height_ + 2), six times for a cube
+    std::vector<Texel4> texels_;  ///< (width_ + 2) x (height_ + 2), six times for a cube
 };
 
 }  // namespace domelight

@@ -3,7 +3,6 @@
 #include "domelight/image.h"
 #include "domelight/vec.h"
 
-#include <array>
 #include <cstdint>
 
 namespace domelight {
@@ -22,21 +21,6 @@ Vec3f tonemap(const Vec3f& rgb, Tonemap method);
 
 /// The sRGB transfer function (IEC 61966-2-1) of 0..1.
 float srgb_encode(float linear);
-
-/// Exposure, tone map and transfer function in one, by tables: within one 255th of srgb_encode(tonemap(...)), at a
-/// tenth of the cost.
-class Display {
-  public:
-    Display(Tonemap method, float exposure) : method_(method), exposure_(exposure) {}
-    float exposure() const { return exposure_; }
-    /// Radiance to sRGB, 0..1.
-    Vec3f encoded(const Vec3f& radiance) const;
-    std::array<std::uint8_t, 3> rgb8(const Vec3f& radiance) const;
-
-  private:
-    Tonemap method_;
-    float exposure_;
-};
 
 /// 0..1 to 0..255, rounded.
 inline std::uint8_t to_byte(float v) {

@@ -2,6 +2,7 @@
 
 #include "domelight/projection.h"
 
+#include "preview/agx_display.h"
 #include "test.h"
 
 #include <cmath>
@@ -10,19 +11,25 @@
 
 using namespace domelight;
 
-TEST_CASE("Display: within one code of the plain tone map and transfer function") {
+TEST_CASE("AgxDisplay: within one code of the plain tone map and transfer function, whatever it is given") {
     std::uint32_t state = 1;
     const auto random = [&] { return float((state = state * 1664525u + 1013904223u) >> 8) / float(1 << 24); };
-    for (Tonemap method : {Tonemap::none, Tonemap::neutral, Tonemap::agx, Tonemap::agx_punchy}) {
-        const Display display(method, 0.5f);
-        for (int i = 0; i < 20000; ++i) {
-            const Vec3f v{std::exp2(random() * 24 - 14), std::exp2(random() * 24 - 14), std::exp2(random() * 24 - 14)};
-            const Vec3f exact = tonemap(v * 0.5f, method);
-            const auto code = display.rgb8(v);
-            REQUIRE(std::abs(code[0] - to_byte(srgb_encode(exact.x))) <= 1);
-            REQUIRE(std::abs(code[1] - to_byte(srgb_encode(exact.y))) <= 1);
-            REQUIRE(std::abs(code[2] - to_byte(srgb_encode(exact.z))) <= 1);
-        }
+    const auto check = [](const AgxDisplay& display, const Vec3f& v) {
+        const Vec3f exact = tonemap(v * display.exposure(), Tonemap::agx_punchy);
+        const std::uint32_t packed = display.code(display.primaries(Texel4::of(v.x, v.y, v.z)));
+        const int code[] = {int(packed & 255), int(packed >> 8 & 255), int(packed >> 16)};
+        REQUIRE(std::abs(code[0] - to_byte(srgb_encode(exact.x))) <= 1);
+        REQUIRE(std::abs(code[1] - to_byte(srgb_encode(exact.y))) <= 1);
+        REQUIRE(std::abs(code[2] - to_byte(srgb_encode(exact.z))) <= 1);
+    };
+    for (const float exposure : {0.5f, 8.0f, 1e-4f}) {
+        const AgxDisplay display(exposure);
+        for (int i = 0; i < 20000; ++i)
+            check(display, {std::exp2(random() * 24 - 14) / exposure, std::exp2(random() * 24 - 14) / exposure,
+                            std::exp2(random() * 24 - 14) / exposure});
+        const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+        for (const Vec3f& v : {Vec3f{nan, 1, 1}, Vec3f{inf, 0, inf}, Vec3f{-1, -inf, 0}, Vec3f{0, 0, 0}})
+            check(display, v);
     }
 }
 
