@@ -2,8 +2,6 @@
 // heuristic (Veach 1997, 9.2.2); the BRDF's ray goes on where light may bounce. Samples of a tile go through each step together, so that the
 // environment is drawn from in batches.
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -12,12 +10,13 @@
 
 #include "domelight/parallel.h"
 #include "domelight/sequences.h"
+#include "render/camera.h"
+#include "render/film.h"
 #include "render/surface.h"
 
 namespace domelight {
 namespace {
 
-constexpr int k_tile = 16;          ///< pixels a tile is wide and high
 constexpr int k_batch = 1024;       ///< samples that go through the steps together
 constexpr int k_most_passages = 64; ///< transparent surfaces a ray passes at most
 constexpr int k_roulette_from = 3;  ///< bounces before paths may end by chance
@@ -25,37 +24,9 @@ constexpr int k_roulette_from = 3;  ///< bounces before paths may end by chance
 Vec3f product(const Vec3f& a, const Vec3f& b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
-double luminance(const Vec3d& c) {
-    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
-}
 float largest(const Vec3f& c) {
     return std::max({c.x, c.y, c.z});
 }
-
-/// What a pixel's samples add up to.
-struct PixelSums {
-    Vec3d radiance, squares;
-    Vec3f direct, indirect, diffuse, specular, albedo, normal;
-    double depth = 0;
-    float covered = 0;
-    float object = 0;
-    int count = 0;
-
-    /// Standard error of L / (1 + L), by its slope.
-    double noise() const {
-        if (count < 2) return 1e9;
-        const double n = count, mean = luminance(radiance) / n;
-        const Vec3d variance = variance_of_mean();
-        const double error = std::sqrt(std::max(0.0, luminance(variance)));
-        return error / ((1 + mean) * (1 + mean));
-    }
-    Vec3d variance_of_mean() const {
-        if (count < 2) return {};
-        const double n = count;
-        const auto of = [&](double square, double sum) { return std::max(0.0, (square - sum * sum / n) / (n * (n - 1))); };
-        return {of(squares.x, radiance.x), of(squares.y, radiance.y), of(squares.z, radiance.z)};
-    }
-};
 
 /// One sample of a pixel on its way.
 struct Path {
@@ -120,11 +91,8 @@ struct LightBatch {
 class Tracer {
   public:
     Tracer(const RayScene& scene, const EnvironmentSampler& sampler, const RenderOptions& options)
-        : rays_(scene.impl()), scene_(scene.scene()), sampler_(sampler), options_(options), passages_(has_passages(scene_)) {
-        const float tangent = std::tan(0.5f * options.camera.fov_y);
-        half_height_ = options.camera.orthographic ? options.camera.half_height : tangent;
-        half_width_ = half_height_ * float(options.width) / float(options.height);
-    }
+        : rays_(scene.impl()), scene_(scene.scene()), sampler_(sampler), options_(options), camera_(options.camera, options.width, options.height),
+          passages_(has_passages(scene_)) {}
 
     /// Adds to the sums of a tile, `count[i]` samples to pixel i of it. Returns the rays traced.
     std::int64_t trace(int x0, int y0, int columns, std::span<const int> count, std::span<PixelSums> sums) const {
@@ -155,12 +123,7 @@ class Tracer {
         p.pixel = pixel;
         p.index = index;
         p.key = derive_key(options_.seed, std::uint64_t(y) * std::uint64_t(options_.width) + std::uint64_t(x));
-        const UnitPoint jitter = p.point(k_pixel_pair);
-        const float u = (2 * (float(x) + unit_float(jitter.x)) / float(options_.width) - 1) * half_width_,
-                    v = (1 - 2 * (float(y) + unit_float(jitter.y)) / float(options_.height)) * half_height_;
-        const Affine& m = options_.camera.to_world;
-        if (options_.camera.orthographic) p.ray = {m.point({u, v, 0}), normalize(m.vector({0, 0, -1})), 0};
-        else p.ray = {m.translation, normalize(m.vector({u, v, -1})), 0};
+        p.ray = camera_.through(x, y, p.point(k_pixel_pair));
     }
 
     /// The nearest surface that does not let the ray through.
@@ -373,75 +336,12 @@ class Tracer {
     const Scene& scene_;
     const EnvironmentSampler& sampler_;
     const RenderOptions& options_;
+    CameraRays camera_;
     bool passages_;
-    float half_width_ = 1, half_height_ = 1;
 };
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// The picture while samples are added to it, tile by tile.
-class Film {
-  public:
-    Film(int width, int height) : width_(width), height_(height), across_((width + k_tile - 1) / k_tile), down_((height + k_tile - 1) / k_tile) {
-        tiles_.resize(std::size_t(across_) * down_);
-        for (int t = 0; t < int(tiles_.size()); ++t) tiles_[t].resize(std::size_t(columns(t)) * rows(t));
-    }
-    int tiles() const { return int(tiles_.size()); }
-    int x0(int t) const { return t % across_ * k_tile; }
-    int y0(int t) const { return t / across_ * k_tile; }
-    int columns(int t) const { return std::min(k_tile, width_ - x0(t)); }
-    int rows(int t) const { return std::min(k_tile, height_ - y0(t)); }
-    std::vector<PixelSums>& tile(int t) { return tiles_[t]; }
-    const PixelSums& at(int x, int y) const {
-        const int t = y / k_tile * across_ + x / k_tile;
-        return tiles_[t][std::size_t(y % k_tile) * columns(t) + x % k_tile];
-    }
-    /// Standard error where it counts: the largest of a pixel's and its neighbours', for a pixel's own guess may be lucky.
-    double noise_about(int x, int y) const {
-        double most = 0;
-        for (int j = std::max(0, y - 1); j <= std::min(height_ - 1, y + 1); ++j)
-            for (int i = std::max(0, x - 1); i <= std::min(width_ - 1, x + 1); ++i) most = std::max(most, at(i, j).noise());
-        return most;
-    }
-
-  private:
-    int width_, height_, across_, down_;
-    std::vector<std::vector<PixelSums>> tiles_;
-};
-
-RenderResult develop(const Film& film, int width, int height) {
-    RenderResult out;
-    for (ImageF* image : {&out.radiance, &out.direct, &out.indirect, &out.diffuse, &out.specular, &out.albedo, &out.normal, &out.variance})
-        *image = ImageF(width, height, 3);
-    for (ImageF* image : {&out.opacity, &out.depth, &out.object, &out.samples}) *image = ImageF(width, height, 1);
-    double noise = 0;
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const PixelSums& s = film.at(x, y);
-            const double n = std::max(1, s.count);
-            const auto put = [&](ImageF& image, const Vec3d& v) {
-                float* p = image.at(x, y);
-                p[0] = float(v.x), p[1] = float(v.y), p[2] = float(v.z);
-            };
-            put(out.radiance, s.radiance / n);
-            put(out.variance, s.variance_of_mean());
-            put(out.direct, Vec3d(s.direct) / n);
-            put(out.indirect, Vec3d(s.indirect) / n);
-            put(out.diffuse, Vec3d(s.diffuse) / n);
-            put(out.specular, Vec3d(s.specular) / n);
-            put(out.albedo, Vec3d(s.albedo) / n);
-            put(out.normal, Vec3d(s.normal) / n);
-            *out.opacity.at(x, y) = float(s.covered / n);
-            *out.depth.at(x, y) = s.covered > 0 ? float(s.depth / s.covered) : std::numeric_limits<float>::infinity();
-            *out.object.at(x, y) = s.object;
-            *out.samples.at(x, y) = float(s.count);
-            noise += s.count > 1 ? s.noise() * s.noise() : 0;
-            out.sample_count = std::max(out.sample_count, s.count);
-        }
-    out.noise = std::sqrt(noise / (double(width) * height));
-    return out;
 }
 
 }  // namespace
@@ -455,8 +355,7 @@ EnvironmentSamplerOptions reference_sampler_options(LightStrategy strategy, int 
 }
 
 Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSampler& sampler, const RenderOptions& o) {
-    if (o.width < 1 || o.height < 1 || std::int64_t(o.width) * o.height > (std::int64_t(1) << 28))
-        return Error{fmt::format("{} x {} is no size of a picture", o.width, o.height), "", "1 x 1 to 16384 x 16384"};
+    if (auto fine = check_size(o.width, o.height); !fine) return fine.error();
     if (o.strategy == LightStrategy::environment && sampler.compensation() > 0)
         return Error{"a sampler with MIS compensation leaves out light that this strategy has no other way to find", "",
                      "Build it with reference_sampler_options(strategy)."};
@@ -521,26 +420,6 @@ Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSa
     out.rays = rays;
     out.seconds = seconds_since(start);
     return out;
-}
-
-Camera look_at(const Vec3f& eye, const Vec3f& target, float fov_y) {
-    Vec3f back = eye - target;
-    back = dot(back, back) > 0 ? normalize(back) : Vec3f{0, 0, 1};
-    Vec3f right = cross(Vec3f{0, 1, 0}, back);
-    right = dot(right, right) > 1e-12f ? normalize(right) : Vec3f{1, 0, 0};
-    Camera camera;
-    camera.to_world = {right, cross(back, right), back, eye};
-    camera.fov_y = fov_y;
-    return camera;
-}
-
-Camera default_camera(const Scene& scene, float aspect) {
-    if (!scene.cameras.empty()) return scene.cameras.front();
-    const auto [low, high] = scene.bounds();
-    const Vec3f middle = (low + high) * 0.5f;
-    const float radius = 0.5f * std::max(1e-6f, length(high - low)), fov_y = float(35 * k_pi / 180);
-    const float half = std::min(0.5f * fov_y, std::atan(std::tan(0.5f * fov_y) * aspect));
-    return look_at(middle + normalize(Vec3f{0.25f, 0.2f, 1}) * (radius / std::sin(half)), middle, fov_y);
 }
 
 }  // namespace domelight

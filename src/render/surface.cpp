@@ -181,6 +181,13 @@ float opacity_at(const Scene& scene, const Hit& hit) {
     return opacity_of(m, base_color(scene, m, Corners(mesh, hit)).a);
 }
 
+float occlusion_at(const Scene& scene, const Hit& hit) {
+    const Mesh& mesh = scene.meshes[scene.instances[hit.instance].mesh];
+    const Material& m = scene.materials[mesh.material];
+    // glTF 2.0, 3.9.3: 1 + strength (texel - 1).
+    return 1 + m.occlusion_strength * (look_up(scene, m.occlusion_texture, Corners(mesh, hit), false).rgb.x - 1);
+}
+
 bool has_passages(const Scene& scene) {
     return std::ranges::any_of(scene.materials, [](const Material& m) { return m.alpha_mode != Material::AlphaMode::opaque; });
 }

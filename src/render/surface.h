@@ -25,6 +25,8 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& origin,
 
 /// A surface's opacity where a ray met it, [0, 1].
 float opacity_at(const Scene& scene, const Hit& hit);
+/// What the occlusion texture says there, [0, 1]; 1 without one.
+float occlusion_at(const Scene& scene, const Hit& hit);
 /// Whether any material of the scene can let rays through, so that occlusion needs more than a yes or no.
 bool has_passages(const Scene& scene);
 

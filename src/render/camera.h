@@ -1,0 +1,22 @@
+#pragma once
+
+#include "domelight/render.h"
+#include "domelight/unit_point.h"
+#include "render/ray_scene.h"
+
+namespace domelight {
+
+/// A camera's rays through the pixels of a picture.
+class CameraRays {
+  public:
+    CameraRays(const Camera& camera, int width, int height);
+    /// Through a point of pixel (x, y).
+    Ray through(int x, int y, UnitPoint within) const;
+
+  private:
+    Camera camera_;
+    int width_, height_;
+    float half_width_, half_height_;
+};
+
+}  // namespace domelight
