@@ -24,6 +24,7 @@ constexpr Command k_commands[] = {
     {"bake", "an environment to specular levels, irradiance, harmonics and BRDF table, as an engine loads them",
      run_bake},
     {"info", "what an environment, a texture or a bake holds", run_info},
+    {"render", "a scene under an environment: the truth by path tracing, or what an engine draws", run_render},
     {"sky", "a physically based sky, or the labelled six-axis environment", run_sky},
 };
 

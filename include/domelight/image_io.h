@@ -33,6 +33,15 @@ struct ExrWriteOptions {
 Result<void> write_exr(const std::filesystem::path& file, ImageView<const float> pixels, const ExrWriteOptions& options = {});
 Result<void> write_exr(const std::filesystem::path& file, RowSource& rows, const ExrWriteOptions& options = {});
 
+/// A layer of an image of several.
+struct ExrLayer {
+    std::string name;              ///< before the channels' names: "direct" gives direct.R; empty for the picture itself
+    ImageView<const float> pixels; ///< 1 to 4 channels: Y (or `channel`), or R G B A
+    std::string channel = {};      ///< the name of a single one
+};
+/// OpenEXR scanline image of 32-bit floats with several layers of the same size. `options`: attributes.
+Result<void> write_exr_layers(const std::filesystem::path& file, std::span<const ExrLayer> layers, const ExrWriteOptions& options = {});
+
 /// 8-bit PNG, 1, 3 or 4 channels, sRGB.
 Result<void> write_png(const std::filesystem::path& file, ImageView<const std::uint8_t> pixels, int compression_level = 3);
 

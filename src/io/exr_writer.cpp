@@ -3,14 +3,13 @@
 #include "domelight/parallel.h"
 
 #include "codec/half.h"
+#include "io/exr_stream.h"
 #include "io/output_file.h"
 
-#include <Iex.h>
 #include <ImfChannelList.h>
 #include <ImfEnvmapAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
@@ -29,36 +28,6 @@ namespace {
 
 /// Rows handed to OpenEXR at a time: several chunks of most compressions, little memory.
 constexpr int k_block_rows = 64;
-
-/// OpenEXR's stream over our file. Its own stream loses what goes wrong on closing; ours keeps the error, and stops the
-/// writing by throwing.
-class Stream : public Imf::OStream {
-  public:
-    explicit Stream(OutputFile& file) : OStream("image"), file_(file) { buffer_.reserve(k_buffer_bytes); }
-
-    void write(const char bytes[], int count) override {
-        if (buffer_.size() + std::size_t(count) > k_buffer_bytes) flush();
-        if (std::size_t(count) > k_buffer_bytes)
-            file_.write(std::span(bytes, std::size_t(count)));
-        else
-            buffer_.insert(buffer_.end(), bytes, bytes + count);
-        if (file_.failed()) throw Iex::IoExc("write");
-    }
-    std::uint64_t tellp() override { return file_.position() + buffer_.size(); }
-    void seekp(std::uint64_t position) override {
-        flush();
-        file_.seek(position);
-    }
-    void flush() {
-        file_.write(std::span<const char>(buffer_));
-        buffer_.clear();
-    }
-
-  private:
-    static constexpr std::size_t k_buffer_bytes = std::size_t(1) << 20;
-    OutputFile& file_;
-    std::vector<char> buffer_;
-};
 
 constexpr std::array<std::pair<const char*, Imf::Compression>, 10> k_compressions{{
     {"none", Imf::NO_COMPRESSION},
@@ -161,7 +130,7 @@ class RowWriter {
 using NextRows = std::function<Result<ImageView<const float>>(int first, int count)>;
 
 /// May throw.
-Result<void> write_image(Stream& stream, int width, int height, int channels, const ExrWriteOptions& options,
+Result<void> write_image(ExrStream& stream, int width, int height, int channels, const ExrWriteOptions& options,
                          const NextRows& next) {
     auto header = make_header(width, height, channels, options);
     if (!header) return header.error();
@@ -182,7 +151,7 @@ Result<void> write_exr_rows(const std::filesystem::path& file, int width, int he
                             const ExrWriteOptions& options, const NextRows& next) {
     return write_file_atomically(file, [&](const std::filesystem::path& path) -> Result<void> {
         OutputFile out(path);
-        Stream stream(out);
+        ExrStream stream(out);
         Result<void> written;
         try {
             written = write_image(stream, width, height, channels, options, next);
