@@ -16,6 +16,7 @@
 #include "domelight/frame.h"
 #include "domelight/image.h"
 #include "domelight/image_io.h"
+#include "domelight/light_extraction.h"
 #include "domelight/low_discrepancy.h"
 #include "domelight/microfacet.h"
 #include "domelight/parallel.h"
