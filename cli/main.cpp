@@ -25,6 +25,7 @@ constexpr Command k_commands[] = {
      run_bake},
     {"info", "what an environment, a texture or a bake holds", run_info},
     {"render", "a scene under an environment: the truth by path tracing, or what an engine draws", run_render},
+    {"lights", "the sun and other small bright sources as lights, and the environment without them", run_lights},
     {"sky", "a physically based sky, or the labelled six-axis environment", run_sky},
 };
 

@@ -61,7 +61,7 @@ def named_files(value):
 
 
 def test_examples_in_every_help_run(folder):
-    for command in ["bake", "info", "sky"]:
+    for command in ["bake", "info", "lights", "sky"]:
         text = run(command, "--help", folder=folder).stdout
         assert text.startswith("Examples:\n"), f"{command} --help does not open with examples"
         examples = [line.strip() for line in text.split("\n\n")[0].splitlines()[1:]]
@@ -81,8 +81,8 @@ def test_version(folder):
 
 def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
     cases = [
-        (["nonsense"], "bake, info, sky"),
-        (["--nonsense"], "bake, info, sky"),
+        (["nonsense"], "bake, info, lights, sky"),
+        (["--nonsense"], "bake, info, lights, sky"),
         (["bake", "-o", "o", "--nonsense"], "--lobe"),
         (["bake"], "-o DIR"),
         (["bake", "-o", "o", "--lobe", "blinn"], "ggx, charlie, phong, phong-plain"),
@@ -122,6 +122,18 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["sky", "-o", "sky.tiff"], ".hdr, .exr, .png"),
         (["sky", "-o", "sky.hdr", "--turbidity", "50"], "1 to 10"),
         (["info", "a.hdr", "b.hdr"], "one at a time"),
+        (["lights", "studio.hdr"], "-o DIR"),
+        (["lights", "studio.hdr", "-o", "o", "--nonsense"], "--max-lights"),
+        (["lights", "studio.hdr", "-o", "o", "--format", "png"], "auto, hdr, exr"),
+        (["lights", "studio.hdr", "-o", "o", "--max-lights", "-1"], "from 0 to 1024"),
+        (["lights", "studio.hdr", "-o", "o", "--max-lights", "few"], "whole number"),
+        (["lights", "studio.hdr", "-o", "o", "--least-share", "2"], "from 0 to 1"),
+        (["lights", "studio.hdr", "-o", "o", "--least-share", "nan"], "from 0 to 1"),
+        (["lights", "studio.hdr", "-o", "o", "--least-contrast", "1"], "from 1.5"),
+        (["lights", "studio.hdr", "-o", "o", "--largest-diameter-deg", "90"], "to 30"),
+        (["lights", "studio.hdr", "-o", "o", "--lux-per-unit", "0"], "above 0"),
+        (["lights", "studio.hdr", "evening.hdr", "-o", "o"], "one at a time"),
+        (["lights", "studio.hdr", "-o", "o", "--latlong", "sideways"], "materialx"),
     ]
     for words, text in cases:
         result = run(*words, folder=folder, code=2)
@@ -136,7 +148,7 @@ def test_failures_exit_1_name_the_file_and_leave_nothing(folder):
     (folder / "text.exr").write_text("no picture at all")
     cases = [["missing.hdr"], ["broken.hdr"], ["text.exr"]]
     for words in cases:
-        for command in [["bake", *words, "-o", "out"], ["info", *words]]:
+        for command in [["bake", *words, "-o", "out"], ["info", *words], ["lights", *words, "-o", "out"]]:
             result = run(*command, folder=folder, code=1)
             assert result.stderr.startswith("error: " + words[0] + ": "), result.stderr
         assert not (folder / "out").exists(), words
@@ -145,6 +157,7 @@ def test_failures_exit_1_name_the_file_and_leave_nothing(folder):
 def test_output_that_is_a_file_is_refused(folder):
     (folder / "out").write_text("mine")
     run("bake", "studio.hdr", "-o", "out", *SMALL, folder=folder, code=1)
+    run("lights", "studio.hdr", "-o", "out", folder=folder, code=1)
     assert (folder / "out").read_text() == "mine"
 
 
@@ -436,6 +449,88 @@ def test_bad_texels_are_reported(folder):
     result = run("bake", "bad.exr", "-o", "out", *SMALL, folder=folder)
     assert "repaired" in result.stderr
     assert manifest_of(folder / "out")["source"]["repaired"]["negative"] == 1
+
+
+# --- lights ---
+
+
+def lights_of(folder):
+    return json.loads((Path(folder) / "lights.json").read_text())
+
+
+def near(a, b, tolerance):
+    return all(abs(x - y) <= tolerance for x, y in zip(a, b))
+
+
+def test_lights_writes_lights_and_remainder_that_add_up(folder):
+    run("sky", "-o", "sky.exr", "--exr", "float", "--height", "256", "--sun-elevation-deg", "30", "--sun-azimuth-deg", "30", folder=folder)
+    said = json.loads(run("lights", "sky.exr", "-o", "out", "--json", folder=folder).stdout)
+    found = lights_of(folder / "out")
+    assert said == found
+    files = files_of(folder / "out")
+    assert set(files) == {"lights.json", "lights.gltf", "remainder.exr", "preview.png"}
+    assert found["remainder"]["sha256"] == files["remainder.exr"] and found["source"]["sha256"] == hashlib.sha256((folder / "sky.exr").read_bytes()).hexdigest()
+    sun, = found["lights"]
+    assert abs(sun["azimuth_deg"] - 30) < 0.15 and abs(sun["elevation_deg"] - 30) < 0.15 and sun["share"] > 0.4  # texels of 0.7 degrees
+    # info reads the remainder for itself: mean radiance times 4 pi is the power, of its bilinear reconstruction.
+    before = json.loads(run("info", "sky.exr", "--json", folder=folder).stdout)["mean_radiance"]
+    after = json.loads(run("info", "out/remainder.exr", "--json", folder=folder).stdout)
+    assert all(light["share"] < 0.1 for light in after["lights"]), "what is left is the glow around"
+    for c in range(3):
+        power = 4 * 3.14159265358979 * before[c]
+        assert abs(4 * 3.14159265358979 * after["mean_radiance"][c] + sun["irradiance"][c] - power) < 1e-3 * power
+        parts = found["power"]["lights"][c] + found["power"]["remainder"][c]
+        assert abs(parts - found["power"]["original"][c]) <= 1e-5 * found["power"]["original"][c]
+    again = run("lights", "out/remainder.exr", "-o", "again", folder=folder)
+    assert "no light stands out" in again.stdout
+
+
+def test_lights_gltf_points_from_the_sun(folder):
+    run("sky", "-o", "sky.exr", "--exr", "float", "--height", "128", "--sun-azimuth-deg", "-70", folder=folder)
+    run("lights", "sky.exr", "-o", "out", "--lux-per-unit", "179", folder=folder)
+    sun, = lights_of(folder / "out")["lights"]
+    gltf = json.loads((folder / "out/lights.gltf").read_text())
+    light, = gltf["extensions"]["KHR_lights_punctual"]["lights"]
+    node, = gltf["nodes"]
+    x, y, z, w = node["rotation"]
+    travels = [-2 * (x * z + w * y), -2 * (y * z - w * x), -(1 - 2 * (x * x + y * y))]  # the rotation's third column, negated
+    assert near(travels, [-c for c in sun["direction"]], 1e-6)
+    assert light["type"] == "directional" and max(light["color"]) == 1
+    assert all(abs(light["intensity"] * light["color"][c] - 179 * sun["irradiance"][c]) < 1e-4 * light["intensity"] for c in range(3))
+    assert gltf["asset"]["extras"]["lux_per_unit"] == 179
+
+
+def test_lights_directions_are_the_worlds(folder):
+    run("sky", "-o", "sky.exr", "--exr", "float", "--height", "128", "--sun-azimuth-deg", "30", "--sun-elevation-deg", "40", folder=folder)
+    plain, = json.loads(run("lights", "sky.exr", "-o", "plain", "--no-preview", "--json", folder=folder).stdout)["lights"]
+    turned, = json.loads(run("lights", "sky.exr", "-o", "turned", "--no-preview", "--rotate-y-deg", "90", "--json", folder=folder).stdout)["lights"]
+    x, y, z = plain["direction"]
+    assert near(turned["direction"], [-z, y, x], 1e-9)
+    usd, = json.loads(run("lights", "sky.exr", "-o", "usd", "--no-preview", "--latlong", "usd", "--json", folder=folder).stdout)["lights"]
+    assert near(usd["direction"], [-z, y, x], 1e-9)  # centre +Z, right -X: what the default shows at +X and +Z
+    brighter, = json.loads(run("lights", "sky.exr", "-o", "brighter", "--no-preview", "--exposure", "1", "--json", folder=folder).stdout)["lights"]
+    assert near([2 * c for c in plain["irradiance"]], brighter["irradiance"], 1e-6 * max(brighter["irradiance"]))
+    # The remainder stays as the source is, and no texel away from the light changes.
+    files = [files_of(folder / name)["remainder.exr"] for name in ("plain", "turned", "usd")]
+    assert files[0] == files[1] == files[2]
+
+
+def test_lights_takes_a_cube_and_is_the_same_on_any_number_of_threads(folder):
+    run("bake", "studio.hdr", "-o", "cube", "--size", "64", "--levels", "1", "--irradiance-size", "4", "--brdf-size", "16", "--no-preview",
+        "--encoding", "rgba32f", folder=folder)
+    found = json.loads(run("lights", "cube/specular.ktx2", "-o", "out", "--threads", "1", "--json", folder=folder).stdout)
+    assert (found["remainder"]["width"], found["remainder"]["height"]) == (256, 128) and found["source"]["projection"] == "cube"
+    run("lights", "cube/specular.ktx2", "-o", "more", "--threads", "5", folder=folder)
+    assert files_of(folder / "out") == files_of(folder / "more")
+
+
+def test_lights_without_a_light(folder):
+    run("sky", "-o", "grey.hdr", "--no-sun-disc", "--height", "64", folder=folder)
+    result = run("lights", "grey.hdr", "-o", "out", folder=folder)
+    assert "no light stands out" in result.stdout
+    assert lights_of(folder / "out")["lights"] == [] and "nodes" not in json.loads((folder / "out/lights.gltf").read_text())
+    run("sky", "-o", "coarse.hdr", "--height", "16", folder=folder)
+    assert "too coarse" in run("lights", "coarse.hdr", "-o", "coarse", folder=folder).stderr
 
 
 def make_exr(width, height, special):
