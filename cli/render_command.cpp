@@ -9,7 +9,6 @@
 #include "preview/tonemap.h"
 
 #include <fmt/core.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -183,7 +182,7 @@ void print_result(const RenderWords& w, const Scene& scene, const RenderResult& 
         json["warnings"] = scene.warnings;
         fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     } else if (!w.common.quiet) {
-        fmt::print("{}: {} x {}, {} triangles, {} samples a pixel at most, {:.2f} s", fmt::join(w.outputs, ", "), o.width, o.height,
+        fmt::print("{}: {} x {}, {} triangles, {} samples a pixel at most, {:.2f} s", join(w.outputs, ", "), o.width, o.height,
                    scene.triangle_count(), r.sample_count, r.seconds);
         if (reference) fmt::print(", noise {:.4f} of L/(1+L), {:.2f} million rays a second", r.noise, double(r.rays) / r.seconds * 1e-6);
         fmt::print("\n");
