@@ -373,25 +373,31 @@ void Sheet::ball_panel(int x, int y, int size, const PreviewMap& map, bool chrom
         ball = std::make_shared<const Ball>(make_ball(map, size, chrome, samples, in_.threads));
         balls_.push_back(ball);
     }
-    panels_.push_back(
-        {{x, y, size, size}, [this, x, y, ball, &map](ImageView<std::uint8_t> image, int row) {
-             const std::uint32_t per_pixel = std::uint32_t(ball->samples * ball->samples);
-             const std::size_t first = std::size_t(row) * std::size_t(ball->size);
-             const MapPlace* place = ball->places.data() + first * std::size_t(per_pixel);
-             for (int i = 0; i < ball->size; ++i, place += per_pixel) {
-                 const float opacity = ball->opacity[first + std::size_t(i)];
-                 if (opacity == 0) continue;
-                 // The mean is of display values: a sun's edge stays smooth. Red and blue are added
-                 // up in one number.
-                 std::uint32_t red_blue = 0, green = 0;
-                 for (std::uint32_t k = 0; k < per_pixel; ++k) {
-                     const std::uint32_t code = look_.code(map.at(place[k]));
-                     red_blue += code & 0xff00ff, green += code >> 8 & 0xff;
-                 }
-                 const auto mean = [&](std::uint32_t sum) { return std::uint8_t((sum + per_pixel / 2) / per_pixel); };
-                 blend(image, x + i, y + row, {mean(red_blue & 0xffff), mean(green), mean(red_blue >> 16)}, opacity);
-             }
-         }});
+    panels_.push_back({{x, y, size, size}, [this, x, y, ball, &map](ImageView<std::uint8_t> image, int row) {
+                           const std::uint32_t per_pixel = std::uint32_t(ball->samples * ball->samples);
+                           const std::size_t first = std::size_t(row) * std::size_t(ball->size);
+                           const MapPlace* place = ball->places.data() + first * std::size_t(per_pixel);
+                           for (int i = 0; i < ball->size; ++i, place += per_pixel) {
+                               const float opacity = ball->opacity[first + std::size_t(i)];
+                               if (opacity == 0) continue;
+                               // The mean is of display values: a sun's edge stays smooth. Red and blue are added
+                               // up in one number.
+                               std::uint32_t red_blue = 0, green = 0;
+                               for (std::uint32_t k = 0; k < per_pixel; ++k) {
+                                   const std::uint32_t code = look_.code(map.at(place[k]));
+                                   red_blue += code & 0xff00ff, green += code >> 8 & 0xff;
+                               }
+                               const auto mean = [&](std::uint32_t sum) {
+                                   return std::uint8_t((sum + per_pixel / 2) / per_pixel);
+                               };
+                               const Colour8 colour{mean(red_blue & 0xffff), mean(green), mean(red_blue >> 16)};
+                               std::uint8_t* pixel = image.at(x + i, y + row);
+                               if (opacity < 1)
+                                   blend(image, x + i, y + row, colour, opacity);
+                               else
+                                   pixel[0] = colour.r, pixel[1] = colour.g, pixel[2] = colour.b;
+                           }
+                       }});
 }
 
 void Sheet::brdf_panel(int x, int y, int size) {

@@ -47,22 +47,6 @@ void shrink(ImageView<const float> image, int width, int height, Texel4* block) 
 
 }  // namespace
 
-MapPlace cube_place(const Vec3f& d) {
-    const float ax = std::abs(d.x), ay = std::abs(d.y), az = std::abs(d.z);
-    float s, t, most;
-    int face;
-    // OpenGL 4.6, table 8.19.
-    if (ax >= ay && ax >= az) {
-        face = d.x < 0, most = ax, s = d.x < 0 ? d.z : -d.z, t = -d.y;
-    } else if (ay >= az) {
-        face = 2 + (d.y < 0), most = ay, s = d.x, t = d.y < 0 ? -d.z : d.z;
-    } else {
-        face = 4 + (d.z < 0), most = az, s = d.z < 0 ? -d.x : d.x, t = -d.y;
-    }
-    const float scale = 0.5f / most;
-    return {face, s * scale + 0.5f, t * scale + 0.5f};
-}
-
 MapPlace latlong_place(const Vec3f& d) {
     const UV uv = latlong_uv(Vec3d(d));
     return {0, float(uv.u), float(uv.v)};

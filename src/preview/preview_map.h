@@ -6,6 +6,7 @@
 
 #include "preview/texel4.h"
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -19,7 +20,22 @@ struct MapPlace {
 };
 
 /// Where a cube has a direction (any length but 0). In float: to about 1e-7 of a face.
-MapPlace cube_place(const Vec3f& d);
+inline MapPlace cube_place(const Vec3f& d) {
+    const float ax = std::abs(d.x), ay = std::abs(d.y), az = std::abs(d.z);
+    float s, t, most;
+    int face;
+    // OpenGL 4.6, table 8.19.
+    if (ax >= ay && ax >= az) {
+        face = d.x < 0, most = ax, s = d.x < 0 ? d.z : -d.z, t = -d.y;
+    } else if (ay >= az) {
+        face = 2 + (d.y < 0), most = ay, s = d.x, t = d.y < 0 ? -d.z : d.z;
+    } else {
+        face = 4 + (d.z < 0), most = az, s = d.z < 0 ? -d.x : d.x, t = -d.y;
+    }
+    const float scale = 0.5f / most;
+    return {face, s * scale + 0.5f, t * scale + 0.5f};
+}
+
 MapPlace latlong_place(const Vec3f& d);
 
 /// A map made small and quick to look up: faces of at most `most` texels (lat-long: 2 most rows), averaged over boxes,
