@@ -64,11 +64,11 @@ void add_quartet(BrightPoints& points, const BrightPoints& of, int from, int to)
 
 }  // namespace
 
-void BrightSplit::take_from(ImageView<float> rows) {
+void BrightSplit::take_from(ImageView<float> rows, std::span<const simd::Summary> summaries) {
     for (int y = 0; y < rows.height; ++y, ++next_row_) {
         const double solid_angle = latlong_solid_angle(next_row_, width_, height_);
         float* row = rows.row(y);
-        const simd::Summary summary = simd::summarize(row, 3 * width_);
+        const simd::Summary& summary = summaries[std::size_t(y)];
         // The row's own dark half counts too, so that the first rows do not throw out an ordinary sky.
         double row_sum = summary.sum / 3;
         const double mean = (sum_ + row_sum * solid_angle) / (weight_ + width_ * solid_angle);

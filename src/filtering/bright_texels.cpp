@@ -22,11 +22,11 @@ BrightTexels::BrightTexels(int width, int height, int most) : width_(width), hei
     heap_.reserve(most + 1);
 }
 
-void BrightTexels::add_rows(ImageView<const float> rows) {
+void BrightTexels::add_rows(ImageView<const float> rows, std::span<const simd::Summary> summaries) {
     for (int y = 0; y < rows.height; ++y, ++next_row_) {
         const float* row = rows.row(y);
         const double solid_angle = latlong_solid_angle(next_row_, width_, height_);
-        const simd::Summary summary = simd::summarize(row, 3 * width_);
+        const simd::Summary& summary = summaries[std::size_t(y)];
         sum_ += summary.sum / 3 * solid_angle;
         // What is too weak for the rows so far is too weak for all of them. (Half, for the mean that points() will be
         // given: of the reconstruction.)

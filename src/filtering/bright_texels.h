@@ -3,8 +3,10 @@
 #include "domelight/image.h"
 #include "domelight/vec.h"
 
+#include "simd/row_kernels.h"
 #include "simd/zonal_sum.h"
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -40,7 +42,8 @@ class BrightTexels {
   public:
     BrightTexels(int width, int height, int most = 1024);
 
-    void add_rows(ImageView<const float> rows);
+    /// The next rows, with simd::summarize of each.
+    void add_rows(ImageView<const float> rows, std::span<const simd::Summary> summaries);
     /// The texels with more than k_least_share of the power of all, each as the nodes of a Gauss-Legendre rule over its
     /// tent, fine enough for degrees around `band_limit`. `mean`: mean radiance.
     BrightPoints points(const Vec3d& mean, int band_limit) const;

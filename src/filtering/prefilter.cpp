@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "domelight/area_resample.h"
+#include "domelight/parallel.h"
 #include "filtering/bright_texels.h"
 #include "filtering/cube_analysis.h"
 #include "filtering/filter_plan.h"
@@ -139,13 +140,17 @@ Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) 
     auto mirrors = make_mirrors(options, width, height);
 
     ImageF rows(width, std::min(k_chunk_rows, height), 3);
+    std::vector<simd::Summary> summaries(k_chunk_rows);
     for (int y = 0; y < height; y += k_chunk_rows) {
         const auto chunk = rows.view().rows(0, std::min(k_chunk_rows, height - y));
         if (auto read = source.read(chunk); !read) return read.error();
         for (auto& mirror : mirrors)
             if (mirror) mirror->add_rows(chunk);
-        bright.add_rows(chunk);
-        if (plan.split) split.take_from(chunk);
+        parallel_ranges(chunk.height, 8, options.threads, [&](int begin, int end) {
+            for (int k = begin; k < end; ++k) summaries[std::size_t(k)] = simd::summarize(chunk.row(k), 3 * width);
+        });
+        bright.add_rows(chunk, summaries);
+        if (plan.split) split.take_from(chunk, summaries);
         analysis.add_rows(chunk);
         if (options.progress && !options.progress("read", double(y + chunk.height) / height)) return k_cancelled;
     }

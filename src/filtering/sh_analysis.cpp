@@ -1,5 +1,6 @@
 #include "filtering/sh_analysis.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "domelight/parallel.h"
@@ -35,21 +36,28 @@ void ShAnalysis::add_rows(ImageView<const float> rows) {
     assert(rows.width == width_ && rows.channels == 3 && next_row_ + rows.height <= height_);
     const int first = next_row_, end = next_row_ + rows.height;
     std::vector<int> touched;
+    std::vector<float*> fresh;  // batches to be cleared first
     for (int k = next_batch_ * k_batch; k < reduction_.count(); ++k) {
         const auto& row = reduction_.row(k);
         if (row.first >= end || row.end() <= first) continue;
         touched.push_back(k);
         AlignedArray<float>& batch = open_[k / k_batch];
-        if (!batch.size()) batch = AlignedArray<float>(std::size_t(k_batch) * 3 * width_);
+        if (batch.size()) continue;
+        if (spare_.empty()) spare_.emplace_back(std::size_t(k_batch) * 3 * width_, false);
+        batch = std::move(spare_.back());
+        spare_.pop_back();
+        fresh.push_back(batch.data());
     }
     // Columns are independent. A tile of the image's rows stays in cache while every ring row takes its share.
     constexpr int tile = 192;
     const int columns = 3 * width_;
     parallel_ranges(columns, tile, threads_, [&](int begin, int stop) {
+        for (float* batch : fresh)
+            for (int row = 0; row < k_batch; ++row) std::fill(batch + row * columns + begin, batch + row * columns + stop, 0.f);
         for (int k : touched) {
             const auto& row = reduction_.row(k);
             const int from = std::max(row.first, first), to = std::min(row.end(), end);
-            float* sum = open_.find(k / k_batch)->second.data() + std::size_t(k % k_batch) * columns;
+            float* sum = open_.find(k / k_batch)->second.data() + std::size_t(k % k_batch) * std::size_t(columns);
             simd::add_weighted_rows(rows.row(from - first) + begin, rows.stride, row.weights.data() + (from - row.first), to - from, sum + begin,
                                     stop - begin);
         }
@@ -74,7 +82,11 @@ void ShAnalysis::transform_finished(int next_row) {
         const auto batch = open_.find(index);
         if (batch != open_.end()) rings_.transform(batch->second.data(), 3 * std::ptrdiff_t(width_), 3, index, task % 3);
     });
-    for (int index = first; index < end; ++index) open_.erase(index);
+    for (int index = first; index < end; ++index)
+        if (const auto batch = open_.find(index); batch != open_.end()) {
+            spare_.push_back(std::move(batch->second));
+            open_.erase(batch);
+        }
     next_batch_ = end;
 }
 

@@ -31,7 +31,9 @@ class ShAnalysis {
     LatitudeReduction reduction_;
     int next_row_ = 0;
     int next_batch_ = 0;
-    std::map<int, AlignedArray<float>> open_;  ///< 32 ring rows that are transformed together, while image rows still add to them
+    /// 32 ring rows that are transformed together, while image rows still add to them; by number of the batch.
+    std::map<int, AlignedArray<float>> open_;
+    std::vector<AlignedArray<float>> spare_;  ///< memory of batches that are done
 };
 
 /// A texel of a lat-long image that is black elsewhere.

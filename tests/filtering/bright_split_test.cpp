@@ -29,10 +29,16 @@ ImageF lamps() {
     return image;
 }
 
+void take(BrightSplit& split, ImageView<float> rows) {
+    std::vector<simd::Summary> summaries;
+    for (int y = 0; y < rows.height; ++y) summaries.push_back(simd::summarize(rows.row(y), 3 * rows.width));
+    split.take_from(rows, summaries);
+}
+
 /// What the split took out, as tents.
 struct Taken {
     Taken() : image(lamps()), rest(lamps()), split(k_width, k_height) {
-        split.take_from(rest.view());
+        take(split, rest.view());
         for (int y = 0; y < k_height; ++y)
             for (int x = 0; x < k_width; ++x)
                 if (rest.at(x, y)[1] != image.at(x, y)[1]) texels.push_back({x, y});
@@ -68,7 +74,7 @@ TEST_CASE("bright_split: takes what outshines the rest, however the rows come") 
     CHECK(whole.texels.size() == 1 + 1 + 12 * 7 + 4 * 6);
     ImageF rows = lamps();
     BrightSplit split(k_width, k_height);
-    for (int y = 0; y < k_height; y += 7) split.take_from(rows.view().rows(y, std::min(7, k_height - y)));
+    for (int y = 0; y < k_height; y += 7) take(split, rows.view().rows(y, std::min(7, k_height - y)));
     CHECK(std::ranges::equal(rows.pixels(), whole.rest.pixels()));
     const Spectrum a = split.spectrum(8, 1), b = whole.split.spectrum(8, 1);
     for (int l = 0; l <= 8; ++l)
