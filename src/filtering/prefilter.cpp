@@ -78,20 +78,20 @@ class Synthesis {
 
     void synthesise(const FilterPlan::Group& group, std::span<const int> levels) {
         std::vector<ZonalKernel> kernels;
-        std::vector<std::vector<double>> factors;
         bool residual = false;
         for (const int level : levels) {
             kernels.push_back(kernel(level));
-            factors.push_back(kernels.back().coefficients(group.band_limit));
             residual |= leaves_residual(kernels.back());
         }
+        std::vector<std::vector<double>> factors(levels.size());
+        parallel_for(int(levels.size()), options_.threads, [&](int i) { factors[i] = kernels[i].coefficients(group.band_limit); });
         const bool split = group.narrow && narrow_;
         const auto grids = sh_synthesis(split ? *narrow_ : spectrum_, factors, group.grid, options_.threads);
         BrightPoints points;
         std::unique_ptr<ResidualKernels> tables;
         if (residual) {
             points = bright_(group.band_limit);
-            if (points.count() > 0) tables = std::make_unique<ResidualKernels>(kernels, factors);
+            if (points.count() > 0) tables = std::make_unique<ResidualKernels>(kernels, factors, options_.threads);
         }
         for (std::size_t i = 0; i < levels.size(); ++i) {
             LookupOptions lookup{double(group.band_limit) / group.grid.rings, options_.world_to_source, options_.threads, nullptr, {}, nullptr, {}};

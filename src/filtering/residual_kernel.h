@@ -12,7 +12,7 @@ namespace domelight {
 class ResidualKernels {
   public:
     /// factors[i]: coefficients k_0..k_L of kernels[i].
-    ResidualKernels(std::span<const ZonalKernel> kernels, std::span<const std::vector<double>> factors);
+    ResidualKernels(std::span<const ZonalKernel> kernels, std::span<const std::vector<double>> factors, int threads);
     simd::ZonalTable table(int i) const { return {values_.data() + std::size_t(i) * (steps_ + 2), steps_}; }
 
   private:
