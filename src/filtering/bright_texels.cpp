@@ -13,8 +13,8 @@ namespace domelight {
 namespace {
 
 /// A texel smaller than this part of 1 / L is a point to degrees around L: its tent's second moment, (tau L)^2 / 12, is
-/// below 1 %.
-constexpr double k_point_like = 0.3;
+/// below 3 %, of what is a thousandth itself.
+constexpr double k_point_like = 0.6;
 
 }  // namespace
 
