@@ -8,6 +8,8 @@ build_packages=(
     libpng-dev libjpeg62-turbo-dev
     libhwy-dev          # SIMD chosen at run time
     libzstd-dev         # KTX2 supercompression
+    libdraco-dev libmeshoptimizer-dev  # compressed glTF
+    libwebp-dev         # WebP textures
     libssl-dev          # SHA-256 (libcrypto only)
     libembree-dev       # rays; brings oneTBB
     libfmt-dev nlohmann-json3-dev libcli11-dev
