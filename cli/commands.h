@@ -10,6 +10,7 @@ int run_bake(const std::vector<std::string>& words);
 int run_info(const std::vector<std::string>& words);
 int run_render(const std::vector<std::string>& words);
 int run_lights(const std::vector<std::string>& words);
+int run_sample(const std::vector<std::string>& words);
 int run_sky(const std::vector<std::string>& words);
 
 }  // namespace domelight::cli

@@ -6,11 +6,13 @@ Each function test_... gets a folder of its own, in which small environments lie
 
 import hashlib
 import json
+import math
 import os
 import re
 import resource
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -61,7 +63,7 @@ def named_files(value):
 
 
 def test_examples_in_every_help_run(folder):
-    for command in ["bake", "info", "lights", "sky"]:
+    for command in ["bake", "info", "lights", "sample", "sky"]:
         text = run(command, "--help", folder=folder).stdout
         assert text.startswith("Examples:\n"), f"{command} --help does not open with examples"
         examples = [line.strip() for line in text.split("\n\n")[0].splitlines()[1:]]
@@ -81,8 +83,8 @@ def test_version(folder):
 
 def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
     cases = [
-        (["nonsense"], "bake, info, lights, sky"),
-        (["--nonsense"], "bake, info, lights, sky"),
+        (["nonsense"], "bake, info, render, lights, sample, sky"),
+        (["--nonsense"], "bake, info, render, lights, sample, sky"),
         (["bake", "-o", "o", "--nonsense"], "--lobe"),
         (["bake"], "-o DIR"),
         (["bake", "-o", "o", "--lobe", "blinn"], "ggx, charlie, phong, phong-plain"),
@@ -134,6 +136,34 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["lights", "studio.hdr", "-o", "o", "--lux-per-unit", "0"], "above 0"),
         (["lights", "studio.hdr", "evening.hdr", "-o", "o"], "one at a time"),
         (["lights", "studio.hdr", "-o", "o", "--latlong", "sideways"], "materialx"),
+        (["sample", "--method", "magic"], "linear, walk, binary, guided, alias, hierarchical, bilinear, bilinear-plain"),
+        (["sample", "--weight", "area"], "radiant-power, grayscale"),
+        (["sample", "--sequence", "blue"], "random, stratified, hammersley, halton, sobol, r2"),
+        (["sample", "-n", "0"], "from 1 to"),
+        (["sample", "-n", "some"], "whole number"),
+        (["sample", "--seed", "-3"], "whole number"),
+        (["sample", "--uniform-share", "1.5"], "from 0 to 1"),
+        (["sample", "--uniform-share", "nan"], "from 0 to 1"),
+        (["sample", "-o", "o.txt"], ".csv, .json"),
+        (["sample", "--picture", "o.jpg"], ".png"),
+        (["sample", "--picture-width", "7"], "from 256 to 8192"),
+        (["sample", "--heat-measure", "uv"], "--heat"),
+        (["sample", "--tables-format", "exr"], "--tables"),
+        (["sample", "--explain", "0.5"], "0.25,0.5"),
+        (["sample", "--explain", "0.5,1"], "[0, 1)"),
+        (["sample", "--explain", "0.5,0.5", "--method", "alias"], "binary"),
+        (["sample", "--explain-picture", "o.png"], "--explain"),
+        (["sample", "--roughness", "0.5"], "--estimate"),
+        (["sample", "--plot", "o.png"], "--estimate"),
+        (["sample", "--estimate", "--brdf", "blinn"], "lambert, phong, ggx, charlie"),
+        (["sample", "--estimate", "--strategy", "luck"], "riemann, uniform, cosine"),
+        (["sample", "--estimate", "--roughness", "0.5"], "--brdf ggx and charlie"),
+        (["sample", "--estimate", "--brdf", "ggx", "--roughness", "2"], "from 0 to 1"),
+        (["sample", "--estimate", "--normal", "0,1"], "0,1,0"),
+        (["sample", "--estimate", "--normal", "0,0,0"], "0,1,0"),
+        (["sample", "--estimate", "--view", "0,-1,0"], "below the surface"),
+        (["sample", "--estimate", "--compensate"], "with and without"),
+        (["sample", "a.hdr", "b.hdr"], "one environment at a time"),
     ]
     for words, text in cases:
         result = run(*words, folder=folder, code=2)
@@ -148,7 +178,7 @@ def test_failures_exit_1_name_the_file_and_leave_nothing(folder):
     (folder / "text.exr").write_text("no picture at all")
     cases = [["missing.hdr"], ["broken.hdr"], ["text.exr"]]
     for words in cases:
-        for command in [["bake", *words, "-o", "out"], ["info", *words], ["lights", *words, "-o", "out"]]:
+        for command in [["bake", *words, "-o", "out"], ["info", *words], ["lights", *words, "-o", "out"], ["sample", *words, "--picture", "out.png"]]:
             result = run(*command, folder=folder, code=1)
             assert result.stderr.startswith("error: " + words[0] + ": "), result.stderr
         assert not (folder / "out").exists(), words
@@ -433,6 +463,147 @@ def test_info_of_other_tools_textures(folder):
     assert info["faces"] == 6 and info["levels"] == 5 and info["width"] == 256 and "sh" in info["metadata"]
 
 
+# --- sample ---
+
+
+def csv_of(text):
+    lines = text.splitlines()
+    assert lines[0] == "u,v,x,y,z,r,g,b,pdf_solid_angle"
+    return [[float(v) for v in line.split(",")] for line in lines[1:]]
+
+
+def test_sample_draws_directions_with_their_density(folder):
+    csv = csv_of(run("sample", "studio.hdr", "-n", "500", folder=folder).stdout)
+    assert len(csv) == 500
+    for u, v, x, y, z, r, g, b, pdf in csv:
+        # The default convention: u = 1/2 + atan2(z, x) / 2 pi, v = theta / pi.
+        assert abs(x * x + y * y + z * z - 1) < 1e-5 and pdf > 0 and min(r, g, b) >= 0
+        assert abs(math.cos(math.pi * v) - y) < 1e-5 and abs((u - 0.5 - math.atan2(z, x) / (2 * math.pi) + 0.5) % 1 - 0.5) < 1e-5
+    # The same numbers in a file, in JSON and in a file of JSON; another seed gives others.
+    run("sample", "studio.hdr", "-n", "500", "-o", "s.csv", folder=folder)
+    assert csv_of((folder / "s.csv").read_text()) == csv
+    document = json.loads(run("sample", "studio.hdr", "-n", "500", "--json", folder=folder).stdout)
+    run("sample", "studio.hdr", "-n", "500", "-o", "s.json", folder=folder)
+    assert document == json.loads((folder / "s.json").read_text())
+    assert document["count"] == 500 and document["method"] == "bilinear" and document["seed"] == 1
+    assert [[s["u"], s["v"], *s["direction"], *s["radiance"], s["pdf_solid_angle"]] for s in document["samples"]] == csv
+    assert csv_of(run("sample", "studio.hdr", "-n", "500", "--seed", "2", folder=folder).stdout) != csv
+    # The mean of radiance / density is the sphere's integral, for every method, weight and sequence.
+    mean = json.loads(run("info", "studio.hdr", "--json", folder=folder).stdout)["mean_radiance"][1]
+    for options in [["--method", m] for m in ["linear", "walk", "binary", "guided", "alias", "hierarchical", "bilinear", "bilinear-plain"]] + \
+                   [["--sequence", s] for s in ["random", "stratified", "hammersley", "halton", "r2"]] + \
+                   [["--weight", "grayscale"], ["--uniform-share", "0.3"], ["--seed", "0"], ["--rotate-y-deg", "40"]]:
+        csv = csv_of(run("sample", "studio.hdr", "-n", "20000", *options, folder=folder).stdout)
+        integral = sum(row[6] / row[8] for row in csv) / len(csv)
+        assert abs(integral / (4 * math.pi * mean) - 1) < 0.02, (options, integral, 4 * math.pi * mean)
+    assert "lower bits" in run("sample", "studio.hdr", "-n", "1", "--method", "alias", "--sequence", "hammersley", folder=folder).stderr
+    assert "compensated" in run("sample", "studio.hdr", "-n", "1", "--compensate", folder=folder).stderr
+
+
+def test_sample_writes_pictures_and_tables(folder):
+    result = run("sample", "studio.hdr", "--picture", "a.png", "--heat", "b.png", "--tables", "shader", "--picture-width", "300", folder=folder)
+    assert result.stdout.splitlines() == ["a.png", "b.png", "shader/rows.ktx2", "shader/columns.ktx2"]
+    for name in ["a.png", "b.png"]:
+        assert (folder / name).read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+    document = json.loads(run("sample", "studio.hdr", "--heat", "c.png", "--heat-measure", "uv", "--tables", "t", "--tables-format", "exr", "--json", folder=folder).stdout)
+    assert document["files"] == ["c.png", "t/rows.exr", "t/columns.exr"] and document["width"] == 64
+
+    # A shader's reading of the tables, as docs/math/importance.md has it, draws what the program draws.
+    def table(name, width, height):
+        info = json.loads(run("info", name, "--json", folder=folder).stdout)
+        assert (info["width"], info["height"], info["levels"]) == (width, height, 1) and "R32G32" in info["format"], info
+        assert info["metadata"]["domelight.weight"] == "radiant-power"
+        values = struct.unpack(f"<{2 * width * height}f", (folder / name).read_bytes()[-8 * width * height:])
+        return values[0::2], values[1::2]
+
+    rows, row_pdf = table("shader/rows.ktx2", 1, 32)
+    columns, column_pdf = table("shader/columns.ktx2", 64, 32)
+    assert rows[-1] == 1 and all(columns[64 * j + 63] == 1 for j in range(32))
+    samples = json.loads(run("sample", "studio.hdr", "-n", "64", "--sequence", "hammersley", "--seed", "0", "--method", "linear", "--json", folder=folder).stdout)["samples"]
+    for i, sample in list(enumerate(samples))[1:]:  # the first lies at the pole itself
+        x, y = i / 64, int(f"{i:06b}"[::-1], 2) / 64
+        j = next(j for j in range(32) if rows[j] > y)
+        k = next(k for k in range(64) if columns[64 * j + k] > x)
+        v = (j + 1 - (rows[j] - y) * 32 / row_pdf[j]) / 32
+        u = (k + 1 - (columns[64 * j + k] - x) * 64 / column_pdf[64 * j + k]) / 64
+        assert abs(u - sample["u"]) < 1e-5 and abs(v - sample["v"]) < 1e-5, (u, v, sample)
+        assert abs(row_pdf[j] * column_pdf[64 * j + k] / (2 * math.pi**2 * math.sin(math.pi * v)) / sample["pdf_solid_angle"] - 1) < 1e-4
+
+
+def test_sample_explains_what_it_does(folder):
+    for method in ["linear", "walk", "binary", "guided", "bilinear", "bilinear-plain"]:
+        for point in [(0, 0), (0.25, 0.5), (0.999999, 0.3), (0.5, 0.97), (0.61, 0.13)]:
+            words = ["sample", "studio.hdr", "--explain", f"{point[0]},{point[1]}", "--method", method]
+            e = json.loads(run(*words, "--json", folder=folder).stdout)["explanation"]
+            row, column, sample = e["row"], e["column"], e["sample"]
+            assert row["begin"] <= row["xi"] <= row["end"] and column["begin"] <= column["xi"] <= column["end"]
+            # The board's arithmetic ends where the sampler does; under the sun float rows have 24 bits.
+            assert abs(row["v"] - sample["v"]) < 2e-6 and abs((column["u"] - sample["u"] + 0.5) % 1 - 0.5) < 2e-5, (method, point, e)
+            assert point[1] == 0 or abs(e["pdf_solid_angle"] / sample["pdf_solid_angle"] - 1) < 2e-3, (method, point, e)
+            assert abs(e["jacobian"] - 2 * math.pi**2 * math.sin(math.pi * row["v"])) < 1e-6
+    text = run("sample", "studio.hdr", "--explain", "0.25,0.5", "--method", "guided", "--explain-picture", "e.png", folder=folder).stdout
+    assert "<- xi is in here" in text and "2 pi^2 sin(theta)" in text and "guide table" in text and (folder / "e.png").exists()
+
+
+def test_sample_estimates_agree_and_tell_the_strategies_apart(folder):
+    run("sky", "-o", "dull.exr", "--exr", "float", "--height", "16", "--no-sun-disc", folder=folder)
+    for surface in [["lambert"], ["phong", "--exponent", "20"], ["ggx", "--roughness", "0.5", "--metal-f0", "1,0.7,0.3"], ["charlie", "--roughness", "0.6"]]:
+        for sequence in ["random", "sobol"]:
+            document = json.loads(run("sample", "dull.exr", "--estimate", "--brdf", *surface, "--view", "1,1,0", "--normal", "0.2,1,-0.1", "-n", "1024",
+                                      "--sequence", sequence, "--json", folder=folder).stdout)["estimate"]
+            reference = document["reference"]["radiance"]
+            found = {s["strategy"]: s for s in document["strategies"]}
+            assert set(found) == {"riemann", "uniform", "cosine", "brdf", "environment", "mis-balance", "mis-power", "mis-balance-compensated", "product"}
+            for name, s in found.items():
+                for c in range(3):
+                    error = abs(s["radiance"][c] - reference[c])
+                    assert error < 5 * s["standard_error"][c] + 0.01 * reference[c], (surface, name, s, reference)
+                assert s["convergence"][-1]["error"] == s["error"] and s["cpu_seconds"] > 0
+                if s["variance"] is not None and sequence == "random":
+                    # Measured over 64 runs, against the integral: within 4 standard errors of an RMS of 64.
+                    assert abs(s["error"] / (s["variance"] / s["samples"]) ** 0.5 - 1) < 0.4, (surface, name, s)
+            if sequence == "random":
+                assert all(-0.75 < found[n]["slope"] < -0.3 for n in found if n != "riemann"), {n: found[n]["slope"] for n in found}
+                assert abs(found["environment"]["efficiency"] - 1) < 1e-9
+            else:
+                assert found["cosine"]["error"] < 0.01
+    few = json.loads(run("sample", "dull.exr", "--estimate", "-n", "64", "--strategy", "product,mis-power", "--json", folder=folder).stdout)["estimate"]
+    assert [s["strategy"] for s in few["strategies"]] == ["environment", "mis-power", "product"] and few["gains"]["mis_compensation"] is None
+    text = run("sample", "dull.exr", "--estimate", "-n", "64", "--plot", "p.png", folder=folder).stdout
+    assert "MIS compensation" in text and "product by resampling" in text and "exact" in text and (folder / "p.png").exists()
+
+
+def test_sample_of_constant_and_black_environments(folder):
+    (folder / "flat.exr").write_bytes(make_exr(8, 4, {}))
+    document = json.loads(run("sample", "flat.exr", "--estimate", "-n", "16", "--json", folder=folder).stdout)["estimate"]
+    assert all(abs(v - 0.5) < 1e-6 for v in document["reference"]["radiance"])
+    assert [s for s in document["strategies"] if s["strategy"] == "cosine"][0]["error"] < 1e-6
+    black = make_exr(8, 4, {i: 0.0 for i in range(32)}).replace(struct.pack("<f", 0.5), struct.pack("<f", 0.0))
+    (folder / "black.exr").write_bytes(black)
+    for row in csv_of(run("sample", "black.exr", "-n", "50", "--heat", "h.png", "-o", "b.csv", folder=folder) and (folder / "b.csv").read_text()):
+        assert all(math.isfinite(v) for v in row) and row[5:8] == [0, 0, 0] and row[8] > 0
+    assert "no light" in run("sample", "black.exr", "--estimate", folder=folder, code=1).stderr
+
+
+def test_sample_files_appear_whole_or_not_at_all(folder):
+    (folder / "s.csv").write_text("old")
+
+    def small_files():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (10000, 10000))
+
+    for words in [["-o", "s.csv", "-n", "5000"], ["--tables", "new"], ["--picture", "new.png"]]:
+        result = run("sample", "studio.hdr", *words, folder=folder, code=1, preexec_fn=small_files)
+        assert result.stderr.startswith("error: "), result.stderr
+    assert (folder / "s.csv").read_text() == "old" and not (folder / "new").exists() and not (folder / "new.png").exists()
+    expected = None
+    for threads in [1, 3]:
+        run("sample", "studio.hdr", "-n", "999", "-o", "s.csv", "--picture", "p.png", "--heat", "h.png", "--tables", "t", "--explain", "0.3,0.4",
+            "--explain-picture", "e.png", "--threads", threads, folder=folder)
+        files = files_of(folder)
+        expected = expected or files
+        assert files == expected
+
+
 def test_sky_formats_and_axes(folder):
     for name in ["a.hdr", "a.exr", "a.png"]:
         run("sky", "-o", name, "--height", "16", folder=folder)
@@ -535,8 +706,6 @@ def test_lights_without_a_light(folder):
 
 def make_exr(width, height, special):
     """A scanline EXR without compression, float RGB of 0.5, `special` values in the red channel by texel number."""
-    import struct
-
     def attribute(name, kind, value):
         return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
 
