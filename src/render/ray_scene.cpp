@@ -130,8 +130,8 @@ Hit RayScene::Impl::intersect(const Ray& ray, bool coherent) const {
     Vec3f normal{r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z};
     const Affine& m = scene.instances[instance].to_world;
     if (instanced) normal = m.normal(normal);
-    // A mirrored instance turns its triangles round; glTF's front stays the front.
-    if (!instanced && m.determinant() < 0) normal = -normal;
+    // A mirror turns triangles round (as corners and by their cofactors alike); glTF's front stays the front.
+    if (m.determinant() < 0) normal = -normal;
     return {r.ray.tfar, instance, int(r.hit.primID), r.hit.u, r.hit.v, normal};
 }
 

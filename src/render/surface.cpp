@@ -96,8 +96,9 @@ Vec3f mapped_normal(const Scene& scene, const Material& m, const Corners& c, con
 float single_scattering_albedo(float NdotV, float roughness) {
     const ImageF& table = brdf_table_default();
     const int n = table.width();
-    const float x = std::clamp(NdotV * float(n) - 0.5f, 0.f, float(n - 1)), y = std::clamp(roughness * float(n) - 0.5f, 0.f, float(n - 1));
-    const int x0 = std::min(int(x), n - 2), y0 = std::min(int(y), n - 2);
+    // Between texel centres, and in a straight line on beyond the outermost: at roughness 1 clamping would be 1 % off.
+    const float x = NdotV * float(n) - 0.5f, y = roughness * float(n) - 0.5f;
+    const int x0 = std::clamp(int(x), 0, n - 2), y0 = std::clamp(int(y), 0, n - 2);
     const auto at = [&](int i, int j) { return table.at(i, j)[0] + table.at(i, j)[1]; };
     const float a = x - float(x0), b = y - float(y0);
     const float upper = at(x0, y0) + a * (at(x0 + 1, y0) - at(x0, y0)), lower = at(x0, y0 + 1) + a * (at(x0 + 1, y0 + 1) - at(x0, y0 + 1));

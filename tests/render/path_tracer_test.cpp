@@ -1,0 +1,252 @@
+#include "domelight/render.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "domelight/reference.h"
+#include "domelight/sky.h"
+#include "render/shapes.h"
+#include "test.h"
+
+using namespace domelight;
+using namespace domelight::test;
+
+namespace {
+
+RayScene trace(Scene scene) {
+    auto traced = RayScene::build(std::move(scene));
+    REQUIRE(traced);
+    return std::move(*traced);
+}
+
+Scene one(Mesh mesh, Material material) {
+    Scene scene;
+    add(scene, std::move(mesh), std::move(material));
+    return scene;
+}
+
+RenderOptions view(int size, int samples) {
+    RenderOptions o;
+    o.width = o.height = size;
+    o.samples = samples;
+    o.camera = look_at({0, 0, 4}, {0, 0, 0}, 0.6f);
+    o.background = Background::transparent;
+    return o;
+}
+
+RenderResult render(const RayScene& scene, const ImageF& environment, const RenderOptions& o) {
+    auto sampler = EnvironmentSampler::build(environment, reference_sampler_options(o.strategy));
+    REQUIRE(sampler);
+    auto result = render_reference(scene, *sampler, o);
+    REQUIRE(result);
+    return std::move(*result);
+}
+
+/// Mean of a channel over the pixels that the surface covers whole.
+double mean_inside(const RenderResult& r, const ImageF& image, int channel = 1) {
+    double sum = 0;
+    int n = 0;
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x)
+            if (*r.opacity.at(x, y) == 1) sum += image.at(x, y)[channel], ++n;
+    REQUIRE(n > 0);
+    return sum / n;
+}
+
+ImageF sky_with_sun() {
+    SkyOptions options;
+    options.height = 64;
+    options.sun_elevation_deg = 40;
+    options.sun_azimuth_deg = 60;
+    ImageF image(128, 64, 3);
+    REQUIRE(make_sky(options)->read(image.view()));
+    for (float& p : image.pixels()) p /= 3000;
+    return image;
+}
+
+}  // namespace
+
+TEST_CASE("render: a white matte sphere vanishes in a white furnace") {
+    const RayScene scene = trace(one(sphere_mesh(48), lambert_material(1)));
+    for (const LightStrategy strategy : {LightStrategy::mis, LightStrategy::environment, LightStrategy::brdf}) {
+        RenderOptions o = view(24, 64);
+        o.strategy = strategy;
+        const RenderResult r = render(scene, ImageF(32, 16, 3, 1.f), o);
+        CHECK(mean_inside(r, r.radiance) == doctest::Approx(1).epsilon(2e-3));
+        CHECK(mean_inside(r, r.diffuse) == doctest::Approx(mean_inside(r, r.radiance)).epsilon(1e-6));
+        CHECK(mean_inside(r, r.indirect) == 0);
+    }
+}
+
+TEST_CASE("render: rough metal keeps its light in a white furnace, with multiple scattering, and loses some without") {
+    for (const float roughness : {0.3f, 0.6f, 1.f}) {
+        const RayScene scene = trace(one(sphere_mesh(64), metal_material(roughness)));
+        RenderOptions o = view(24, 256);
+        o.multiple_scattering = true;
+        const RenderResult r = render(scene, ImageF(32, 16, 3, 1.f), o);
+        INFO("roughness " << roughness);
+        CHECK(std::abs(mean_inside(r, r.radiance) - 1) < 1e-3);
+        o.multiple_scattering = false;
+        const RenderResult single = render(scene, ImageF(32, 16, 3, 1.f), o);
+        CHECK(mean_inside(single, single.radiance) < (roughness > 0.5f ? 0.95 : 1));
+        CHECK(mean_inside(single, single.specular) == doctest::Approx(mean_inside(single, single.radiance)).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("render: Lambert on a sphere is the exact irradiance, pixel by pixel within its confidence interval") {
+    const ImageF sky = sky_with_sun();
+    const RayScene scene = trace(one(sphere_mesh(160), lambert_material(0.8f)));
+    RenderOptions o = view(20, 512);
+    const RenderResult r = render(scene, sky, o);
+    double z2 = 0, ratio = 0;
+    int n = 0;
+    for (int y = 0; y < o.height; ++y)
+        for (int x = 0; x < o.width; ++x) {
+            if (*r.opacity.at(x, y) < 1) continue;
+            const float* N = r.normal.at(x, y);
+            const Vec3d normal = normalize(Vec3d{N[0], N[1], N[2]});
+            const Vec3d truth = convolve_exactly(sky, ZonalKernel::cosine(), std::span(&normal, 1))[0] * 0.8;
+            // A pixel's mean over its normals bends a little: 1 %.
+            const double error = std::sqrt(r.variance.at(x, y)[1] + std::pow(0.01 * truth.y, 2)), d = r.radiance.at(x, y)[1] - truth.y;
+            z2 += d * d / (error * error);
+            ratio += r.radiance.at(x, y)[1] / truth.y;
+            ++n;
+        }
+    CHECK(ratio / n == doctest::Approx(1).epsilon(5e-3));
+    CHECK(z2 / n < 1.6);
+}
+
+TEST_CASE("render: a sphere's shadow on the ground under an even sky is its form factor") {
+    // Straight below a sphere of radius r whose centre is h above, (r / h)^2 of the sky is hidden.
+    Scene scene = one(floor_mesh(50, -2.5f), lambert_material(0.5f));
+    add(scene, sphere_mesh(96), lambert_material(0));
+    RenderOptions o = view(3, 4096);
+    o.camera = look_at({0.001f, -1.3f, 0}, {0, -2.5f, 0}, 0.02f);
+    const RayScene traced = trace(std::move(scene));
+    const RenderResult r = render(traced, ImageF(32, 16, 3, 1.f), o);
+    CHECK(r.radiance.at(1, 1)[1] == doctest::Approx(0.5 * (1 - 1 / (2.5 * 2.5))).epsilon(4e-3));
+    o.occlusion = false;
+    const RenderResult open = render(traced, ImageF(32, 16, 3, 1.f), o);
+    CHECK(open.radiance.at(1, 1)[1] == doctest::Approx(0.5).epsilon(4e-3));
+}
+
+TEST_CASE("render: light in a closed room is the sum over its bounces") {
+    // Inside a sphere that shines with e and reflects a: e (1 + a + ... + a^n).
+    Material wall = lambert_material(0.6f);
+    wall.emission = {1, 1, 1};
+    const RayScene scene = trace(one(sphere_mesh(64), wall));
+    RenderOptions o = view(8, 256);
+    o.camera = look_at({0, 0, 0.2f}, {0, 0, -1}, 0.6f);
+    for (const int bounces : {1, 3, 12}) {
+        o.bounces = bounces;
+        const RenderResult r = render(scene, ImageF(16, 8, 3), o);
+        CHECK(mean_inside(r, r.radiance) == doctest::Approx((1 - std::pow(0.6, bounces + 1)) / 0.4).epsilon(5e-3));
+    }
+}
+
+TEST_CASE("render: a directional light and a point light on a matte floor") {
+    Scene scene = one(floor_mesh(10, 0), lambert_material(0.5f));
+    PunctualLight sun;
+    sun.direction = normalize(Vec3f{0, -1, -1});
+    sun.intensity = {2, 2, 2};
+    PunctualLight lamp;
+    lamp.kind = PunctualLight::Kind::point;
+    lamp.position = {0, 2, 0};
+    lamp.intensity = {3, 0, 0};
+    scene.lights = {sun, lamp};
+    RenderOptions o = view(1, 4);
+    o.camera = look_at({0, 3, 0.01f}, {0, 0, 0}, 0.001f);
+    const RenderResult r = render(trace(std::move(scene)), ImageF(16, 8, 3), o);
+    const double a = 0.5 / k_pi;
+    CHECK(r.radiance.at(0, 0)[1] == doctest::Approx(a * 2 * std::sqrt(0.5)).epsilon(1e-4));
+    CHECK(r.radiance.at(0, 0)[0] == doctest::Approx(a * (2 * std::sqrt(0.5) + 3 / 4.0)).epsilon(1e-4));
+}
+
+TEST_CASE("render: masked and blended surfaces let light through, in the picture and in shadows") {
+    const auto picture = [](Material::AlphaMode mode, float opacity) {
+        // A black veil between the camera and a white floor that an even sky lights through the veil.
+        Material veil = lambert_material(0);
+        veil.alpha_mode = mode;
+        veil.opacity = opacity;
+        Scene scene = one(floor_mesh(200, -1), lambert_material(1));
+        add(scene, floor_mesh(200, 1), veil);
+        RenderOptions o = view(4, 1024);
+        o.camera = look_at({0, 2, 0.01f}, {0, 0, 0}, 0.1f);
+        const RenderResult r = render(trace(std::move(scene)), ImageF(16, 8, 3, 1.f), o);
+        return mean_inside(r, r.radiance);
+    };
+    CHECK(picture(Material::AlphaMode::opaque, 0.5f) == 0);
+    CHECK(picture(Material::AlphaMode::mask, 0.4f) == doctest::Approx(1).epsilon(0.02));
+    CHECK(picture(Material::AlphaMode::mask, 0.6f) == 0);
+    CHECK(picture(Material::AlphaMode::blend, 0.25f) == doctest::Approx(0.75 * 0.75).epsilon(0.03));
+}
+
+TEST_CASE("render: the same bits on any number of threads, other ones with another seed") {
+    Scene scene = one(floor_mesh(3, -1), lambert_material(0.5f));
+    add(scene, sphere_mesh(32), metal_material(0.4f));
+    const RayScene traced = trace(std::move(scene));
+    const ImageF sky = sky_with_sun();
+    RenderOptions o = view(40, 5);
+    o.bounces = 2;
+    o.threads = 1;
+    const RenderResult first = render(traced, sky, o);
+    for (const int threads : {2, 3, 8}) {
+        o.threads = threads;
+        const RenderResult r = render(traced, sky, o);
+        CHECK(std::ranges::equal(r.radiance.pixels(), first.radiance.pixels()));
+        CHECK(std::ranges::equal(r.variance.pixels(), first.variance.pixels()));
+    }
+    o.seed = 5;
+    CHECK(!std::ranges::equal(render(traced, sky, o).radiance.pixels(), first.radiance.pixels()));
+}
+
+TEST_CASE("render: samples go on until the noise is as low as asked, and no farther") {
+    const RayScene scene = trace(one(sphere_mesh(32), lambert_material(0.8f)));
+    RenderOptions o = view(24, 16);
+    o.noise = 0.5 * render(scene, sky_with_sun(), o).noise;
+    const RenderResult r = render(scene, sky_with_sun(), o);
+    CHECK(r.noise < o.noise);
+    CHECK(*std::ranges::min_element(r.samples.pixels()) == 16);
+    CHECK(r.sample_count > 16);
+}
+
+TEST_CASE("render: an instanced, turned and mirrored mesh is lit as if it stood alone") {
+    const ImageF sky = sky_with_sun();
+    const auto picture = [&](int instances) {
+        Scene scene;
+        Affine mirror;
+        mirror.x = {-1, 0, 0};
+        add(scene, sphere_mesh(48), lambert_material(0.8f), mirror);
+        // Far behind the camera: with it the mesh becomes an object of its own.
+        if (instances == 2) {
+            Affine away;
+            away.translation = {0, 0, 1000};
+            scene.instances.push_back({0, away, "other"});
+        }
+        const RenderResult r = render(trace(std::move(scene)), sky, view(16, 64));
+        return mean_inside(r, r.radiance);
+    };
+    const double alone = picture(1);
+    CHECK(picture(2) == doctest::Approx(alone).epsilon(2e-3));
+    CHECK(alone > 0);
+}
+
+TEST_CASE("render: wrong sizes, empty scenes and a cancelled one are errors") {
+    CHECK(!RayScene::build(Scene()));
+    const RayScene scene = trace(one(sphere_mesh(8), lambert_material(1)));
+    const ImageF white(16, 8, 3, 1.f);
+    auto sampler = EnvironmentSampler::build(white, reference_sampler_options());
+    RenderOptions o = view(16, 4);
+    o.progress = [](std::string_view, double) { return false; };
+    auto cancelled = render_reference(scene, *sampler, o);
+    REQUIRE(!cancelled);
+    CHECK(cancelled.error().what == "cancelled");
+    o = view(0, 1);
+    CHECK(!render_reference(scene, *sampler, o));
+    ImageF spot = white;
+    spot.at(3, 3)[0] = 1e4f;
+    auto compensated = EnvironmentSampler::build(spot, reference_sampler_options());
+    o = view(4, 1);
+    o.strategy = LightStrategy::environment;
+    CHECK(!render_reference(scene, *compensated, o));
+}
