@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 
 #include "domelight/image_io.h"
-#include "io/exr_stream.h"
+#include "io/exr_output_stream.h"
 
 namespace domelight {
 namespace {
@@ -21,7 +21,7 @@ std::string channel_name(const ExrLayer& layer, int channel) {
 }
 
 /// May throw.
-void write_layers(ExrStream& stream, std::span<const ExrLayer> layers, const ExrWriteOptions& options) {
+void write_layers(ExrOutputStream& stream, std::span<const ExrLayer> layers, const ExrWriteOptions& options) {
     Imf::Header header(layers[0].pixels.width, layers[0].pixels.height);
     header.compression() = Imf::ZIP_COMPRESSION;
     Imf::addChromaticities(header, Imf::Chromaticities());
@@ -49,7 +49,7 @@ Result<void> write_exr_layers(const std::filesystem::path& file, std::span<const
     if (layers.empty()) return Error{"there is no layer to write", file.string(), ""};
     return write_file_atomically(file, [&](const std::filesystem::path& path) -> Result<void> {
         OutputFile out(path);
-        ExrStream stream(out);
+        ExrOutputStream stream(out);
         Result<void> written;
         try {
             write_layers(stream, layers, options);

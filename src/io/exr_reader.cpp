@@ -3,70 +3,28 @@
 #include "image/colour_primaries.h"
 #include "image/repair.h"
 #include "io/exr_header_reader.h"
+#include "io/exr_stream.h"
 #include "io/image_reader.h"
 
-#include <Iex.h>
 #include <ImfChannelList.h>
 #include <ImfChromaticitiesAttribute.h>
 #include <ImfEnvmapAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
 #include <ImfRgbaFile.h>
 #include <ImfStandardAttributes.h>
-#include <ImfThreading.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <mutex>
 #include <string_view>
 
 namespace domelight {
 
 namespace {
-
-/// The file's bytes as the stream that OpenEXR wants, with the headers replaced by the checked ones.
-class MemoryStream : public Imf::IStream {
-  public:
-    MemoryStream(std::shared_ptr<const FileBytes> bytes, std::vector<char> headers)
-        : Imf::IStream("image"), bytes_(std::move(bytes)), headers_(std::move(headers)) {}
-
-    bool read(char out[], int n) override {
-        const auto all = bytes_->bytes();
-        if (n < 0 || std::size_t(n) > all.size() - at_) throw Iex::InputExc("file ends too early");
-        std::size_t from_headers = 0;
-        if (at_ < headers_.size()) {
-            from_headers = std::min(std::size_t(n), headers_.size() - at_);
-            std::memcpy(out, headers_.data() + at_, from_headers);
-        }
-        std::memcpy(out + from_headers, all.data() + at_ + from_headers, std::size_t(n) - from_headers);
-        at_ += std::size_t(n);
-        return at_ < all.size();
-    }
-    std::uint64_t tellg() override { return at_; }
-    void seekg(std::uint64_t position) override {
-        if (position > bytes_->bytes().size()) throw Iex::InputExc("an offset points past the end of the file");
-        at_ = std::size_t(position);
-    }
-
-  private:
-    std::shared_ptr<const FileBytes> bytes_;
-    std::vector<char> headers_;
-    std::size_t at_ = 0;
-};
-
-/// What OpenEXR says, on one line and without the name it knows the stream by.
-std::string message_of(const std::exception& error) {
-    std::string text = error.what();
-    if (const std::size_t named = text.find("\"image\". "); named != std::string::npos) text.erase(0, named + 9);
-    while (text.ends_with('.') || text.ends_with('\n')) text.pop_back();
-    return printable(text, 200);
-}
 
 /// The channels that make up the picture: three, or one luminance, or luminance and chroma.
 struct ColourChannels {
@@ -99,13 +57,6 @@ ColourChannels find_colour(const Imf::ChannelList& channels) {
     return found;
 }
 
-/// Makes the library's pool of threads at least `threads` large; one thread needs none.
-void provide_threads(int threads) {
-    static std::mutex mutex;
-    const std::lock_guard lock(mutex);
-    if (threads > 1 && Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
-}
-
 class ExrReader : public ImageReader {
   public:
     ExrReader(std::shared_ptr<const FileBytes> bytes, ExrPreflight preflight, int threads)
@@ -121,7 +72,7 @@ class ExrReader : public ImageReader {
     void read_luminance_chroma(ImageView<float> rows, int y);
 
     int threads_;
-    MemoryStream stream_;
+    ExrStream stream_;
     std::unique_ptr<Imf::MultiPartInputFile> file_;
     std::unique_ptr<Imf::InputPart> part_;
     std::unique_ptr<Imf::RgbaInputFile> rgba_;  // luminance-chroma: the library upsamples
@@ -152,7 +103,7 @@ Result<int> choose_part(const Imf::MultiPartInputFile& file) {
 }
 
 Result<void> ExrReader::open() {
-    provide_threads(threads_);
+    provide_exr_threads(threads_);
     const int line_threads = threads_ > 1 ? threads_ : 0;
     file_ = std::make_unique<Imf::MultiPartInputFile>(stream_, line_threads, false);
     const Result<int> part = choose_part(*file_);
@@ -273,7 +224,7 @@ Result<bool> ExrReader::read(ImageView<float> rows) {
             rgba_ ? read_luminance_chroma(part, first) : read_rgb(part, first);
         }
     } catch (const std::exception& e) {
-        return Error{fmt::format("decoding near row {} failed: {}", next_row_, message_of(e)), "",
+        return Error{fmt::format("decoding near row {} failed: {}", next_row_, exr_message(e)), "",
                      "The file is truncated or damaged."};
     }
     next_row_ += rows.height;
@@ -290,7 +241,7 @@ Result<std::unique_ptr<ImageReader>> open_exr_reader(std::shared_ptr<const FileB
     try {
         if (const auto opened = reader->open(); !opened) return opened.error();
     } catch (const std::exception& e) {
-        return Error{fmt::format("not a readable OpenEXR file: {}", message_of(e)), "",
+        return Error{fmt::format("not a readable OpenEXR file: {}", exr_message(e)), "",
                      "The file is truncated or damaged."};
     }
     return std::unique_ptr<ImageReader>(std::move(reader));

@@ -1,43 +1,38 @@
 #pragma once
+// What the readers of OpenEXR share.
 
-#include "io/output_file.h"
+#include "io/file_reader.h"
 
-#include <Iex.h>
 #include <ImfIO.h>
 
-#include <span>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <string>
 #include <vector>
 
 namespace domelight {
 
-/// OpenEXR's stream over our file. Its own stream loses what goes wrong on closing; ours keeps the error, and stops the
-/// writing by throwing.
-class ExrStream : public Imf::OStream {
+/// The file's bytes as the stream that OpenEXR wants, with the headers replaced by the checked ones.
+class ExrStream : public Imf::IStream {
   public:
-    explicit ExrStream(OutputFile& file) : OStream("image"), file_(file) { buffer_.reserve(k_buffer_bytes); }
+    ExrStream(std::shared_ptr<const FileBytes> bytes, std::vector<char> headers)
+        : Imf::IStream("image"), bytes_(std::move(bytes)), headers_(std::move(headers)) {}
 
-    void write(const char bytes[], int count) override {
-        if (buffer_.size() + std::size_t(count) > k_buffer_bytes) flush();
-        if (std::size_t(count) > k_buffer_bytes)
-            file_.write(std::span(bytes, std::size_t(count)));
-        else
-            buffer_.insert(buffer_.end(), bytes, bytes + count);
-        if (file_.failed()) throw Iex::IoExc("write");
-    }
-    std::uint64_t tellp() override { return file_.position() + buffer_.size(); }
-    void seekp(std::uint64_t position) override {
-        flush();
-        file_.seek(position);
-    }
-    void flush() {
-        file_.write(std::span<const char>(buffer_));
-        buffer_.clear();
-    }
+    bool read(char out[], int n) override;
+    std::uint64_t tellg() override { return at_; }
+    void seekg(std::uint64_t position) override;
 
   private:
-    static constexpr std::size_t k_buffer_bytes = std::size_t(1) << 20;
-    OutputFile& file_;
-    std::vector<char> buffer_;
+    std::shared_ptr<const FileBytes> bytes_;
+    std::vector<char> headers_;
+    std::size_t at_ = 0;
 };
+
+/// What OpenEXR says, on one line and without the name it knows the stream by.
+std::string exr_message(const std::exception& error);
+
+/// Makes the library's pool of threads at least `threads` large; one thread needs none.
+void provide_exr_threads(int threads);
 
 }  // namespace domelight

@@ -3,7 +3,7 @@
 #include "domelight/parallel.h"
 
 #include "codec/half.h"
-#include "io/exr_stream.h"
+#include "io/exr_output_stream.h"
 #include "io/output_file.h"
 
 #include <ImfChannelList.h>
@@ -130,7 +130,7 @@ class RowWriter {
 using NextRows = std::function<Result<ImageView<const float>>(int first, int count)>;
 
 /// May throw.
-Result<void> write_image(ExrStream& stream, int width, int height, int channels, const ExrWriteOptions& options,
+Result<void> write_image(ExrOutputStream& stream, int width, int height, int channels, const ExrWriteOptions& options,
                          const NextRows& next) {
     auto header = make_header(width, height, channels, options);
     if (!header) return header.error();
@@ -151,7 +151,7 @@ Result<void> write_exr_rows(const std::filesystem::path& file, int width, int he
                             const ExrWriteOptions& options, const NextRows& next) {
     return write_file_atomically(file, [&](const std::filesystem::path& path) -> Result<void> {
         OutputFile out(path);
-        ExrStream stream(out);
+        ExrOutputStream stream(out);
         Result<void> written;
         try {
             written = write_image(stream, width, height, channels, options, next);

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "domelight/metrics.h"
+#include "domelight/vec.h"
+
+namespace domelight {
+
+/// FLIP of two images in linear sRGB, [0, 1].
+ImageF flip_linear(ImageView<const float> test, ImageView<const float> reference, const FlipOptions& options, int threads);
+
+}  // namespace domelight
