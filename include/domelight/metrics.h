@@ -24,9 +24,19 @@ struct Errors {
     double psnr = 0;              ///< dB, of L / (1 + L), peak 1: -20 log10(tone_mapped_rmse); infinite for equal images
     double ssim = 0;              ///< mean of ssim()
     std::int64_t pixels = 0;      ///< that counted
+    int largest_x = 0, largest_y = 0;  ///< where `largest` is, the first by rows
 };
 /// `test` against `reference`.
 Errors compare_images(ImageView<const float> test, ImageView<const float> reference, Mask mask = {}, int threads = 0);
+
+/// One object's part of a picture.
+struct ObjectErrors {
+    int index = 0;
+    Errors errors;  ///< ssim: the mean of the whole picture's over the object
+};
+/// The errors of each object. `objects`: index of the object seen in each pixel, one channel; negative or NaN: none. By rising index.
+std::vector<ObjectErrors> compare_objects(ImageView<const float> test, ImageView<const float> reference, ImageView<const float> objects,
+                                          Mask mask = {}, int threads = 0);
 
 /// Structural similarity of each pixel (Wang et al. 2004, eq. 13 with K1 = 0.01, K2 = 0.03, peak 1), [-1, 1], one channel: of the luminance of
 /// L / (1 + L), Gaussian window of sigma 1.5 cut at 11 x 11. Windows are normalised over the pixels that count, so neither the border nor what the

@@ -3,10 +3,10 @@
 #include "domelight/parallel.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace domelight {
 namespace {
@@ -32,51 +32,80 @@ Sums sum_rows(int height, int threads, Row row) {
 struct ErrorSums {
     double squared = 0, reference_squared = 0, tone_mapped_squared = 0, test = 0, reference = 0, largest = 0;
     std::int64_t pixels = 0;
+    int x = 0, y = 0;
+    void add(const float* a, const float* b, int px, int py) {
+        for (int c = 0; c < 3; ++c) {
+            const double d = double(a[c]) - b[c], t = double(tone_mapped(a[c])) - tone_mapped(b[c]);
+            squared += d * d;
+            tone_mapped_squared += t * t;
+            reference_squared += double(b[c]) * b[c];
+            test += a[c];
+            reference += b[c];
+            if (std::abs(d) > largest) largest = std::abs(d), x = px, y = py;
+        }
+        ++pixels;
+    }
     void operator+=(const ErrorSums& b) {
         squared += b.squared, reference_squared += b.reference_squared, tone_mapped_squared += b.tone_mapped_squared;
         test += b.test, reference += b.reference, pixels += b.pixels;
-        largest = std::max(largest, b.largest);
+        if (b.largest > largest) largest = b.largest, x = b.x, y = b.y;
     }
 };
 
-}  // namespace
-
-Errors compare_images(ImageView<const float> test, ImageView<const float> reference, Mask mask, int threads) {
-    assert(test.width == reference.width && test.height == reference.height);
-    assert(test.channels == 3 && reference.channels == 3);
-    const ErrorSums s = sum_rows<ErrorSums>(test.height, threads, [&](int y) {
-        ErrorSums row;
-        for (int x = 0; x < test.width; ++x) {
-            if (!counts(mask, x, y)) continue;
-            const float *a = test.at(x, y), *b = reference.at(x, y);
-            for (int c = 0; c < 3; ++c) {
-                const double d = double(a[c]) - b[c], t = double(tone_mapped(a[c])) - tone_mapped(b[c]);
-                row.squared += d * d;
-                row.tone_mapped_squared += t * t;
-                row.reference_squared += double(b[c]) * b[c];
-                row.test += a[c];
-                row.reference += b[c];
-                row.largest = std::max(row.largest, std::abs(d));
-            }
-            ++row.pixels;
-        }
-        return row;
-    });
+/// All but the structural similarity.
+Errors errors_of(const ErrorSums& s) {
     Errors e;
     e.pixels = s.pixels;
     if (s.pixels == 0) return e;
     constexpr double infinite = std::numeric_limits<double>::infinity();
     const double values = 3 * double(s.pixels);
     e.rmse = std::sqrt(s.squared / values);
-    e.relative_rmse = s.squared == 0           ? 0
-                      : s.reference_squared == 0 ? infinite
-                                                 : std::sqrt(s.squared / s.reference_squared);
+    if (s.squared > 0) e.relative_rmse = s.reference_squared > 0 ? std::sqrt(s.squared / s.reference_squared) : infinite;
     e.tone_mapped_rmse = std::sqrt(s.tone_mapped_squared / values);
     e.mean_ratio = s.test == s.reference ? 1 : s.test / s.reference;
     e.largest = s.largest;
+    e.largest_x = s.x, e.largest_y = s.y;
     e.psnr = e.tone_mapped_rmse > 0 ? -20 * std::log10(e.tone_mapped_rmse) : infinite;
-    e.ssim = mean_of(ssim(test, reference, mask, threads).view(), mask);
     return e;
+}
+
+}  // namespace
+
+Errors compare_images(ImageView<const float> test, ImageView<const float> reference, Mask mask, int threads) {
+    assert(test.width == reference.width && test.height == reference.height);
+    assert(test.channels == 3 && reference.channels == 3);
+    Errors e = errors_of(sum_rows<ErrorSums>(test.height, threads, [&](int y) {
+        ErrorSums row;
+        for (int x = 0; x < test.width; ++x)
+            if (counts(mask, x, y)) row.add(test.at(x, y), reference.at(x, y), x, y);
+        return row;
+    }));
+    if (e.pixels > 0) e.ssim = mean_of(ssim(test, reference, mask, threads).view(), mask);
+    return e;
+}
+
+std::vector<ObjectErrors> compare_objects(ImageView<const float> test, ImageView<const float> reference,
+                                          ImageView<const float> objects, Mask mask, int threads) {
+    struct Object {
+        ErrorSums sums;
+        double ssim = 0;
+    };
+    std::map<int, Object> found;
+    const ImageF similarity = ssim(test, reference, mask, threads);
+    for (int y = 0; y < test.height; ++y)
+        for (int x = 0; x < test.width; ++x) {
+            const float id = objects.at(x, y)[0];
+            if (!counts(mask, x, y) || !(id >= 0 && id < 1e9f)) continue;
+            Object& object = found[int(std::lround(id))];
+            object.sums.add(test.at(x, y), reference.at(x, y), x, y);
+            object.ssim += *similarity.at(x, y);
+        }
+    std::vector<ObjectErrors> result;
+    for (const auto& [index, object] : found) {
+        result.push_back({index, errors_of(object.sums)});
+        result.back().errors.ssim = object.ssim / double(object.sums.pixels);
+    }
+    return result;
 }
 
 namespace {

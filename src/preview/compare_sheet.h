@@ -1,0 +1,37 @@
+#pragma once
+
+#include "domelight/image.h"
+#include "domelight/metrics.h"
+
+#include <cstdint>
+#include <string>
+
+namespace domelight {
+
+/// A map of numbers and the colours it is shown in.
+struct HeatMap {
+    ImageView<const float> values;  ///< one channel
+    std::string title;              ///< "HDR-FLIP, mean 0.034"
+    double high = 1;                ///< the value of the last colour; > 0
+    bool is_signed = false;         ///< from -high to high (blue, white, red); else from 0
+};
+
+/// 1, 2 or 5 times a power of ten, at or above almost all of the values' sizes (all but a two-hundredth of those that count): a scale's end.
+double scale_for(ImageView<const float> values, Mask mask = {});
+
+/// A heat map at full size (small ones enlarged by a whole number) above its labelled colour scale. Pixels outside the mask are grey.
+Image<std::uint8_t> heat_picture(const HeatMap& map, Mask mask = {});
+
+/// What a comparison's sheet shows: two pictures as a display would at one exposure, their signed difference, and a map of the perceived one.
+struct CompareSheet {
+    std::string title, subtitle;
+    std::string test_name, reference_name;
+    ImageView<const float> test, reference;  ///< linear radiance, 3 channels
+    double exposure_ev = 0;
+    bool tone_map = true;  ///< false: values are display-linear already and only clipped
+    HeatMap difference, perceived;
+    Mask mask;
+};
+Image<std::uint8_t> compare_sheet(const CompareSheet& sheet, int threads = 0);
+
+}  // namespace domelight
