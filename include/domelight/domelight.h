@@ -2,6 +2,7 @@
 // All of Domelight's public headers.
 
 #include "domelight/area_resample.h"
+#include "domelight/bake_audit.h"
 #include "domelight/brdf.h"
 #include "domelight/brdf_table.h"
 #include "domelight/distribution.h"
@@ -18,6 +19,7 @@
 #include "domelight/image_io.h"
 #include "domelight/light_extraction.h"
 #include "domelight/low_discrepancy.h"
+#include "domelight/metrics.h"
 #include "domelight/microfacet.h"
 #include "domelight/parallel.h"
 #include "domelight/prefilter.h"

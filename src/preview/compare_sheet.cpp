@@ -103,8 +103,8 @@ void draw_scale(ImageView<std::uint8_t> image, int left, int top, int width, con
         const double t = double(i) / (k_ticks - 1), value = map.high * (map.is_signed ? 2 * t - 1 : t);
         const int x = left + int(std::lround(t * (width - 1)));
         fill(image, {x, top + 16, 1, 4}, k_quiet);
-        const std::string sign = map.is_signed && value > 0 ? "+" : "", beyond = i + 1 == k_ticks && !map.is_signed ? "≥ " : "";
-        draw_text(image, x, top + 36, beyond + sign + fmt::format("{:.3g}", value), FontSize::small, k_quiet,
+        const std::string sign = map.is_signed && value > 0 ? "+" : "";
+        draw_text(image, x, top + 36, sign + fmt::format("{:.3g}", value), FontSize::small, k_quiet,
                   i == 0 ? Align::left : i + 1 == k_ticks ? Align::right : Align::centre);
     }
 }
