@@ -71,16 +71,20 @@ Result<std::filesystem::path> path_of_uri(std::string_view uri, const std::files
     const bool scheme = uri.substr(0, uri.find('/')).find(':') != uri.npos;
     if (name.empty() || scheme || relative.is_absolute() || name.find('\0') != name.npos)
         return Error{shown + ": not the name of a file in the folder", "", "Only files beside the scene are read."};
-    if (std::find(relative.begin(), relative.end(), "..") != relative.end())
-        return Error{shown + ": leaves the folder of the scene", "", "Only files beside the scene are read."};
+    return path_inside(folder / relative, folder, uri);
+}
+
+Result<std::filesystem::path> path_inside(const std::filesystem::path& path, const std::filesystem::path& folder,
+                                          std::string_view shown) {
     std::error_code failed;
+    // Links are followed: one that leads out of the folder leaves it as ".." does.
     const std::filesystem::path root = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, failed);
-    const std::filesystem::path path = failed ? root : std::filesystem::weakly_canonical(root / relative, failed);
-    if (failed) return Error{shown + ": " + failed.message(), "", ""};
-    if (std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first != root.end())
-        return Error{shown + ": a link that leaves the folder of the scene", "",
+    const std::filesystem::path found = failed ? root : std::filesystem::weakly_canonical(path, failed);
+    if (failed) return Error{printable(shown, 80) + ": " + failed.message(), "", ""};
+    if (std::mismatch(root.begin(), root.end(), found.begin(), found.end()).first != root.end())
+        return Error{printable(shown, 80) + ": leaves the folder of the scene", "",
                      "Only files beside the scene are read."};
-    return path;
+    return found;
 }
 
 }  // namespace domelight

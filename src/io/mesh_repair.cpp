@@ -24,6 +24,21 @@ Vec3d area_normal(const Mesh& mesh, std::size_t triangle) {
     return cross(b - a, c - a);
 }
 
+/// By vertex: the sum over the triangles around it.
+std::vector<Vec3d> normal_sums(const Mesh& mesh) {
+    std::vector<Vec3d> sums(mesh.positions.size());
+    for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
+        const Vec3d n = area_normal(mesh, t);
+        for (std::size_t k = 0; k < 3; ++k) sums[mesh.indices[t + k]] = sums[mesh.indices[t + k]] + n;
+    }
+    return sums;
+}
+
+Vec3f direction(const Vec3d& sum) {
+    const double l = length(sum);
+    return l > 0 && std::isfinite(l) ? Vec3f(sum / l) : Vec3f{0, 1, 0};
+}
+
 bool unit(const Vec3f& n) {
     const float squared = dot(n, n);
     return std::abs(squared - 1) < 1e-6f;
@@ -77,16 +92,11 @@ void MeshRepairs::mend_normals(Mesh& mesh) {
             lost.push_back(std::uint32_t(v));
     }
     if (lost.empty()) return;
-    std::vector<Vec3d> sums(mesh.positions.size());
-    for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
-        const Vec3d n = area_normal(mesh, t);
-        for (std::size_t k = 0; k < 3; ++k) sums[mesh.indices[t + k]] = sums[mesh.indices[t + k]] + n;
-    }
+    const std::vector<Vec3d> sums = normal_sums(mesh);
     std::int64_t used = 0;
     for (const std::uint32_t v : lost) {
-        const double l = length(sums[v]);
-        mesh.normals[v] = l > 0 ? Vec3f(sums[v] / l) : Vec3f{0, 1, 0};
-        used += l > 0;
+        mesh.normals[v] = direction(sums[v]);
+        used += sums[v] != Vec3d{};
     }
     note(normals_, used, mesh.name);
 }
@@ -133,6 +143,12 @@ std::vector<std::string> MeshRepairs::warnings() const {
     say(tangents_, "tangents of no length: tangents left out, to be derived from texture coordinates");
     say(attributes_, "texture coordinates or colours that are not finite set to 0");
     return lines;
+}
+
+void smooth_normals(Mesh& mesh) {
+    const std::vector<Vec3d> sums = normal_sums(mesh);
+    mesh.normals.resize(sums.size());
+    for (std::size_t v = 0; v < sums.size(); ++v) mesh.normals[v] = direction(sums[v]);
 }
 
 }  // namespace domelight

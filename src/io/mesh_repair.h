@@ -35,4 +35,7 @@ class MeshRepairs {
     Kind broken_, flat_, normals_, tangents_, attributes_;
 };
 
+/// Gives every vertex the mean direction of the triangles around it, by area; one without any points up.
+void smooth_normals(Mesh& mesh);
+
 }  // namespace domelight
