@@ -201,10 +201,15 @@ void DocumentParser::read_cameras() {
             camera.orthographic = true;
             camera.half_height =
                 std::abs(fields.require("orthographic").object("orthographic").require("ymag").number("ymag", 1));
-            if (camera.half_height == 0) fields.fail("orthographic.ymag", "is 0");
+            const float half_width = std::abs(fields.object("orthographic").number("xmag", 0));
+            if (camera.half_height == 0)
+                fields.fail("orthographic.ymag", "is 0");
+            else
+                camera.aspect = half_width / camera.half_height;
         } else if (type == "perspective") {
             camera.fov_y =
                 fields.require("perspective").object("perspective").require("yfov").number("yfov", camera.fov_y);
+            camera.aspect = fields.object("perspective").number("aspectRatio", 0, 0, 1e6f);
             if (!(camera.fov_y > 0 && camera.fov_y < float(k_pi)))
                 fields.fail("perspective.yfov", "is not between 0 and pi");
         } else {

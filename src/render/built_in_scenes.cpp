@@ -87,11 +87,12 @@ void add(Scene& scene, Mesh mesh, const Affine& to_world = {}) {
     scene.meshes.push_back(std::move(mesh));
 }
 
-void add_camera(Scene& scene, const Vec3f& eye, const Vec3f& target, float fov_y) {
+void add_camera(Scene& scene, const Vec3f& eye, const Vec3f& target, float fov_y, float aspect) {
     const Vec3f z = normalize(eye - target), x = normalize(cross(Vec3f{0, 1, 0}, z));
     Camera camera;
     camera.to_world = {x, cross(z, x), z, eye};
     camera.fov_y = fov_y;
+    camera.aspect = aspect;
     camera.name = "camera";
     scene.cameras.push_back(std::move(camera));
 }
@@ -114,7 +115,7 @@ Scene spheres() {
                 {{radius, 0, 0}, {0, radius, 0}, {0, 0, radius}, {float(column) - 3.0f, metal ? 0.5f : -0.5f, 0}});
         }
     // Far away, so that all spheres are seen nearly alike.
-    add_camera(scene, {0, 0, 20}, {}, 2 * std::atan(3.65f * 9 / 16 / 20));
+    add_camera(scene, {0, 0, 20}, {}, 2 * std::atan(3.65f * 9 / 16 / 20), 16.0f / 9);
     return scene;
 }
 
@@ -156,7 +157,7 @@ Scene ball() {
     add(scene, std::move(plinth));
 
     add(scene, ground(2, 12));
-    add_camera(scene, {0, 2.6f, 6.2f}, {0, 1.15f, 0}, 0.52f);
+    add_camera(scene, {0, 2.6f, 6.2f}, {0, 1.15f, 0}, 0.52f, 1);
     return scene;
 }
 
@@ -165,7 +166,7 @@ Scene furnace() {
     Scene scene;
     scene.materials.push_back(material("white", {1, 1, 1}, 1, 0.5f));
     add(scene, sphere(0, 512));
-    add_camera(scene, {0, 0, 4.2f}, {}, 0.61f);
+    add_camera(scene, {0, 0, 4.2f}, {}, 0.61f, 1);
     return scene;
 }
 
