@@ -65,6 +65,16 @@ void draw_boxes(ImageView<std::uint8_t> image, int left, int top, const Fit& fit
     });
 }
 
+/// Exposure, tone map and the sRGB curve, to 8 bits.
+struct Display {
+    Tonemap method;
+    float exposure;
+    Colour8 shown(const Vec3f& radiance) const {
+        const Vec3f c = tonemap(radiance * exposure, method);
+        return {to_byte(srgb_encode(c.x)), to_byte(srgb_encode(c.y)), to_byte(srgb_encode(c.z))};
+    }
+};
+
 /// Averages of radiance, shown: what a camera further away would have seen.
 void draw_picture(ImageView<std::uint8_t> image, int left, int top, const Fit& fit, ImageView<const float> picture,
                   const Display& display, int threads) {
@@ -75,8 +85,7 @@ void draw_picture(ImageView<std::uint8_t> image, int left, int top, const Fit& f
                 const float* p = picture.at(x, y);
                 sum = sum + Vec3f{p[0], p[1], p[2]};
             }
-        const auto c = display.rgb8(sum / float((b.x1 - b.x0) * (b.y1 - b.y0)));
-        return {c[0], c[1], c[2]};
+        return display.shown(sum / float((b.x1 - b.x0) * (b.y1 - b.y0)));
     });
 }
 
@@ -154,7 +163,7 @@ Image<std::uint8_t> compare_sheet(const CompareSheet& sheet, int threads) {
     draw_text(view, k_margin, 38, fit_text(sheet.title, FontSize::large, inner), FontSize::large, k_bright);
     draw_text(view, k_margin, 62, fit_text(sheet.subtitle, FontSize::small, inner), FontSize::small, k_quiet);
 
-    const Display display(sheet.tone_map ? Tonemap::neutral : Tonemap::none, float(std::exp2(sheet.exposure_ev)));
+    const Display display{sheet.tone_map ? Tonemap::neutral : Tonemap::none, float(std::exp2(sheet.exposure_ev))};
     const auto at = [&](int i) {
         return std::pair(k_margin + i % columns * (cell + k_gap), header + i / columns * cell_height);
     };
