@@ -155,7 +155,7 @@ double automatic_exposure(ImageView<const float> image, Mask mask) {
 
 /// A picture as a display shows it: sRGB values, 0 to 1.
 ImageF shown(const Picture& picture, double exposure_ev) {
-    const Display display(picture.high_dynamic_range ? Tonemap::neutral : Tonemap::none, float(std::exp2(exposure_ev)));
+    const Display display{picture.high_dynamic_range ? Tonemap::neutral : Tonemap::none, float(std::exp2(exposure_ev))};
     ImageF out(picture.rgb.width(), picture.rgb.height(), 3);
     for (int y = 0; y < out.height(); ++y)
         for (int x = 0; x < out.width(); ++x) {

@@ -143,15 +143,15 @@ Result<void> write_picture(const std::string& file, const RenderResult& r, const
                            : w.tonemap == "neutral" ? Tonemap::neutral
                            : w.tonemap == "agx"     ? Tonemap::agx
                                                     : Tonemap::agx_punchy;
-    const float scale = float(std::exp2(ev));
+    const Display display{method, float(std::exp2(ev))};
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const float *p = r.radiance.at(x, y), opacity = *r.opacity.at(x, y);
             Vec3f c{p[0], p[1], p[2]};
             if (transparent && opacity > 0) c = c / opacity;  // PNG's colours are not multiplied with their opacity
-            c = tonemap(c * scale, method);
+            const auto rgb = display.rgb8(c);
             std::uint8_t* q = pixels.at(x, y);
-            q[0] = to_byte(srgb_encode(c.x)), q[1] = to_byte(srgb_encode(c.y)), q[2] = to_byte(srgb_encode(c.z));
+            std::copy(rgb.begin(), rgb.end(), q);
             if (transparent) q[3] = to_byte(std::clamp(opacity, 0.f, 1.f));
         }
     return write_png(file, pixels.view());

@@ -65,16 +65,6 @@ void draw_boxes(ImageView<std::uint8_t> image, int left, int top, const Fit& fit
     });
 }
 
-/// Exposure, tone map and the sRGB curve, to 8 bits.
-struct Display {
-    Tonemap method;
-    float exposure;
-    Colour8 shown(const Vec3f& radiance) const {
-        const Vec3f c = tonemap(radiance * exposure, method);
-        return {to_byte(srgb_encode(c.x)), to_byte(srgb_encode(c.y)), to_byte(srgb_encode(c.z))};
-    }
-};
-
 /// Averages of radiance, shown: what a camera further away would have seen.
 void draw_picture(ImageView<std::uint8_t> image, int left, int top, const Fit& fit, ImageView<const float> picture,
                   const Display& display, int threads) {
@@ -85,7 +75,8 @@ void draw_picture(ImageView<std::uint8_t> image, int left, int top, const Fit& f
                 const float* p = picture.at(x, y);
                 sum = sum + Vec3f{p[0], p[1], p[2]};
             }
-        return display.shown(sum / float((b.x1 - b.x0) * (b.y1 - b.y0)));
+        const auto c = display.rgb8(sum / float((b.x1 - b.x0) * (b.y1 - b.y0)));
+        return {c[0], c[1], c[2]};
     });
 }
 

@@ -3,6 +3,7 @@
 #include "domelight/image.h"
 #include "domelight/vec.h"
 
+#include <array>
 #include <cstdint>
 
 namespace domelight {
@@ -26,6 +27,16 @@ float srgb_encode(float linear);
 inline std::uint8_t to_byte(float v) {
     return std::uint8_t(v * 255 + 0.5f);
 }
+
+/// Exposure, tone map and the sRGB curve, to 8 bits.
+struct Display {
+    Tonemap method = Tonemap::agx;
+    float exposure = 1;
+    std::array<std::uint8_t, 3> rgb8(const Vec3f& radiance) const {
+        const Vec3f c = tonemap(radiance * exposure, method);
+        return {to_byte(srgb_encode(c.x)), to_byte(srgb_encode(c.y)), to_byte(srgb_encode(c.z))};
+    }
+};
 
 inline float luminance(const Vec3f& v) {
     return 0.2126f * v.x + 0.7152f * v.y + 0.0722f * v.z;
