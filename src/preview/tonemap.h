@@ -28,13 +28,18 @@ inline std::uint8_t to_byte(float v) {
     return std::uint8_t(v * 255 + 0.5f);
 }
 
-/// Exposure, tone map and the sRGB curve, to 8 bits.
+/// Exposure, tone map and the sRGB curve.
 struct Display {
     Tonemap method = Tonemap::agx;
     float exposure = 1;
-    std::array<std::uint8_t, 3> rgb8(const Vec3f& radiance) const {
+    /// sRGB values, 0..1.
+    Vec3f encoded(const Vec3f& radiance) const {
         const Vec3f c = tonemap(radiance * exposure, method);
-        return {to_byte(srgb_encode(c.x)), to_byte(srgb_encode(c.y)), to_byte(srgb_encode(c.z))};
+        return {srgb_encode(c.x), srgb_encode(c.y), srgb_encode(c.z)};
+    }
+    std::array<std::uint8_t, 3> rgb8(const Vec3f& radiance) const {
+        const Vec3f c = encoded(radiance);
+        return {to_byte(c.x), to_byte(c.y), to_byte(c.z)};
     }
 };
 
