@@ -1,8 +1,6 @@
 #pragma once
 // What is lit: surfaces, their materials and textures, lights and cameras, in the world of glTF 2.0: metres, right-handed, +Y up.
 
-#include <array>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -41,15 +39,9 @@ struct SceneTexture {
     int texcoord = 0;  ///< which set of texture coordinates, 0 or 1
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool nearest = false;
-    /// KHR_texture_transform: uv' = translation * rotation * scale * uv.
+    /// KHR_texture_transform: uv' = translation * rotation * scale * uv; a positive rotation is counter-clockwise as seen
+    /// with v running down (the GLSL in the extension's text turns the other way, its sample model and other readers do not).
     float offset_u = 0, offset_v = 0, rotation = 0, scale_u = 1, scale_v = 1;
-    /// That transform without its offset, by rows: u' = m[0] u + m[1] v + offset_u, v' = m[2] u + m[3] v + offset_v. A positive rotation turns
-    /// texture coordinates counter-clockwise as seen in the image (v runs down), as the extension's sample model wants it; the GLSL in the
-    /// extension's text turns the other way.
-    std::array<float, 4> uv_matrix() const {
-        const float c = std::cos(rotation), s = std::sin(rotation);
-        return {c * scale_u, s * scale_v, -s * scale_u, c * scale_v};
-    }
     explicit operator bool() const { return image >= 0; }
 };
 
