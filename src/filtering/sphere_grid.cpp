@@ -142,9 +142,10 @@ Cubemap grid_to_cube(const SphereGrid& grid, int size, const LookupOptions& opti
         for (int x = 0; x < size; ++x) row[x] = cube_direction(face, {(x + 0.5) / size, (y + 0.5) / size});
         return row;
     };
-    // Where the source's pole is the world's, the side faces are turns of one another.
+    // Where the source's pole is the world's, the side faces are turns of one another: by +90 degrees from one to the next, unless it is mirrored.
     constexpr int sides[4] = {0, 4, 1, 5}, poles[2] = {2, 3};
-    const bool turns = options.world_to_source.row[1] == Vec3d{0, 1, 0} && grid.grid().width % 4 == 0;
+    const auto& m = options.world_to_source.row;
+    const bool turns = m[1] == Vec3d{0, 1, 0} && cross(m[2], m[0]).y > 0 && grid.grid().width % 4 == 0;
     if (turns)
         clamped += for_rows(size, options.threads, [&](int y) {
             auto row = directions(sides[0], y);
