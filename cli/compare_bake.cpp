@@ -7,6 +7,7 @@
 #include "environment_options.h"
 #include "io/cube_texture_reader.h"
 #include "io/file_reader.h"
+#include "projection/latlong_convention.h"
 
 #include <fmt/core.h>
 
@@ -100,6 +101,15 @@ Result<Bake> read_bake(const BakeWords& w, int threads) {
     return bake;
 }
 
+/// The named lat-long convention by which the baker read the source, where that explains the orientation.
+std::string convention_of(const Mat3& ours_from_theirs, const Mat3& world_to_source) {
+    if (ours_from_theirs == Mat3()) return "";
+    const Mat3 read = world_to_source * ours_from_theirs;
+    for (const char* name : {"default", "usd", "materialx", "mod"})
+        if (const auto convention = latlong_convention(name); convention && convention->world_to_default() == read) return name;
+    return "";
+}
+
 // --- telling ---
 
 Json level_json(int index, const LevelAudit& l) {
@@ -120,7 +130,7 @@ Json level_json(int index, const LevelAudit& l) {
     return json;
 }
 
-void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, const std::vector<std::string>& warnings) {
+void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, const std::string& as_convention, const std::vector<std::string>& warnings) {
     const CubeOrientation& o = audit.orientation;
     Json matrix = Json::array(), levels = Json::array();
     for (const Vec3d& row : o.ours_from_theirs.row) matrix.push_back({row.x, row.y, row.z});
@@ -130,7 +140,7 @@ void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, co
                     {"bake", w.bake},
                     {"format", bake.format},
                     {"env", w.env},
-                    {"orientation", {{"words", o.words}, {"ours_from_theirs", matrix}, {"certain", o.certain}, {"error", o.error}, {"next_error", o.next_error}}},
+                    {"orientation", {{"words", o.words}, {"ours_from_theirs", matrix}, {"latlong", as_convention.empty() ? Json() : Json(as_convention)}, {"certain", o.certain}, {"error", o.error}, {"next_error", o.next_error}}},
                     {"roughness_stated_by", bake.stated_by},
                     {"levels", levels},
                     {"warnings", warnings}};
@@ -141,12 +151,13 @@ std::string percent(double v) {
     return fmt::format("{:.3g} %", 100 * v);
 }
 
-void print_text(const BakeWords& w, const Bake& bake, const BakeAudit& audit) {
+void print_text(const BakeWords& w, const Bake& bake, const BakeAudit& audit, const std::string& as_convention) {
     const CubeOrientation& o = audit.orientation;
     fmt::print("{}: {}, {}², {} level{}\n", join(w.bake, " "), bake.format, bake.levels[0].cube.size(), bake.levels.size(),
                bake.levels.size() == 1 ? "" : "s");
     fmt::print("against the exact filter of {}\n\n", w.env.empty() ? "the built-in sky" : join(w.env, " "));
-    fmt::print("  orientation   {}{}\n", o.words, o.words == "mirrored in x" ? " (as cmgen writes and Filament reads)" : "");
+    fmt::print("  orientation   {}\n", o.words);
+    if (!as_convention.empty()) fmt::print("                that is as ours with --latlong {}\n", as_convention);
     fmt::print("                error {}, the next best orientation {}{}\n\n", percent(o.error), percent(o.next_error),
                o.certain ? "" : ": the light cannot tell them apart");
     const bool stated = std::any_of(audit.levels.begin(), audit.levels.end(), [](const LevelAudit& l) { return l.stated_roughness.has_value(); });
@@ -215,10 +226,12 @@ int compare_bake(const BakeWords& w, const CommonOptions& common) {
     }
     if (!audit) return print_error(audit.error().at(w.bake[0]));
     print_warnings(environment->report->warnings, common, join(w.env, " "));
+    const std::string convention =
+        source.cube ? "" : convention_of(audit->orientation.ours_from_theirs, source.world_to_source);
     if (common.json)
-        print_json(w, *bake, *audit, environment->report->warnings);
+        print_json(w, *bake, *audit, convention, environment->report->warnings);
     else if (!common.quiet)
-        print_text(w, *bake, *audit);
+        print_text(w, *bake, *audit, convention);
     return exit_done;
 }
 

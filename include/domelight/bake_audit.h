@@ -63,7 +63,7 @@ struct BakeAudit {
 struct AuditOptions {
     int texels = 6144;  ///< looked at in each level, spread over it evenly at random; all of smaller levels
     int threads = 0;    ///< 0: all
-    Progress progress;
+    Progress progress = {};
 };
 
 /// Audits a bake. The exact filter is prefilter() at the level's own size, on a ladder of roughnesses that is refined twice about the best; the 48

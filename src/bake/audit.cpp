@@ -29,6 +29,8 @@ std::vector<double> ladder(int size) {
 
 constexpr std::int64_t k_most_bytes = std::int64_t(512) << 20;  ///< of exact levels held at once
 
+constexpr double k_good_fit = 5e-3;  ///< an error below which a guess is taken to be right: encodings leave up to 0.005
+
 /// The exact filter of the source on demand.
 class Exact {
   public:
@@ -147,11 +149,18 @@ double width_of_minimum(const std::vector<Candidate>& tried, std::size_t best) {
 
 Result<LevelAudit> audit_level(const CubeLevel& level, const TexelSample& sample, const Mat3& orientation, const Exact& exact) {
     const std::vector<int> turned = turned_texels(sample, orientation);
+    // Where the stated roughness fits as well as any could, only its neighbourhood is searched.
+    const double guess = level.roughness.value_or(0);
     std::vector<Candidate> tried;
-    if (auto ok = try_roughness(sample, turned, exact, ladder(sample.size), tried); !ok) return ok.error();
+    if (auto ok = try_roughness(sample, turned, exact, std::span(&guess, 1), tried); !ok) return ok.error();
+    const bool guessed = tried[0].fit.error < k_good_fit;
+    std::vector<double> first = guessed ? std::vector<double>{guess - 0.1, guess - 0.02, guess + 0.02, guess + 0.1} : ladder(sample.size);
+    if (guessed && guess == 0) first = {least_roughness(sample.size), least_roughness(sample.size) + 0.1};
+    std::erase_if(first, [&](double r) { return r == guess || r > 1 || (r != 0 && r < least_roughness(sample.size)); });
+    if (auto ok = try_roughness(sample, turned, exact, first, tried); !ok) return ok.error();
     double worst = 0;
     for (const Candidate& c : tried) worst = std::max(worst, c.fit.error);
-    for (int round = 0; round < 2; ++round) {
+    for (int round = guessed ? 1 : 0; round < 2; ++round) {
         const std::size_t best = best_of(tried);
         const double low = tried[best > 0 ? best - 1 : 0].roughness, at = tried[best].roughness,
                      high = tried[std::min(best + 1, tried.size() - 1)].roughness;

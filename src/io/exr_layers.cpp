@@ -92,7 +92,8 @@ Result<ImageF> Layers::read(std::span<const std::string> names) {
             const auto found = std::find(names_.begin(), names_.end(), names[i]);
             if (found == names_.end()) return Error{fmt::format("no channel {}", printable(names[i])), "", ""};
             const Place& place = places_[std::size_t(found - names_.begin())];
-            if (place.part == p) wanted.emplace_back(place.channel, int(i));
+            const bool first = std::find(names.begin(), names.begin() + std::ptrdiff_t(i), names[i]) == names.begin() + std::ptrdiff_t(i);
+            if (place.part == p && first) wanted.emplace_back(place.channel, int(i));
         }
         if (wanted.empty()) continue;
         try {
@@ -101,6 +102,11 @@ Result<ImageF> Layers::read(std::span<const std::string> names) {
             return Error{"decoding failed: " + exr_message(e), "", "The file is truncated or damaged."};
         }
     }
+    // OpenEXR reads a channel into one place only.
+    for (std::size_t i = 1; i < names.size(); ++i)
+        if (const auto first = std::size_t(std::find(names.begin(), names.end(), names[i]) - names.begin()); first < i)
+            for (int y = 0; y < image.height(); ++y)
+                for (int x = 0; x < image.width(); ++x) image.at(x, y)[i] = image.at(x, y)[first];
     return image;
 }
 

@@ -22,7 +22,7 @@ struct Picture {
 };
 
 struct PictureOptions {
-    std::string layer;  ///< OpenEXR: which layer or channel; empty: the unnamed one, else the first with colour
+    std::string layer = {};  ///< OpenEXR: which layer or channel; empty: the unnamed one, else the first with colour
     int level = 0;      ///< textures: which level
     /// What a file's variance layer holds: that of one sample, to be divided by the channel "samples", or that of the pixel's value. auto: of one
     /// sample where there is a channel "samples".

@@ -63,7 +63,7 @@ def named_files(value):
 
 
 def test_examples_in_every_help_run(folder):
-    for command in ["bake", "info", "lights", "sample", "sky"]:
+    for command in ["bake", "compare", "info", "lights", "sample", "sky"]:
         text = run(command, "--help", folder=folder).stdout
         assert text.startswith("Examples:\n"), f"{command} --help does not open with examples"
         examples = [line.strip() for line in text.split("\n\n")[0].splitlines()[1:]]
@@ -83,8 +83,8 @@ def test_version(folder):
 
 def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
     cases = [
-        (["nonsense"], "bake, info, render, lights, sample, sky"),
-        (["--nonsense"], "bake, info, render, lights, sample, sky"),
+        (["nonsense"], "bake, compare, info, render, lights, sample, sky"),
+        (["--nonsense"], "bake, compare, info, render, lights, sample, sky"),
         (["bake", "-o", "o", "--nonsense"], "--lobe"),
         (["bake"], "-o DIR"),
         (["bake", "-o", "o", "--lobe", "blinn"], "ggx, charlie, phong, phong-plain"),
@@ -120,6 +120,15 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["bake", "studio.hdr", "-o", "o", "--latlong", "sideways"], "materialx"),
         (["bake", "studio.hdr", "-o", "o", "--projection", "fisheye"], "cube-cross"),
         (["bake", "studio.hdr", "-o", "o", "--up", "w"], "--up"),
+        (["compare", "studio.hdr"], "two pictures"),
+        (["compare", "studio.hdr", "evening.hdr", "--fail-above", "rmse"], "METRIC=VALUE"),
+        (["compare", "studio.hdr", "evening.hdr", "--fail-above", "colour=1"], "rmse, relative, tone-mapped"),
+        (["compare", "studio.hdr", "evening.hdr", "--fail-above", "chi2=1"], "variance"),
+        (["compare", "studio.hdr", "evening.hdr", "--heat-of", "warmth"], "hdr-flip, flip, difference"),
+        (["compare", "studio.hdr", "evening.hdr", "--heat", "h.jpg"], ".png"),
+        (["compare", "studio.hdr", "evening.hdr", "--view-exposure", "bright"], "auto"),
+        (["compare", "studio.hdr", "--bake", "a.ktx2"], "--env"),
+        (["compare", "--bake", "a.ktx2", "--texels", "3"], "--texels"),
         (["sky"], "-o sky.hdr"),
         (["sky", "-o", "sky.tiff"], ".hdr, .exr, .png"),
         (["sky", "-o", "sky.hdr", "--turbidity", "50"], "1 to 10"),
@@ -702,6 +711,103 @@ def test_lights_without_a_light(folder):
     assert lights_of(folder / "out")["lights"] == [] and "nodes" not in json.loads((folder / "out/lights.gltf").read_text())
     run("sky", "-o", "coarse.hdr", "--height", "16", folder=folder)
     assert "too coarse" in run("lights", "coarse.hdr", "-o", "coarse", folder=folder).stderr
+
+
+# --- compare ---
+
+
+def test_compare_tells_and_fails_by_a_limit(folder):
+    same = json.loads(run("compare", "studio.hdr", "studio.hdr", "--json", "--fail-above", "flip=0", "--fail-below", "ssim=1", folder=folder).stdout)
+    assert same["errors"]["rmse"] == 0 and same["errors"]["hdr_flip"] == 0 and same["errors"]["mean_ratio"] == 1 and same["failures"] == []
+    result = run("compare", "evening.hdr", "studio.hdr", "--json", "--fail-above", "relative=0.01", folder=folder, code=1)
+    told = json.loads(result.stdout)
+    assert told["errors"]["relative_rmse"] > 0.01 and len(told["failures"]) == 1, told
+    assert "error: studio.hdr: relative is" in result.stderr, result.stderr
+    text = run("compare", "evening.hdr", "studio.hdr", folder=folder).stdout
+    for name in ["RMSE", "relative RMSE", "tone-mapped RMSE", "PSNR", "SSIM", "FLIP", "HDR-FLIP", "mean A / mean B"]:
+        assert name in text, text
+    again = run("compare", "evening.hdr", "studio.hdr", "--threads", "3", "--json", folder=folder).stdout
+    assert again == run("compare", "evening.hdr", "studio.hdr", "--threads", "1", "--json", folder=folder).stdout
+
+
+def test_compare_draws(folder):
+    for name in ["hdr-flip", "flip", "difference", "tone-mapped", "relative", "ssim"]:
+        run("compare", "evening.hdr", "studio.hdr", "--heat", f"{name}.png", "--heat-of", name, "--quiet", folder=folder)
+        assert (folder / f"{name}.png").read_bytes().startswith(b"\x89PNG")
+    run("compare", "evening.hdr", "studio.hdr", "--sheet", "a.png", "--threads", "1", folder=folder)
+    run("compare", "evening.hdr", "studio.hdr", "--sheet", "b.png", "--threads", "3", folder=folder)
+    assert (folder / "a.png").read_bytes() == (folder / "b.png").read_bytes()
+    run("compare", "evening.hdr", "studio.hdr", "--heat", "h.png", "--no-flip", folder=folder)
+
+
+def test_compare_refuses_what_cannot_be_compared(folder):
+    run("sky", "-o", "small.hdr", "--height", "16", folder=folder)
+    assert "32 x 16, but studio.hdr is 64 x 32" in run("compare", "small.hdr", "studio.hdr", folder=folder, code=1).stderr
+    assert "missing.hdr" in run("compare", "missing.hdr", "studio.hdr", folder=folder, code=1).stderr
+    (folder / "good.exr").write_bytes(make_exr(8, 4, {}))
+    (folder / "bad.exr").write_bytes(make_exr(8, 4, {11: float("nan"), 12: float("inf"), 20: float("-inf")}))
+    refused = run("compare", "bad.exr", "good.exr", folder=folder, code=1)
+    assert "3 pixels are NaN or infinite, the first at (3, 1)" in refused.stderr and "--skip-bad" in refused.stderr, refused.stderr
+    skipped = json.loads(run("compare", "bad.exr", "good.exr", "--skip-bad", "--json", folder=folder).stdout)
+    assert skipped["skipped_pixels"] == 3 and skipped["errors"]["pixels"] == 29 and skipped["errors"]["rmse"] == 0, skipped
+    (folder / "mask.exr").write_bytes(make_exr(8, 4, {i: 0.0 for i in range(32)}))
+    assert "leaves no pixel" in run("compare", "good.exr", "good.exr", "--mask", "mask.exr", folder=folder, code=1).stderr
+    assert "mask.exr" in run("compare", "studio.hdr", "studio.hdr", "--mask", "mask.exr", folder=folder, code=1).stderr
+    assert "(unnamed)" in run("compare", "good.exr", "good.exr", "--layer", "diffuse", folder=folder, code=1).stderr
+    assert "layers" in run("compare", "studio.hdr", "studio.hdr", "--layer", "diffuse", folder=folder, code=1).stderr
+
+
+def test_compare_masks_and_tables_by_object(folder):
+    (folder / "b.exr").write_bytes(make_exr(8, 4, {}))
+    (folder / "a.exr").write_bytes(make_exr(8, 4, {i: 1.5 for i in range(8)}))  # the first row's red is 1 too bright
+    (folder / "rows.exr").write_bytes(make_exr(8, 4, {i: float(i // 8) for i in range(32)}))
+    told = json.loads(run("compare", "a.exr", "b.exr", "--objects", "rows.exr", "--json", folder=folder).stdout)
+    assert [o["name"] for o in told["objects"]] == [f"object {i}" for i in range(4)]
+    assert abs(told["objects"][0]["rmse"] - (1 / 3) ** 0.5) < 1e-6 and told["objects"][3]["rmse"] == 0, told["objects"]
+    assert "object 2" in run("compare", "a.exr", "b.exr", "--objects", "rows.exr", folder=folder).stdout
+    masked = json.loads(run("compare", "a.exr", "b.exr", "--mask", "rows.exr", "--json", folder=folder).stdout)
+    assert masked["errors"]["pixels"] == 24 and masked["errors"]["rmse"] == 0, masked
+
+
+def test_compare_audits_our_bakes(folder):
+    run("bake", "studio.hdr", "-o", "o", *SMALL, folder=folder)
+    audit = json.loads(run("compare", "--bake", "o/specular.ktx2", "--env", "studio.hdr", "--json", folder=folder).stdout)
+    assert audit["orientation"]["words"] == "as ours", audit["orientation"]
+    for level in audit["levels"]:
+        assert level["error"] < 2e-3 and abs(level["scale"] - 1) < 1e-3 and level["stated_error"] < 2e-3, level
+    text = run("compare", "--bake", "o/specular.ktx2", "--env", "studio.hdr", folder=folder).stdout
+    assert "orientation   as ours" in text, text
+    turned = run("compare", "--bake", "o/specular.ktx2", "--env", "studio.hdr", "--latlong", "usd", folder=folder).stdout
+    assert "turned by" in turned and "--latlong default" in turned, turned
+    run("bake", "studio.hdr", "-o", "f", "--size", "16", "--format", "exr", "--levels", "2", "--no-preview", folder=folder)
+    pictures = [str(p.relative_to(folder)) for p in sorted((folder / "f").glob("specular*.exr"))]
+    text = run("compare", *[w for p in pictures for w in ("--bake", p)], "--env", "studio.hdr", folder=folder).stdout
+    assert "orientation   as ours" in text, text
+    assert "not a cube" in run("compare", "--bake", "o/brdf.ktx2", "--env", "studio.hdr", folder=folder, code=1).stderr
+    assert "studio.hdr" in run("compare", "--bake", "studio.hdr", "--env", "studio.hdr", folder=folder, code=1).stderr
+
+
+def test_compare_agrees_with_flip_evaluator(folder):
+    """PyPI's flip-evaluator itself, where the interpreter that FLIP_PYTHON names (else this one) has it."""
+    python = os.environ.get("FLIP_PYTHON", sys.executable)
+    if subprocess.run([python, "-c", "import flip_evaluator"], capture_output=True).returncode:
+        raise Skipped("flip-evaluator is not installed (pip install flip-evaluator; FLIP_PYTHON names its interpreter)")
+
+    def agrees(kind, a, b, key):
+        code = f"from flip_evaluator import evaluate; print('mean', evaluate({b!r}, {a!r}, {kind!r}, applyMagma=False)[1])"
+        theirs = float(subprocess.run([python, "-c", code], cwd=folder, capture_output=True, text=True, check=True).stdout.split("mean")[-1])
+        ours = json.loads(run("compare", a, b, "--json", folder=folder).stdout)["errors"][key]
+        print(f"  {kind} {a}: theirs {theirs:.6f}, ours {ours:.6f}")
+        assert ours > 0.001 and abs(theirs - ours) < 1e-4, (kind, theirs, ours)
+
+    for elevation in [40, 12, 5]:
+        for letter, turbidity in [("a", 2), ("b", 4)]:
+            run("sky", "-o", f"{letter}{elevation}.exr", "--exr", "float", "--height", "64", "--sun-elevation-deg", elevation, "--turbidity", turbidity, folder=folder)
+        agrees("HDR", f"a{elevation}.exr", f"b{elevation}.exr", "hdr_flip")
+    for name in ["difference", "tone-mapped", "relative"]:  # pictures for a screen that lie at hand
+        run("compare", "a12.exr", "b12.exr", "--heat", f"{name}.png", "--heat-of", name, "--quiet", folder=folder)
+    agrees("LDR", "difference.png", "relative.png", "flip")
+    agrees("LDR", "tone-mapped.png", "relative.png", "flip")
 
 
 def make_exr(width, height, special):
