@@ -161,10 +161,6 @@ ImageF shown(const Picture& picture, double exposure_ev) {
         for (int x = 0; x < out.width(); ++x) {
             const float* p = picture.rgb.at(x, y);
             float* q = out.at(x, y);
-            if (!picture.high_dynamic_range) {  // back to the very values of the file: the display's tables are good for 8 bits only
-                for (int i = 0; i < 3; ++i) q[i] = srgb_encode(std::clamp(p[i] * display.exposure(), 0.0f, 1.0f));
-                continue;
-            }
             const Vec3f v = display.encoded({p[0], p[1], p[2]});
             q[0] = v.x, q[1] = v.y, q[2] = v.z;
         }
