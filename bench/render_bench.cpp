@@ -1,6 +1,6 @@
 // Rendering speed: CPU time, rays a second beside Embree's bare rate, and the tone-mapped error against a converged picture.
 //
-//   render_bench [SCENE.glb|sphere ENVIRONMENT [MATERIAL]]      MATERIAL: keep | lambert:A | metal:R, given to every mesh but the floor
+//   render_bench [SCENE.glb|sphere ENVIRONMENT [MATERIAL]]      MATERIAL: keep | lambert:A | metal:R, given to every object but the one named floor
 //
 // One thread. Without arguments a sphere under the built-in sky.
 
@@ -64,8 +64,10 @@ int main(int argc, char** argv) {
     }
     if (argc >= 4 && std::strcmp(argv[3], "keep") != 0) {
         const float value = float(std::atof(std::strchr(argv[3], ':') + 1));
-        for (Material& m : scene.materials)
-            m = m.name == "floor" ? test::lambert_material(0.5f) : argv[3][0] == 'l' ? test::lambert_material(value) : test::metal_material(value);
+        for (const Instance& instance : scene.instances)
+            if (instance.name != "floor")
+                scene.materials[std::size_t(scene.meshes[std::size_t(instance.mesh)].material)] =
+                    argv[3][0] == 'l' ? test::lambert_material(value) : test::metal_material(value);
     }
     double start = cpu_seconds();
     auto traced = RayScene::build(std::move(scene), 1);
