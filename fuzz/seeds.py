@@ -3,8 +3,8 @@
 
     seeds.py TARGET FOLDER
 
-They are files that the program (DOMELIGHT_PROGRAM) writes, the made-up hostile ones of tests/malformed, and the malformed ones of
-DOMELIGHT_DATA. The first word of TARGET is a format (exr_reader_fuzz): files of that format, told by their first bytes, since most malformed
+They are files that the program (DOMELIGHT_PROGRAM) writes, the made-up hostile ones of tests/malformed, small scenes, and the
+malformed ones of DOMELIGHT_DATA. The first word of TARGET is a format (exr_reader_fuzz): files of that format, told by their first bytes, since most malformed
 ones have no usual name. A target of another name gets all.
 """
 
@@ -18,6 +18,7 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "tests" / "malformed"))
 from hostile import hostile_files  # noqa: E402
+from scene_samples import scene_files  # noqa: E402
 
 LARGEST = 256 << 10  # a mutation of a large file costs as much and finds no more
 
@@ -32,6 +33,10 @@ MAGIC = {
     "ktx1": [b"\xabKTX 11"],
     "ktx": [b"\xabKTX"],
     "dds": [b"DDS "],
+    "gltf": [b"glTF", b"{"],
+    "obj": [b"# obj"],
+    "ply": [b"ply"],
+    "texture": [b"\x89PNG", b"\xff\xd8", b"RIFF"],
 }
 
 
@@ -73,6 +78,8 @@ def main():
         places = [pathlib.Path(folder)]
         for name, data in hostile_files():
             (places[0] / f"hostile-{name}").write_bytes(data)
+        for name, data in scene_files():
+            (places[0] / f"scene-{name}").write_bytes(data)
         if "DOMELIGHT_PROGRAM" in os.environ:
             places.append(made_by(os.environ["DOMELIGHT_PROGRAM"]))
         if "DOMELIGHT_DATA" in os.environ:
