@@ -1,5 +1,7 @@
 """Made-up hostile files: headers that lie about sizes, cut-off data, and things that are no image at all. All small; all must be refused."""
 
+import base64
+import json
 import struct
 import zlib
 
@@ -70,6 +72,45 @@ def dds(width, height, levels=1, dxgi=10, misc=4, array=1):
     return head + pixel_format + struct.pack("<5I", 0x401008, 0xFE00, 0, 0, 0) + struct.pack("<5I", dxgi, 3, misc, array, 0)
 
 
+def gltf(data=b"", **members):
+    """A .gltf of one triangle, some members replaced."""
+    data = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0) + data
+    document = {
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0}]}
+    return json.dumps({**document, **members}).encode()
+
+
+def gltf_files():
+    many = 1 << 31
+    packing = {"buffer": 0, "byteOffset": 36, "byteLength": 64, "byteStride": 12, "count": many, "mode": "ATTRIBUTES"}
+    packed = {"buffer": 0, "byteLength": 12 * many, "extensions": {"EXT_meshopt_compression": packing}}
+    # A Draco header of version 2.2 (sequential; no metadata) that claims 2^31 faces, as a variable-length number.
+    draco = b"DRACO\2\2\1\0\0\0" + b"\x80\x80\x80\x80\x08\x03" + bytes(40)
+    compressed = {"KHR_draco_mesh_compression": {"bufferView": 1, "attributes": {"POSITION": 0}}}
+    views = [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": len(draco)}]
+    image = "data:image/png;base64," + base64.b64encode(png(60000, 60000)).decode()
+    material = {"emissiveTexture": {"index": 0}}
+    accessor = {"componentType": 5126, "type": "VEC3"}
+    return {
+        "accessor-huge.gltf": gltf(accessors=[{**accessor, "bufferView": 0, "count": many}]),
+        "accessor-of-nothing.gltf": gltf(accessors=[{**accessor, "count": 1 << 40}]),
+        "meshopt-huge.gltf": gltf(b"\xa0" * 64, bufferViews=[packed], accessors=[{**accessor, "bufferView": 0, "count": many}]),
+        "draco-huge.gltf": gltf(draco, bufferViews=views, accessors=[{**accessor, "count": 3}],
+                                meshes=[{"primitives": [{"attributes": {"POSITION": 0}, "extensions": compressed}]}]),
+        "texture-huge.gltf": gltf(images=[{"uri": image}], textures=[{"source": 0}], materials=[material]),
+        "nodes-cyclic.gltf": gltf(nodes=[{"mesh": 0}, {"children": [2]}, {"children": [1]}]),
+        "nested.gltf": b"[" * 200_000,
+        "leaves-folder.gltf": gltf(buffers=[{"byteLength": 36, "uri": "../../../../../../etc/passwd"}]),
+        "faces-huge.ply": b"ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n"
+                          b"property float z\nend_header\n" + bytes(64),
+        "index-huge.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4000000000\n",
+    }
+
+
 def hostile_files():
     """(name, bytes) of each."""
     whole = radiance("-Y 4 +X 8", run_length_row(8) * 4)
@@ -137,4 +178,5 @@ def hostile_files():
         "dds-array.dds": dds(8, 8, array=0xFFFFFFFF),
         "dds-cut.dds": dds(8, 8)[:100],
     }
+    files.update(gltf_files())
     return sorted(files.items())

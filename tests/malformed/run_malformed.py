@@ -32,7 +32,8 @@ if SANITIZED:
     SECONDS, RESIDENT_MADE_UP, RESIDENT = 10 * SECONDS, 4 * RESIDENT_MADE_UP, 2 * RESIDENT
 
 # Not images, but what `info` may be pointed at by mistake: no use in baking each of them.
-NOT_IMAGES = {".gltf", ".glb", ".json", ".bin", ".rst", ".md"}
+SCENES = {".gltf", ".glb", ".obj", ".ply"}
+NOT_IMAGES = SCENES | {".json", ".bin", ".rst", ".md"}
 
 
 class Run:
@@ -80,12 +81,19 @@ def complaints(run, file, must_fail, resident, out_folder=None):
 
 
 def check(file, work, number, made_up):
-    """Runs `info` and, for what may be an image, `bake` over a file. Returns (failures, slowest CPU seconds, largest resident bytes)."""
+    """Runs `info` and, for what may be an image, `bake` over a file, and `render` over scenes.
+
+    Returns (failures, slowest CPU seconds, largest resident bytes).
+    """
     failures, runs = [], []
     out_folder = work / f"out-{number}"
     commands = [(["info", "--threads", "1", file], None)]
     if file.suffix not in NOT_IMAGES:
         commands.append((["bake", "--threads", "1", file, "-o", out_folder, "--size", "16", "--levels", "2"], out_folder))
+    if file.suffix in SCENES:
+        out_folder.mkdir()
+        size = ["--width", "8", "--height", "8", "--spp", "1"]
+        commands.append((["render", "--threads", "1", file, "-o", out_folder / "picture.png", *size], out_folder))
     for arguments, folder in commands:
         run = Run(arguments)
         runs.append(run)
