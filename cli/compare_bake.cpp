@@ -81,7 +81,9 @@ Result<Bake> read_pictures(const std::vector<std::string>& words, int threads) {
         auto cube = open_environment(environment_files({word}), options);
         if (!cube) return cube.error();
         if (cube->cube.empty())
-            return Error{"is not a picture of a cube", word, "Give a KTX2, KTX or DDS with its levels, or a cube picture or folder of six faces for each level."};
+            return Error{
+                "is not a picture of a cube", word,
+                "Give a KTX2, KTX or DDS with its levels, or a cube picture or folder of six faces for each level."};
         bake.format = cube->format;
         bake.levels.push_back({std::move(cube->cube), {}});
     }
@@ -89,7 +91,8 @@ Result<Bake> read_pictures(const std::vector<std::string>& words, int threads) {
 }
 
 Result<Bake> read_bake(const BakeWords& w, int threads) {
-    auto bake = w.bake.size() == 1 && is_texture_file(w.bake[0]) ? read_chain(w.bake[0]) : read_pictures(w.bake, threads);
+    auto bake =
+        w.bake.size() == 1 && is_texture_file(w.bake[0]) ? read_chain(w.bake[0]) : read_pictures(w.bake, threads);
     if (!bake || w.target.empty()) return bake;
     const auto target = find_target(w.target);
     if (!target) return target.error();
@@ -106,7 +109,8 @@ std::string convention_of(const Mat3& ours_from_theirs, const Mat3& world_to_sou
     if (ours_from_theirs == Mat3()) return "";
     const Mat3 read = world_to_source * ours_from_theirs;
     for (const char* name : {"default", "usd", "materialx", "mod"})
-        if (const auto convention = latlong_convention(name); convention && convention->world_to_default() == read) return name;
+        if (const auto convention = latlong_convention(name); convention && convention->world_to_default() == read)
+            return name;
     return "";
 }
 
@@ -130,7 +134,8 @@ Json level_json(int index, const LevelAudit& l) {
     return json;
 }
 
-void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, const std::string& as_convention, const std::vector<std::string>& warnings) {
+void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, const std::string& as_convention,
+                const std::vector<std::string>& warnings) {
     const CubeOrientation& o = audit.orientation;
     Json matrix = Json::array(), levels = Json::array();
     for (const Vec3d& row : o.ours_from_theirs.row) matrix.push_back({row.x, row.y, row.z});
@@ -140,7 +145,13 @@ void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, co
                     {"bake", w.bake},
                     {"format", bake.format},
                     {"env", w.env},
-                    {"orientation", {{"words", o.words}, {"ours_from_theirs", matrix}, {"latlong", as_convention.empty() ? Json() : Json(as_convention)}, {"certain", o.certain}, {"error", o.error}, {"next_error", o.next_error}}},
+                    {"orientation",
+                     {{"words", o.words},
+                      {"ours_from_theirs", matrix},
+                      {"latlong", as_convention.empty() ? Json() : Json(as_convention)},
+                      {"certain", o.certain},
+                      {"error", o.error},
+                      {"next_error", o.next_error}}},
                     {"roughness_stated_by", bake.stated_by},
                     {"levels", levels},
                     {"warnings", warnings}};
@@ -153,32 +164,37 @@ std::string percent(double v) {
 
 void print_text(const BakeWords& w, const Bake& bake, const BakeAudit& audit, const std::string& as_convention) {
     const CubeOrientation& o = audit.orientation;
-    fmt::print("{}: {}, {}², {} level{}\n", join(w.bake, " "), bake.format, bake.levels[0].cube.size(), bake.levels.size(),
-               bake.levels.size() == 1 ? "" : "s");
+    fmt::print("{}: {}, {}², {} level{}\n", join(w.bake, " "), bake.format, bake.levels[0].cube.size(),
+               bake.levels.size(), bake.levels.size() == 1 ? "" : "s");
     fmt::print("against the exact filter of {}\n\n", w.env.empty() ? "the built-in sky" : join(w.env, " "));
     fmt::print("  orientation   {}\n", o.words);
     if (!as_convention.empty()) fmt::print("                that is as ours with --latlong {}\n", as_convention);
     fmt::print("                error {}, the next best orientation {}{}\n\n", percent(o.error), percent(o.next_error),
                o.certain ? "" : ": the light cannot tell them apart");
-    const bool stated = std::any_of(audit.levels.begin(), audit.levels.end(), [](const LevelAudit& l) { return l.stated_roughness.has_value(); });
-    fmt::print("  {:>5}  {:>5}  {:>16}  {:>7}  {:>7}  {:>8}  {:>8}  {:>8}", "level", "size", "roughness", "scale", "energy", "error", "RMSE", "largest");
+    const bool stated = std::any_of(audit.levels.begin(), audit.levels.end(),
+                                    [](const LevelAudit& l) { return l.stated_roughness.has_value(); });
+    fmt::print("  {:>5}  {:>5}  {:>16}  {:>7}  {:>7}  {:>8}  {:>8}  {:>8}", "level", "size", "roughness", "scale",
+               "energy", "error", "RMSE", "largest");
     if (stated) fmt::print("  | {:>7}  {:>8}  {:>8}", "stated", "error", "RMSE");
     fmt::print("\n");
     for (std::size_t i = 0; i < audit.levels.size(); ++i) {
         const LevelAudit& l = audit.levels[i];
-        const std::string roughness = !l.roughness_known       ? "any fits"
-                                      : l.roughness_within > 0 ? fmt::format("{:.4f} ± {:<6.2g}", l.roughness, l.roughness_within)
-                                                               : fmt::format("{:.4f}         ", l.roughness);
-        fmt::print("  {:>5}  {:>5}  {:>16}  {:>7.4f}  {:>7.4f}  {:>8}  {:>8}  {:>8}", i, l.size, roughness, l.scale, l.energy, percent(l.error),
-                   percent(l.relative_rmse), percent(l.largest));
+        const std::string roughness = !l.roughness_known ? "any fits"
+                                      : l.roughness_within > 0
+                                          ? fmt::format("{:.4f} ± {:<6.2g}", l.roughness, l.roughness_within)
+                                          : fmt::format("{:.4f}         ", l.roughness);
+        fmt::print("  {:>5}  {:>5}  {:>16}  {:>7.4f}  {:>7.4f}  {:>8}  {:>8}  {:>8}", i, l.size, roughness, l.scale,
+                   l.energy, percent(l.error), percent(l.relative_rmse), percent(l.largest));
         if (l.stated_roughness)
-            fmt::print("  | {:>7.4f}  {:>8}  {:>8}", *l.stated_roughness, percent(l.stated_error), percent(l.stated_relative_rmse));
+            fmt::print("  | {:>7.4f}  {:>8}  {:>8}", *l.stated_roughness, percent(l.stated_error),
+                       percent(l.stated_relative_rmse));
         fmt::print("\n");
     }
     fmt::print(
         "\n  roughness     of GGX (n = v = r) that fits best, 0: the environment itself\n"
         "  scale         median of theirs / exact          energy   mean over the sphere over the source's\n"
-        "  error         RMS of (theirs - fit) / max(theirs, fit), every direction alike; RMSE relative, the brightest count most\n");
+        "  error         RMS of (theirs - fit) / max(theirs, fit), every direction alike; RMSE relative, the brightest "
+        "count most\n");
     if (stated) fmt::print("  stated        roughness by {}; errors there, at scale 1\n", bake.stated_by);
 }
 
@@ -188,16 +204,19 @@ void add_bake_options(Arguments& a, BakeWords& w) {
     std::vector<std::string> names;
     for (const Target& target : targets()) names.push_back(target.name);
     a.group("A bake against its source");
-    a.texts("--bake", "FILE", w.bake, "a baked specular cube: KTX2, KTX or DDS with its levels, or one cube picture or folder of faces a level");
+    a.texts("--bake", "FILE", w.bake,
+            "a baked specular cube: KTX2, KTX or DDS with its levels, or one cube picture or folder of faces a level");
     a.texts("--env", "SRC", w.env, "the environment it was baked from");
-    a.choice("--for", w.target, names, "whose curve says which roughness a level should have (a Domelight file says it itself)");
+    a.choice("--for", w.target, names,
+             "whose curve says which roughness a level should have (a Domelight file says it itself)");
     a.integer("--texels", "N", w.texels, "looked at in each level (6144)");
     add_environment_options(a, w.environment);
 }
 
 int compare_bake(const BakeWords& w, const CommonOptions& common) {
     const int threads = common.threads.value_or(0);
-    if (w.texels && (*w.texels < 96 || *w.texels > 10'000'000)) return print_error({"is not from 96 to 10000000", "--texels", ""}, exit_usage);
+    if (w.texels && (*w.texels < 96 || *w.texels > 10'000'000))
+        return print_error({"is not from 96 to 10000000", "--texels", ""}, exit_usage);
     EnvironmentOptions options = w.environment;
     options.threads = threads;
     auto bake = read_bake(w, threads);

@@ -20,9 +20,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::vector<std::string> k_metrics = {"rmse", "relative", "tone-mapped", "largest",  "psnr",  "ssim",
-                                            "flip", "hdr-flip", "mean",        "above-2", "chi2",  "total-z"};
-const std::vector<std::string> k_maps = {"auto", "hdr-flip", "flip", "difference", "tone-mapped", "relative", "ssim", "z"};
+const std::vector<std::string> k_metrics = {"rmse", "relative", "tone-mapped", "largest", "psnr", "ssim",
+                                            "flip", "hdr-flip", "mean",        "above-2", "chi2", "total-z"};
+const std::vector<std::string> k_maps = {"auto",        "hdr-flip", "flip", "difference",
+                                         "tone-mapped", "relative", "ssim", "z"};
 
 struct ObjectRow {
     std::string name;
@@ -117,11 +118,14 @@ Result<Comparison> read_all(const std::string& a, const std::string& b, const Pi
         for (const std::string& warning : picture->warnings) c.warnings.push_back(*name + ": " + warning);
     if (auto ok = same_size(c.test.rgb, a, c); !ok) return ok.error();
     if (c.test.high_dynamic_range != c.reference.high_dynamic_range)
-        c.warnings.push_back("one picture holds radiance, the other a screen's values decoded from sRGB: they may not be meant to be equal");
+        c.warnings.push_back(
+            "one picture holds radiance, the other a screen's values decoded from sRGB: they may not be meant to be "
+            "equal");
     if (auto ok = read_mask(w, c); !ok) return ok.error();
     if (auto ok = check_bad_pixels(c, w.skip_bad); !ok) return ok.error();
     if (!c.mask.empty() && std::none_of(c.mask.pixels().begin(), c.mask.pixels().end(), [](float v) { return v > 0; }))
-        return Error{"leaves no pixel to compare", w.mask.empty() ? "--skip-bad" : w.mask, "A mask keeps the pixels above 0."};
+        return Error{"leaves no pixel to compare", w.mask.empty() ? "--skip-bad" : w.mask,
+                     "A mask keeps the pixels above 0."};
     if (!w.objects.empty()) {
         auto objects = read_number_image(w.objects);
         if (!objects) return objects.error();
@@ -185,11 +189,15 @@ void measure_objects(Comparison& c, int threads) {
                 sum.flip += *c.flip_map.at(x, y);
                 if (c.hdr_flip) sum.hdr += *c.hdr.error.at(x, y);
             }
-    for (const ObjectErrors& object : compare_objects(c.test.rgb.view(), c.reference.rgb.view(), ids.view(), mask, threads)) {
-        ObjectRow row{std::size_t(object.index) < names.size() && !names[std::size_t(object.index)].empty()
-                          ? names[std::size_t(object.index)]
-                          : fmt::format("object {}", object.index),
-                      object.errors, {}, {}};
+    for (const ObjectErrors& object :
+         compare_objects(c.test.rgb.view(), c.reference.rgb.view(), ids.view(), mask, threads)) {
+        const std::size_t place = std::size_t(object.index) - 1;  // 0 is no object
+        ObjectRow row{object.index == 0                               ? "background"
+                      : place < names.size() && !names[place].empty() ? names[place]
+                                                                      : fmt::format("object {}", object.index),
+                      object.errors,
+                      {},
+                      {}};
         if (c.flip) row.flip = sums[object.index].flip / double(object.errors.pixels);
         if (c.hdr_flip) row.hdr_flip = sums[object.index].hdr / double(object.errors.pixels);
         c.objects.push_back(std::move(row));
@@ -200,7 +208,9 @@ void measure(Comparison& c, const PictureWords& w, int threads, const Progress& 
     const auto test = c.test.rgb.view(), reference = c.reference.rgb.view();
     const Mask mask = c.mask_view();
     const bool hdr = c.reference.high_dynamic_range || c.test.high_dynamic_range;
-    c.exposure_ev = w.view_exposure != "auto" ? *parse_number(w.view_exposure) : hdr ? automatic_exposure(reference, mask) : 0;
+    c.exposure_ev = w.view_exposure != "auto" ? *parse_number(w.view_exposure)
+                    : hdr                     ? automatic_exposure(reference, mask)
+                                              : 0;
     if (progress) progress("errors", 0);
     c.errors = compare_images(test, reference, mask, threads);
     if (!c.test.variance.empty() || !c.reference.variance.empty())
@@ -208,7 +218,8 @@ void measure(Comparison& c, const PictureWords& w, int threads, const Progress& 
     if (!w.no_flip) {
         const FlipOptions options{w.pixels_per_degree};
         if (progress) progress("FLIP", 0.1);
-        c.flip_map = flip(shown(c.test, c.exposure_ev).view(), shown(c.reference, c.exposure_ev).view(), options, threads);
+        c.flip_map =
+            flip(shown(c.test, c.exposure_ev).view(), shown(c.reference, c.exposure_ev).view(), options, threads);
         c.flip = mean_of(c.flip_map.view(), mask);
         if (progress) progress("HDR-FLIP", 0.2);
         if (hdr) {
@@ -251,9 +262,11 @@ Result<std::vector<Limit>> parse_limits(const PictureWords& w) {
         for (const std::string& text : *texts) {
             const auto parts = split(text, '=');
             const auto value = parts.size() == 2 ? parse_number(parts[1]) : Result<double>(Error{});
-            if (!value || std::isnan(*value)) return Error{fmt::format("\"{}\" is not METRIC=VALUE", text), option, "For example relative=0.01."};
+            if (!value || std::isnan(*value))
+                return Error{fmt::format("\"{}\" is not METRIC=VALUE", text), option, "For example relative=0.01."};
             if (std::find(k_metrics.begin(), k_metrics.end(), parts[0]) == k_metrics.end())
-                return Error{fmt::format("no metric \"{}\"", parts[0]), option, "Accepted: " + join(k_metrics, ", ") + "."};
+                return Error{fmt::format("no metric \"{}\"", parts[0]), option,
+                             "Accepted: " + join(k_metrics, ", ") + "."};
             limits.push_back({parts[0], *value, above});
         }
     return limits;
@@ -265,10 +278,12 @@ Result<std::vector<std::string>> exceeded(const Comparison& c, const std::vector
     for (const Limit& limit : limits) {
         const auto value = metric(c, limit.metric);
         if (!value)
-            return Error{"\"" + limit.metric + "\" is not known of these pictures", limit.above ? "--fail-above" : "--fail-below",
+            return Error{"\"" + limit.metric + "\" is not known of these pictures",
+                         limit.above ? "--fail-above" : "--fail-below",
                          "chi2, above-2 and total-z need a variance layer; hdr-flip a picture of high dynamic range."};
         if (limit.above ? !(*value <= limit.value) : !(*value >= limit.value))
-            found.push_back(fmt::format("{} is {:.6g}, {} {:g}", limit.metric, *value, limit.above ? "above" : "below", limit.value));
+            found.push_back(fmt::format("{} is {:.6g}, {} {:g}", limit.metric, *value, limit.above ? "above" : "below",
+                                        limit.value));
     }
     return found;
 }
@@ -278,7 +293,8 @@ Result<std::vector<std::string>> exceeded(const Comparison& c, const std::vector
 ImageF map_of(const Comparison& c, const std::function<double(const float* a, const float* b, int x, int y)>& f) {
     ImageF out(c.test.rgb.width(), c.test.rgb.height(), 1);
     for (int y = 0; y < out.height(); ++y)
-        for (int x = 0; x < out.width(); ++x) *out.at(x, y) = float(f(c.test.rgb.at(x, y), c.reference.rgb.at(x, y), x, y));
+        for (int x = 0; x < out.width(); ++x)
+            *out.at(x, y) = float(f(c.test.rgb.at(x, y), c.reference.rgb.at(x, y), x, y));
     return out;
 }
 
@@ -302,31 +318,41 @@ struct NamedMap {
     double high = 0;  ///< 0: by the values
     bool is_signed = false;
     HeatMap heat(double wanted, Mask mask) const {
-        return {values.view(), title, wanted > 0 ? wanted : high > 0 ? high : scale_for(values.view(), mask), is_signed};
+        return {values.view(), title,
+                wanted > 0 ? wanted
+                : high > 0 ? high
+                           : scale_for(values.view(), mask),
+                is_signed};
     }
 };
 
 Result<NamedMap> named_map(const Comparison& c, std::string name, int threads) {
     if (name.empty() || name == "auto") name = c.hdr_flip ? "hdr-flip" : c.flip ? "flip" : "tone-mapped";
-    if (name == "hdr-flip" && c.hdr_flip) return NamedMap{c.hdr.error, fmt::format("HDR-FLIP, mean {:.4g}", *c.hdr_flip), 1, false};
+    if (name == "hdr-flip" && c.hdr_flip)
+        return NamedMap{c.hdr.error, fmt::format("HDR-FLIP, mean {:.4g}", *c.hdr_flip), 1, false};
     if (name == "flip" && c.flip)
         return NamedMap{c.flip_map, fmt::format("FLIP at {:+.2f} EV, mean {:.4g}", c.exposure_ev, *c.flip), 1, false};
     if (name == "difference")
-        return NamedMap{signed_difference(c), fmt::format("A - B, luminance of L / (1 + L) at {:+.2f} EV", c.exposure_ev), 0, true};
+        return NamedMap{signed_difference(c),
+                        fmt::format("A - B, luminance of L / (1 + L) at {:+.2f} EV", c.exposure_ev), 0, true};
     const auto largest = [](const float* a, const float* b, auto&& f) {
         double most = 0;
         for (int i = 0; i < 3; ++i) most = std::max(most, f(double(a[i]), double(b[i])));
         return most;
     };
     if (name == "tone-mapped")
-        return NamedMap{map_of(c, [&](const float* a, const float* b, int, int) {
-                            return largest(a, b, [](double p, double q) { return std::abs(tone(p) - tone(q)); });
-                        }),
+        return NamedMap{map_of(c,
+                               [&](const float* a, const float* b, int, int) {
+                                   return largest(a, b, [](double p, double q) { return std::abs(tone(p) - tone(q)); });
+                               }),
                         "|A - B| of L / (1 + L), largest channel", 0, false};
     if (name == "relative")
-        return NamedMap{map_of(c, [&](const float* a, const float* b, int, int) {
-                            return largest(a, b, [](double p, double q) { return p == q ? 0 : std::abs(p - q) / (std::abs(q) + 1e-6); });
-                        }),
+        return NamedMap{map_of(c,
+                               [&](const float* a, const float* b, int, int) {
+                                   return largest(a, b, [](double p, double q) {
+                                       return p == q ? 0 : std::abs(p - q) / (std::abs(q) + 1e-6);
+                                   });
+                               }),
                         "|A - B| / B, largest channel", 0, false};
     if (name == "ssim") {
         NamedMap map{ssim(c.test.rgb.view(), c.reference.rgb.view(), c.mask_view(), threads), "1 - SSIM", 1, false};
@@ -340,14 +366,16 @@ Result<NamedMap> named_map(const Comparison& c, std::string name, int threads) {
                 if (!image->empty()) v += image->at(x, y)[0] + image->at(x, y)[1] + image->at(x, y)[2];
             return v;
         };
-        return NamedMap{map_of(c, [&](const float* a, const float* b, int x, int y) {
-                            const double v = variance(x, y), d = double(a[0]) + a[1] + a[2] - b[0] - b[1] - b[2];
-                            return v > 0 ? d / std::sqrt(v) : 0;
-                        }),
+        return NamedMap{map_of(c,
+                               [&](const float* a, const float* b, int x, int y) {
+                                   const double v = variance(x, y), d = double(a[0]) + a[1] + a[2] - b[0] - b[1] - b[2];
+                                   return v > 0 ? d / std::sqrt(v) : 0;
+                               }),
                         "z = (A - B) / standard error, of the channels' sum", 4, true};
     }
     return Error{"\"" + name + "\" is not known of these pictures", "--heat-of",
-                 "z needs a variance layer, hdr-flip a picture of high dynamic range, both kinds of FLIP that --no-flip is not given."};
+                 "z needs a variance layer, hdr-flip a picture of high dynamic range, both kinds of FLIP that "
+                 "--no-flip is not given."};
 }
 
 std::string file_name(const std::string& path) {
@@ -365,8 +393,9 @@ Result<void> write_pictures(const Comparison& c, const PictureWords& w, int thre
     const auto difference = named_map(c, "difference", threads), perceived = named_map(c, "auto", threads);
     CompareSheet sheet;
     sheet.title = fmt::format("{} against {}", file_name(c.a), file_name(c.b));
-    sheet.subtitle = fmt::format("relative RMSE {:.3g} %   ·   RMSE of L / (1 + L) {:.3g}   ·   SSIM {:.4f}   ·   mean A / mean B {:.5g}",
-                                 100 * c.errors.relative_rmse, c.errors.tone_mapped_rmse, c.errors.ssim, c.errors.mean_ratio);
+    sheet.subtitle = fmt::format(
+        "relative RMSE {:.3g} %   ·   RMSE of L / (1 + L) {:.3g}   ·   SSIM {:.4f}   ·   mean A / mean B {:.5g}",
+        100 * c.errors.relative_rmse, c.errors.tone_mapped_rmse, c.errors.ssim, c.errors.mean_ratio);
     sheet.test_name = c.a, sheet.reference_name = c.b;
     sheet.test = c.test.rgb.view(), sheet.reference = c.reference.rgb.view();
     sheet.exposure_ev = c.exposure_ev;
@@ -396,7 +425,8 @@ Json errors_json(const Errors& e, const std::optional<double>& flip, const std::
 }
 
 Json picture_json(const std::string& name, const Picture& picture) {
-    return {{"file", name}, {"format", picture.format}, {"width", picture.rgb.width()}, {"height", picture.rgb.height()}};
+    return {
+        {"file", name}, {"format", picture.format}, {"width", picture.rgb.width()}, {"height", picture.rgb.height()}};
 }
 
 void print_json(const Comparison& c, const std::vector<std::string>& failures) {
@@ -406,7 +436,8 @@ void print_json(const Comparison& c, const std::vector<std::string>& failures) {
               {"b", picture_json(c.b, c.reference)},
               {"errors", errors_json(c.errors, c.flip, c.hdr_flip)},
               {"exposure_ev", c.exposure_ev}};
-    if (c.hdr_flip) json["hdr_flip_exposures"] = {{"start_ev", c.hdr.start}, {"stop_ev", c.hdr.stop}, {"count", c.hdr.count}};
+    if (c.hdr_flip)
+        json["hdr_flip_exposures"] = {{"start_ev", c.hdr.start}, {"stop_ev", c.hdr.stop}, {"count", c.hdr.count}};
     if (c.noise)
         json["noise"] = {{"values", c.noise->values},
                          {"without_noise", c.noise->without_noise},
@@ -430,10 +461,17 @@ void print_json(const Comparison& c, const std::vector<std::string>& failures) {
 
 void print_noise(const NoiseSummary& n) {
     fmt::print("\n  noise, as the files state it ({} channel values)\n", n.values);
-    fmt::print("    mean A / mean B      {:.6g}, 95 % within [{:.6g}, {:.6g}]\n", n.mean_ratio, n.ratio_low, n.ratio_high);
+    fmt::print("    mean A / mean B      {:.6g}, 95 % within [{:.6g}, {:.6g}]\n", n.mean_ratio, n.ratio_low,
+               n.ratio_high);
     fmt::print("    z of the means       {:+.2f}       {}\n", n.total_z,
-               std::abs(n.total_z) > 3 ? "a bias" : std::abs(n.total_z) > 2 ? "perhaps a bias" : "no bias seen");
-    fmt::print("    chi2 / values        {:.4g}      1 where noise explains the difference\n", n.chi2);
+               std::abs(n.total_z) > 3   ? "a bias"
+               : std::abs(n.total_z) > 2 ? "perhaps a bias"
+                                         : "no bias seen");
+    fmt::print("    chi2 / values        {:.4g}      {}\n", n.chi2,
+               n.chi2 < 0.7
+                   ? "below 1: the pictures share samples, or stratified ones, whose stated variance is an upper bound"
+               : n.chi2 < 1.3 ? "noise explains the difference"
+                              : "above 1: more than noise");
     fmt::print("    share of |z| > 2     {:.2f} %     of normal noise 4.55 %\n", 100 * n.share_above_2);
     if (n.without_noise) fmt::print("    differ without noise {}\n", n.without_noise);
 }
@@ -442,17 +480,19 @@ void print_objects(const Comparison& c) {
     constexpr std::size_t k_most = 60;
     std::size_t width = 12;
     for (const ObjectRow& row : c.objects) width = std::max(width, std::min<std::size_t>(row.name.size(), 32));
-    fmt::print("\n  {:<{}}  {:>9}  {:>10}  {:>9}  {:>11}  {:>7}  {:>7}  {:>8}\n", "object", width, "pixels", "RMSE", "relative",
-               "tone-mapped", "SSIM", "FLIP", "A / B");
+    fmt::print("\n  {:<{}}  {:>9}  {:>10}  {:>9}  {:>11}  {:>7}  {:>7}  {:>8}\n", "object", width, "pixels", "RMSE",
+               "relative", "tone-mapped", "SSIM", "FLIP", "A / B");
     std::vector<const ObjectRow*> rows;
     for (const ObjectRow& row : c.objects) rows.push_back(&row);
-    std::stable_sort(rows.begin(), rows.end(), [](const ObjectRow* a, const ObjectRow* b) { return a->errors.pixels > b->errors.pixels; });
+    std::stable_sort(rows.begin(), rows.end(),
+                     [](const ObjectRow* a, const ObjectRow* b) { return a->errors.pixels > b->errors.pixels; });
     for (std::size_t i = 0; i < std::min(rows.size(), k_most); ++i) {
         const ObjectRow& row = *rows[i];
         const auto flip = row.hdr_flip ? row.hdr_flip : row.flip;
-        fmt::print("  {:<{}}  {:>9}  {:>10.4g}  {:>7.3g} %  {:>11.4g}  {:>7.4f}  {:>7}  {:>8.5g}\n", row.name.substr(0, 32), width,
-                   row.errors.pixels, row.errors.rmse, 100 * row.errors.relative_rmse, row.errors.tone_mapped_rmse, row.errors.ssim,
-                   flip ? fmt::format("{:.4f}", *flip) : "-", row.errors.mean_ratio);
+        fmt::print("  {:<{}}  {:>9}  {:>10.4g}  {:>7.3g} %  {:>11.4g}  {:>7.4f}  {:>7}  {:>8.5g}\n",
+                   row.name.substr(0, 32), width, row.errors.pixels, row.errors.rmse, 100 * row.errors.relative_rmse,
+                   row.errors.tone_mapped_rmse, row.errors.ssim, flip ? fmt::format("{:.4f}", *flip) : "-",
+                   row.errors.mean_ratio);
     }
     if (rows.size() > k_most) fmt::print("  ... and {} smaller ones (--json has all)\n", rows.size() - k_most);
 }
@@ -471,14 +511,16 @@ void print_text(const Comparison& c, const PictureWords& w) {
     fmt::print("  SSIM                   {:<12.6g} of the luminance of L / (1 + L)\n", e.ssim);
     if (c.flip)
         fmt::print("  FLIP                   {:<12.6g} {}{:.1f} pixels a degree\n", *c.flip,
-                   c.reference.high_dynamic_range ? fmt::format("at {:+.2f} EV, ", c.exposure_ev) : "", w.pixels_per_degree);
+                   c.reference.high_dynamic_range ? fmt::format("at {:+.2f} EV, ", c.exposure_ev) : "",
+                   w.pixels_per_degree);
     if (c.hdr_flip)
-        fmt::print("  HDR-FLIP               {:<12.6g} largest of {} exposures, {:+.1f} to {:+.1f} EV\n", *c.hdr_flip, c.hdr.count, c.hdr.start,
-                   c.hdr.stop);
+        fmt::print("  HDR-FLIP               {:<12.6g} largest of {} exposures, {:+.1f} to {:+.1f} EV\n", *c.hdr_flip,
+                   c.hdr.count, c.hdr.start, c.hdr.stop);
     fmt::print("  mean A / mean B        {:<12.6g}\n", e.mean_ratio);
     fmt::print("  largest difference     {:<12.6g} at ({}, {})\n", e.largest, e.largest_x, e.largest_y);
     if (!c.mask.empty())
-        fmt::print("  pixels that count      {} of {}\n", e.pixels, std::int64_t(c.test.rgb.width()) * c.test.rgb.height());
+        fmt::print("  pixels that count      {} of {}\n", e.pixels,
+                   std::int64_t(c.test.rgb.width()) * c.test.rgb.height());
     if (c.noise) print_noise(*c.noise);
     if (!c.objects.empty()) print_objects(c);
     for (const auto& file : {w.heat, w.sheet})
@@ -487,15 +529,18 @@ void print_text(const Comparison& c, const PictureWords& w) {
 }
 
 Result<void> check_words(const PictureWords& w) {
-    if (!(w.pixels_per_degree >= 1 && w.pixels_per_degree <= 1000)) return Error{"is not from 1 to 1000", "--pixels-per-degree", ""};
+    if (!(w.pixels_per_degree >= 1 && w.pixels_per_degree <= 1000))
+        return Error{"is not from 1 to 1000", "--pixels-per-degree", ""};
     if (!(w.heat_max >= 0) || std::isinf(w.heat_max)) return Error{"is not a positive number", "--heat-max", ""};
     if (w.view_exposure != "auto") {
         const auto ev = parse_number(w.view_exposure);
-        if (!ev || !(std::abs(*ev) <= 60)) return Error{"is neither auto nor a number from -60 to 60", "--view-exposure", ""};
+        if (!ev || !(std::abs(*ev) <= 60))
+            return Error{"is neither auto nor a number from -60 to 60", "--view-exposure", ""};
     }
     if (w.level.value_or(0) < 0) return Error{"is below 0", "--level", ""};
     for (const auto& [option, file] : {std::pair("--heat", &w.heat), std::pair("--sheet", &w.sheet)})
-        if (!file->empty() && !file->ends_with(".png")) return Error{fmt::format("\"{}\" does not end in .png", *file), option, ""};
+        if (!file->empty() && !file->ends_with(".png"))
+            return Error{fmt::format("\"{}\" does not end in .png", *file), option, ""};
     return {};
 }
 
@@ -503,24 +548,30 @@ Result<void> check_words(const PictureWords& w) {
 
 void add_picture_options(Arguments& a, PictureWords& w) {
     a.group("Two pictures: what is compared");
-    a.text("--layer", "NAME", w.layer, "OpenEXR: the layer or channel to compare (the unnamed one, else the first with colour)");
+    a.text("--layer", "NAME", w.layer,
+           "OpenEXR: the layer or channel to compare (the unnamed one, else the first with colour)");
     a.text("--layer-b", "NAME", w.layer_b, "the layer of B, where it differs");
     a.integer("--level", "N", w.level, "textures: the level to compare (0)");
     a.text("--mask", "FILE", w.mask, "an image of the same size: only pixels above 0 count");
-    a.text("--objects", "FILE", w.objects, "an image of object indices (PNG codes, or an EXR channel): a table by object; else B's channel \"object\"");
-    a.choice("--variance", w.variance, {"auto", "sample", "pixel"},
-             "what the layer \"variance\" holds: that of a sample, to be divided by the channel \"samples\", or of the pixel's value (auto: of a "
-             "sample where there is that channel)");
+    a.text("--objects", "FILE", w.objects,
+           "an image of object indices, 0 for none (PNG codes, or an EXR channel): a table by object; else B's channel "
+           "\"object\"");
+    a.choice("--variance", w.variance, {"pixel", "sample"},
+             "what the layer \"variance\" holds: that of the pixel's value, or that of a sample, to be divided by the "
+             "channel \"samples\" (pixel)");
     a.flag("--skip-bad", w.skip_bad, "leave NaN and infinite pixels out instead of refusing them");
-    a.number("--pixels-per-degree", "P", w.pixels_per_degree, "how closely FLIP looks (67.02: 0.7 m from a 0.7 m wide display of 3840 pixels)");
+    a.number("--pixels-per-degree", "P", w.pixels_per_degree,
+             "how closely FLIP looks (67.02: 0.7 m from a 0.7 m wide display of 3840 pixels)");
     a.flag("--no-flip", w.no_flip, "without FLIP and HDR-FLIP, which take most of the time");
     a.group("Two pictures: what is written");
     a.text("--heat", "FILE", w.heat, "a heat map with its scale, .png");
     a.choice("--heat-of", w.heat_of, k_maps, "what it shows (auto: hdr-flip, of screen pictures flip)");
     a.number("--heat-max", "X", w.heat_max, "the value of its last colour (FLIP: 1; else by the values)");
     a.text("--sheet", "FILE", w.sheet, "A, B, their signed difference and the perceived one side by side, .png");
-    a.text("--view-exposure", "EV", w.view_exposure, "stops for the sheet and for FLIP; auto brings B's log-average luminance to 0.18 (auto)");
-    a.texts("--fail-above", "METRIC=VALUE", w.fail_above, "exit with status 1 where a metric is above: " + join(k_metrics, ", ") + " (mean: |A / B - 1|)");
+    a.text("--view-exposure", "EV", w.view_exposure,
+           "stops for the sheet and for FLIP; auto brings B's log-average luminance to 0.18 (auto)");
+    a.texts("--fail-above", "METRIC=VALUE", w.fail_above,
+            "exit with status 1 where a metric is above: " + join(k_metrics, ", ") + " (mean: |A / B - 1|)");
     a.texts("--fail-below", "METRIC=VALUE", w.fail_below, "the same below, for psnr and ssim");
 }
 

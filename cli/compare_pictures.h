@@ -12,7 +12,7 @@ namespace domelight::cli {
 
 /// What `compare` was asked on its command line for two pictures.
 struct PictureWords {
-    std::string layer, layer_b, mask, objects, heat, heat_of, sheet, variance = "auto";
+    std::string layer, layer_b, mask, objects, heat, heat_of, sheet, variance = "pixel";
     std::optional<int> level;
     std::string view_exposure = "auto";
     double pixels_per_degree = 67.0206, heat_max = 0;
@@ -22,6 +22,7 @@ struct PictureWords {
 void add_picture_options(Arguments& arguments, PictureWords& words);
 
 /// Compares and prints. Returns the exit code: 1 also where a limit is exceeded.
-int compare_pictures(const std::string& a, const std::string& b, const PictureWords& words, const CommonOptions& common);
+int compare_pictures(const std::string& a, const std::string& b, const PictureWords& words,
+                     const CommonOptions& common);
 
 }  // namespace domelight::cli

@@ -13,10 +13,11 @@ namespace domelight {
 namespace {
 
 /// Where the search begins, beside 0: the environment itself, averaged over texels.
-constexpr double k_ladder[] = {0.02, 0.03, 0.04, 0.06, 0.09, 0.13, 0.18, 0.24, 0.31, 0.39, 0.48, 0.58, 0.69, 0.8, 0.9, 1};
+constexpr double k_ladder[] = {0.02, 0.03, 0.04, 0.06, 0.09, 0.13, 0.18, 0.24,
+                               0.31, 0.39, 0.48, 0.58, 0.69, 0.8,  0.9,  1};
 
-/// The least roughness worth telling from 0 on faces of `size`^2: its lobe, 2 alpha wide, is as wide as a texel. (Much narrower lobes also take
-/// seconds to filter by.)
+/// The least roughness worth telling from 0 on faces of `size`^2: its lobe, 2 alpha wide, is as wide as a texel. (Much
+/// narrower lobes also take seconds to filter by.)
 double least_roughness(int size) {
     return std::sqrt(k_pi / (4 * size));
 }
@@ -36,19 +37,22 @@ class Exact {
   public:
     Exact(const AuditSource& source, int threads) : source_(source), threads_(threads) {}
 
-    /// Cubes of `size`, one for each roughness; `use(i, cube)` in order. Few at a time, so that large ones fit in memory.
+    /// Cubes of `size`, one for each roughness; `use(i, cube)` in order. Few at a time, so that large ones fit in
+    /// memory.
     template <typename F>
     Result<void> levels(int size, std::span<const double> roughness, F use) const {
         const std::int64_t bytes = std::int64_t(6) * size * size * 12;
         const int at_once = int(std::max<std::int64_t>(1, k_most_bytes / bytes));
         for (std::size_t first = 0; first < roughness.size(); first += std::size_t(at_once)) {
-            const auto some = roughness.subspan(first, std::min<std::size_t>(std::size_t(at_once), roughness.size() - first));
+            const auto some =
+                roughness.subspan(first, std::min<std::size_t>(std::size_t(at_once), roughness.size() - first));
             FilterOptions options;
             options.sh_bands = 0;
             options.threads = threads_;
             options.world_to_source = source_.world_to_source;
             for (const double r : some)
-                options.specular.push_back(r > 0 ? LevelSpec{size, false, ZonalKernel::ggx(r)} : LevelSpec{size, true, {}});
+                options.specular.push_back(r > 0 ? LevelSpec{size, false, ZonalKernel::ggx(r)}
+                                                 : LevelSpec{size, true, {}});
             auto filtered = filter(options);
             if (!filtered) return filtered.error();
             for (std::size_t i = 0; i < some.size(); ++i) use(int(first + i), filtered->specular[i].cube);
@@ -113,12 +117,13 @@ struct Candidate {
 };
 
 /// Fits at further roughnesses, kept in rising order.
-Result<void> try_roughness(const TexelSample& sample, const std::vector<int>& turned, const Exact& exact, std::span<const double> roughness,
-                           std::vector<Candidate>& tried) {
+Result<void> try_roughness(const TexelSample& sample, const std::vector<int>& turned, const Exact& exact,
+                           std::span<const double> roughness, std::vector<Candidate>& tried) {
     const auto ok = exact.levels(sample.size, roughness, [&](int i, const Cubemap& cube) {
         tried.push_back({roughness[std::size_t(i)], fit_level(sample, cube, turned)});
     });
-    std::sort(tried.begin(), tried.end(), [](const Candidate& a, const Candidate& b) { return a.roughness < b.roughness; });
+    std::sort(tried.begin(), tried.end(),
+              [](const Candidate& a, const Candidate& b) { return a.roughness < b.roughness; });
     return ok;
 }
 
@@ -147,14 +152,16 @@ double width_of_minimum(const std::vector<Candidate>& tried, std::size_t best) {
     return std::max(at - low, high - at);
 }
 
-Result<LevelAudit> audit_level(const CubeLevel& level, const TexelSample& sample, const Mat3& orientation, const Exact& exact) {
+Result<LevelAudit> audit_level(const CubeLevel& level, const TexelSample& sample, const Mat3& orientation,
+                               const Exact& exact) {
     const std::vector<int> turned = turned_texels(sample, orientation);
     // Where the stated roughness fits as well as any could, only its neighbourhood is searched.
     const double guess = level.roughness.value_or(0);
     std::vector<Candidate> tried;
     if (auto ok = try_roughness(sample, turned, exact, std::span(&guess, 1), tried); !ok) return ok.error();
     const bool guessed = tried[0].fit.error < k_good_fit;
-    std::vector<double> first = guessed ? std::vector<double>{guess - 0.1, guess - 0.02, guess + 0.02, guess + 0.1} : ladder(sample.size);
+    std::vector<double> first =
+        guessed ? std::vector<double>{guess - 0.1, guess - 0.02, guess + 0.02, guess + 0.1} : ladder(sample.size);
     if (guessed && guess == 0) first = {least_roughness(sample.size), least_roughness(sample.size) + 0.1};
     std::erase_if(first, [&](double r) { return r == guess || r > 1 || (r != 0 && r < least_roughness(sample.size)); });
     if (auto ok = try_roughness(sample, turned, exact, first, tried); !ok) return ok.error();
@@ -218,13 +225,15 @@ std::string orientation_words(const Mat3& m) {
     if (axis_mirrored(1)) return "mirrored in y (upside down)";
     if (axis_mirrored(2)) return "mirrored in z";
     const double determinant = dot(m.row[0], cross(m.row[1], m.row[2]));
-    // theirs(d) = ours(M d); light that was turned by R about +Y has M = R^T, mirrored in x before that: M = mirror R^T.
+    // theirs(d) = ours(M d); light that was turned by R about +Y has M = R^T, mirrored in x before that: M = mirror
+    // R^T.
     if (m.row[1] == Vec3d{0, 1, 0}) {
         const Mat3 turn = (determinant > 0 ? m : mirror_x * m).transposed();
         for (const int angle : {90, 180, 270}) {
             const double c = angle == 180 ? -1 : 0, s = angle == 90 ? 1 : angle == 270 ? -1 : 0;
             if (turn == Mat3{{Vec3d{c, 0, -s}, Vec3d{0, 1, 0}, Vec3d{s, 0, c}}})
-                return fmt::format("{}turned by {} degrees about +Y", determinant > 0 ? "" : "mirrored in x, then ", angle);
+                return fmt::format("{}turned by {} degrees about +Y", determinant > 0 ? "" : "mirrored in x, then ",
+                                   angle);
         }
     }
     std::string text = determinant > 0 ? "turned:" : "mirrored and turned:";
@@ -234,18 +243,21 @@ std::string orientation_words(const Mat3& m) {
                       m.row[1].x * (column == 0) + m.row[1].y * (column == 1) + m.row[1].z * (column == 2),
                       m.row[2].x * (column == 0) + m.row[2].y * (column == 1) + m.row[2].z * (column == 2)};
         const int axis = d.x != 0 ? 0 : d.y != 0 ? 1 : 2;
-        text += fmt::format("{} its +{} shows our {}{}", column ? "," : "", names[column], d.x + d.y + d.z > 0 ? "+" : "-", names[axis]);
+        text += fmt::format("{} its +{} shows our {}{}", column ? "," : "", names[column],
+                            d.x + d.y + d.z > 0 ? "+" : "-", names[axis]);
     }
     return text;
 }
 
-Result<BakeAudit> audit_bake(std::span<const CubeLevel> levels, const AuditSource& source, const AuditOptions& options) {
+Result<BakeAudit> audit_bake(std::span<const CubeLevel> levels, const AuditSource& source,
+                             const AuditOptions& options) {
     if (levels.empty()) return Error{"no levels to audit", "", ""};
     const auto tell = [&](double done) { return !options.progress || options.progress("audit", done); };
     std::vector<TexelSample> samples;
     for (std::size_t l = 0; l < levels.size(); ++l) {
         samples.push_back(sample_texels(levels[l].cube, std::max(options.texels, 96)));
-        if (!(samples.back().mean > 0)) return Error{fmt::format("level {} is black: nothing can be found out about it", l), "", ""};
+        if (!(samples.back().mean > 0))
+            return Error{fmt::format("level {} is black: nothing can be found out about it", l), "", ""};
     }
     const Exact exact(source, options.threads);
     auto orientation = find_orientation(samples[level_for_orientation(samples)], exact, options.threads);

@@ -97,7 +97,8 @@ std::vector<int> turned_texels(const TexelSample& sample, const Mat3& m) {
     return turned;
 }
 
-Fit fit_level(const TexelSample& sample, const Cubemap& exact, const std::vector<int>& turned, double scale, bool quick) {
+Fit fit_level(const TexelSample& sample, const Cubemap& exact, const std::vector<int>& turned, double scale,
+              bool quick) {
     const std::size_t count = turned.size();
     const float* const pixels = exact.pixels().data();
     const auto truth = [&](std::size_t k) {
@@ -116,7 +117,8 @@ Fit fit_level(const TexelSample& sample, const Cubemap& exact, const std::vector
     } else {
         std::vector<Ratio> ratios;
         for (std::size_t k = 0; k < count; ++k)
-            if (const float e = luminance_of(truth(k)); e > 0) ratios.push_back({sample.luminance[k] / e, sample.weights[k]});
+            if (const float e = luminance_of(truth(k)); e > 0)
+                ratios.push_back({sample.luminance[k] / e, sample.weights[k]});
         fit.scale = weighted_median(ratios);
     }
     if (!(fit.scale > 0)) fit.scale = 1;

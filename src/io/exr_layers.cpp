@@ -92,7 +92,8 @@ Result<ImageF> Layers::read(std::span<const std::string> names) {
             const auto found = std::find(names_.begin(), names_.end(), names[i]);
             if (found == names_.end()) return Error{fmt::format("no channel {}", printable(names[i])), "", ""};
             const Place& place = places_[std::size_t(found - names_.begin())];
-            const bool first = std::find(names.begin(), names.begin() + std::ptrdiff_t(i), names[i]) == names.begin() + std::ptrdiff_t(i);
+            const bool first = std::find(names.begin(), names.begin() + std::ptrdiff_t(i), names[i]) ==
+                               names.begin() + std::ptrdiff_t(i);
             if (place.part == p && first) wanted.emplace_back(place.channel, int(i));
         }
         if (wanted.empty()) continue;
@@ -121,7 +122,8 @@ Result<void> Layers::read_from(int part, const std::vector<std::pair<std::string
                        height = std::int64_t(data.max.y) - data.min.y + 1;
     if (auto sized = check_image_size(width, height); !sized) return sized;
     const int count = int(channels.size());
-    if (width * height * count * 4 > options_.max_bytes) return Error{"data window needs more memory than the limit", "", ""};
+    if (width * height * count * 4 > options_.max_bytes)
+        return Error{"data window needs more memory than the limit", "", ""};
     // A window that sticks out is read aside and cut.
     ImageF aside;
     if (!inside) aside = ImageF(int(width), int(height), count);
@@ -132,7 +134,8 @@ Result<void> Layers::read_from(int part, const std::vector<std::pair<std::string
         const Imf::Channel* channel = header.channels().findChannel(name);
         if (channel->xSampling != 1 || channel->ySampling != 1)
             return Error{fmt::format("channel {} is subsampled", printable(name)), "", ""};
-        float* first = inside ? into.at(data.min.x - window_.min.x, data.min.y - window_.min.y) + place : aside.row(0) + i;
+        float* first =
+            inside ? into.at(data.min.x - window_.min.x, data.min.y - window_.min.y) + place : aside.row(0) + i;
         const std::size_t pixel = std::size_t(inside ? into.channels() : count) * sizeof(float);
         const std::size_t row = std::size_t(inside ? into.width() : width) * pixel;
         buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, first, data.min, width, height, pixel, row));
@@ -202,11 +205,13 @@ Result<std::vector<std::string>> ExrLayers::colour_of(const std::string& layer) 
         if (name.starts_with(prefix) && name.find('.', prefix.size()) == std::string::npos) own.push_back(name);
     if (own.size() == 1) return std::vector<std::string>(3, own[0]);
     if (has(layer)) return std::vector<std::string>(3, layer);
-    return Error{fmt::format("layer {} has no colour among: {}", chosen.empty() ? "(unnamed)" : printable(chosen), listed(own)), "",
-                 "Name a layer or a channel; the file's layers: " + listed(all) + "."};
+    return Error{
+        fmt::format("layer {} has no colour among: {}", chosen.empty() ? "(unnamed)" : printable(chosen), listed(own)),
+        "", "Name a layer or a channel; the file's layers: " + listed(all) + "."};
 }
 
-Result<std::unique_ptr<ExrLayers>> open_exr_layers(std::shared_ptr<const FileBytes> bytes, const ReaderOptions& options) {
+Result<std::unique_ptr<ExrLayers>> open_exr_layers(std::shared_ptr<const FileBytes> bytes,
+                                                   const ReaderOptions& options) {
     Result<ExrPreflight> preflight = check_exr_headers(bytes->bytes(), options.max_bytes);
     if (!preflight) return preflight.error();
     auto layers = std::make_unique<Layers>(std::move(bytes), std::move(*preflight), options);

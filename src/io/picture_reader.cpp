@@ -42,8 +42,8 @@ Result<Picture> read_plain(std::shared_ptr<const FileBytes> bytes, const ReaderO
     ImageReader& reader = **opened;
     const ImageFacts& facts = reader.facts();
     if (std::int64_t(facts.width) * facts.height * 12 > options.max_bytes)
-        return Error{fmt::format("{} x {} pixels need more memory than the limit of {} bytes", facts.width, facts.height,
-                                 options.max_bytes),
+        return Error{fmt::format("{} x {} pixels need more memory than the limit of {} bytes", facts.width,
+                                 facts.height, options.max_bytes),
                      "", ""};
     Picture picture;
     picture.rgb = ImageF(facts.width, facts.height, 3);
@@ -75,7 +75,7 @@ Result<void> read_variance(ExrLayers& layers, const PictureOptions& options, Pic
             if (samples.empty() && layers.has(s)) samples = s;
         if (options.variance == "sample" && samples.empty())
             return Error{"a variance of samples needs a channel \"samples\"", "", ""};
-        if (options.variance != "pixel" && !samples.empty()) {
+        if (options.variance == "sample") {
             const auto counts = layers.read(std::vector<std::string>{samples});
             if (!counts) return counts.error();
             for (std::size_t i = 0; i < counts->pixels().size(); ++i)

@@ -11,22 +11,25 @@ namespace domelight {
 
 /// A picture for comparing: what it holds is kept, NaN too; nothing is repaired.
 struct Picture {
-    std::string format;    ///< "OpenEXR", "PNG", "KTX2", ...
-    ImageF rgb;            ///< linear Rec. 709 radiance; a cube: its faces +X -X +Y -Y +Z -Z one below the other
+    std::string format;  ///< "OpenEXR", "PNG", "KTX2", ...
+    ImageF rgb;          ///< linear Rec. 709 radiance; a cube: its faces +X -X +Y -Y +Z -Z one below the other
     bool high_dynamic_range = true;  ///< false: 8 or 16 bits for a screen, decoded from sRGB to [0, 1]
     bool cube = false;
-    ImageF variance;       ///< of the pixels' values, 3 channels; empty: not known. From the layer "variance" (or Variance), see below
-    ImageF objects;        ///< index of the object seen, one channel, -1 for none; empty: not known. From the channel "object"
-    std::vector<std::string> object_names;  ///< by index; may be short
+    ImageF variance;  ///< of the pixels' values, 3 channels; empty: not known. From the layer "variance" (or Variance),
+                      ///< see below
+    ImageF objects;  ///< index of the object seen, one channel, 0 for none; empty: not known. From the layer or channel
+                     ///< "object"
+    std::vector<std::string>
+        object_names;  ///< of the objects from 1 on, by the attribute "objects", one a line; may be short
     std::vector<std::string> warnings;
 };
 
 struct PictureOptions {
     std::string layer = {};  ///< OpenEXR: which layer or channel; empty: the unnamed one, else the first with colour
-    int level = 0;      ///< textures: which level
-    /// What a file's variance layer holds: that of one sample, to be divided by the channel "samples", or that of the pixel's value. auto: of one
-    /// sample where there is a channel "samples".
-    std::string variance = "auto";  ///< auto | sample | pixel
+    int level = 0;           ///< textures: which level
+    /// What a file's layer "variance" holds: that of the pixel's value, or that of one sample, to be divided by the
+    /// channel "samples".
+    std::string variance = "pixel";  ///< pixel | sample
     std::int64_t max_bytes = std::int64_t(1) << 30;
     int threads = 0;
 };
@@ -34,7 +37,8 @@ struct PictureOptions {
 /// Reads OpenEXR, Radiance HDR, PNG, JPEG, or a level of a KTX2, KTX or DDS texture (2D or cube). Errors name the file.
 Result<Picture> read_picture(const std::filesystem::path& file, const PictureOptions& options = {});
 
-/// One channel of numbers: of an OpenEXR file the channel `name` (empty: its only one, else Y, R), of a PNG the red one as its code, 0 to 255.
+/// One channel of numbers: of an OpenEXR file the channel `name` (empty: its only one, else Y, R), of a PNG the red one
+/// as its code, 0 to 255.
 Result<ImageF> read_number_image(const std::filesystem::path& file, const std::string& name = "");
 
 }  // namespace domelight

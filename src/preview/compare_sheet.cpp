@@ -17,7 +17,8 @@ namespace {
 
 constexpr Colour8 k_background{24, 25, 28}, k_bright{232, 234, 238}, k_text{205, 208, 214}, k_quiet{139, 144, 153},
     k_edge{52, 54, 60}, k_masked{70, 72, 78};
-constexpr int k_margin = 24, k_gap = 16, k_scale_height = 44;  ///< pixels; the height of a colour scale with its numbers
+constexpr int k_margin = 24, k_gap = 16,
+              k_scale_height = 44;  ///< pixels; the height of a colour scale with its numbers
 
 bool counts(const Mask& mask, int x, int y) {
     return !mask.data || mask.at(x, y)[0] > 0;
@@ -55,7 +56,8 @@ struct Box {
 };
 
 template <typename F>
-void draw_boxes(ImageView<std::uint8_t> image, int left, int top, const Fit& fit, int width, int height, int threads, F colour) {
+void draw_boxes(ImageView<std::uint8_t> image, int left, int top, const Fit& fit, int width, int height, int threads,
+                F colour) {
     parallel_for(fit.height, threads, [&](int y) {
         for (int x = 0; x < fit.width; ++x) {
             const Colour8 c = colour(Box(x, y, fit, width, height));
@@ -80,7 +82,8 @@ void draw_picture(ImageView<std::uint8_t> image, int left, int top, const Fit& f
     });
 }
 
-void draw_map(ImageView<std::uint8_t> image, int left, int top, const Fit& fit, const HeatMap& map, Mask mask, int threads) {
+void draw_map(ImageView<std::uint8_t> image, int left, int top, const Fit& fit, const HeatMap& map, Mask mask,
+              int threads) {
     draw_boxes(image, left, top, fit, map.values.width, map.values.height, threads, [&](const Box& b) -> Colour8 {
         float sum = 0;
         int count = 0;
@@ -105,7 +108,9 @@ void draw_scale(ImageView<std::uint8_t> image, int left, int top, int width, con
         fill(image, {x, top + 16, 1, 4}, k_quiet);
         const std::string sign = map.is_signed && value > 0 ? "+" : "";
         draw_text(image, x, top + 36, sign + fmt::format("{:.3g}", value), FontSize::small, k_quiet,
-                  i == 0 ? Align::left : i + 1 == k_ticks ? Align::right : Align::centre);
+                  i == 0             ? Align::left
+                  : i + 1 == k_ticks ? Align::right
+                                     : Align::centre);
     }
 }
 
@@ -167,9 +172,10 @@ Image<std::uint8_t> compare_sheet(const CompareSheet& sheet, int threads) {
         const auto [x, y] = at(i);
         label(i, i == 0 ? "A   " + sheet.test_name : "B   " + sheet.reference_name);
         draw_picture(view, x + inset, y + 30, fit, i == 0 ? sheet.test : sheet.reference, display, threads);
-        draw_text(view, x, y + 30 + fit.height + 22,
-                  sheet.tone_map ? fmt::format("exposure {:+.2f} EV, Khronos neutral, sRGB", sheet.exposure_ev) : "as stored",
-                  FontSize::small, k_quiet);
+        draw_text(
+            view, x, y + 30 + fit.height + 22,
+            sheet.tone_map ? fmt::format("exposure {:+.2f} EV, Khronos neutral, sRGB", sheet.exposure_ev) : "as stored",
+            FontSize::small, k_quiet);
     }
     for (int i = 2; i < 4; ++i) {
         const auto [x, y] = at(i);

@@ -16,13 +16,16 @@ struct HeatMap {
     bool is_signed = false;         ///< from -high to high (blue, white, red); else from 0
 };
 
-/// 1, 2 or 5 times a power of ten, at or above almost all of the values' sizes (all but a two-hundredth of those that count): a scale's end.
+/// 1, 2 or 5 times a power of ten, at or above almost all of the values' sizes (all but a two-hundredth of those that
+/// count): a scale's end.
 double scale_for(ImageView<const float> values, Mask mask = {});
 
-/// A heat map at full size (small ones enlarged by a whole number) above its labelled colour scale. Pixels outside the mask are grey.
+/// A heat map at full size (small ones enlarged by a whole number) above its labelled colour scale. Pixels outside the
+/// mask are grey.
 Image<std::uint8_t> heat_picture(const HeatMap& map, Mask mask = {});
 
-/// What a comparison's sheet shows: two pictures as a display would at one exposure, their signed difference, and a map of the perceived one.
+/// What a comparison's sheet shows: two pictures as a display would at one exposure, their signed difference, and a map
+/// of the perceived one.
 struct CompareSheet {
     std::string title, subtitle;
     std::string test_name, reference_name;

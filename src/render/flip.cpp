@@ -1,5 +1,5 @@
-// FLIP: Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astrom, Fairchild 2020, "FLIP: A difference evaluator for alternating images".
-// Section and equation numbers are that paper's. HDR-FLIP is in flip_hdr.cpp.
+// FLIP: Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astrom, Fairchild 2020, "FLIP: A difference evaluator for
+// alternating images". Section and equation numbers are that paper's. HDR-FLIP is in flip_hdr.cpp.
 #include "domelight/metrics.h"
 #include "domelight/parallel.h"
 
@@ -96,7 +96,8 @@ float redistribute(float difference) {
 
 // --- filters ---
 
-/// A Gaussian's taps, a sqrt(pi / b) exp(-pi^2 x^2 / b) in the paper's terms (table 1): only b matters once it is normalised.
+/// A Gaussian's taps, a sqrt(pi / b) exp(-pi^2 x^2 / b) in the paper's terms (table 1): only b matters once it is
+/// normalised.
 Taps gaussian(double pixels_per_degree, double b, int radius) {
     Taps taps;
     for (int i = -radius; i <= radius; ++i) {
@@ -115,7 +116,8 @@ Taps scaled(Taps taps, double factor) {
     return taps;
 }
 
-/// Sensitivity to contrast as a filter in each opponent channel (section 4.1.1): Gaussians, the blue-yellow one a sum of two.
+/// Sensitivity to contrast as a filter in each opponent channel (section 4.1.1): Gaussians, the blue-yellow one a sum
+/// of two.
 struct SensitivityFilters {
     Taps y, cx, cz1, cz2;
     explicit SensitivityFilters(double ppd) {
@@ -126,7 +128,8 @@ struct SensitivityFilters {
         cz2 = gaussian(ppd, 0.025, radius);
         y = scaled(y, 1 / sum(y));
         cx = scaled(cx, 1 / sum(cx));
-        // In two dimensions a sqrt(pi / b) weighs the first Gaussian against the second; sums of the squares are the sums of the 2D kernels.
+        // In two dimensions a sqrt(pi / b) weighs the first Gaussian against the second; sums of the squares are the
+        // sums of the 2D kernels.
         const double w1 = 34.1 * std::sqrt(k_pi / 0.04), w2 = 13.5 * std::sqrt(k_pi / 0.025);
         const double total = w1 * sum(cz1) * sum(cz1) + w2 * sum(cz2) * sum(cz2);
         cz1 = scaled(cz1, std::sqrt(w1 / total));
@@ -134,7 +137,8 @@ struct SensitivityFilters {
     }
 };
 
-/// First and second derivatives of a Gaussian, their positive and their negative taps each adding up to one (section 4.2).
+/// First and second derivatives of a Gaussian, their positive and their negative taps each adding up to one
+/// (section 4.2).
 struct FeatureFilters {
     Taps smooth, edge, point;
     explicit FeatureFilters(double ppd) {
@@ -161,8 +165,8 @@ struct FeatureFilters {
 // --- one image as the two pipelines see it ---
 
 struct Seen {
-    ImageF lab;           ///< filtered, Hunt-adjusted CIELAB, 3 channels
-    ImageF edge, point;   ///< magnitudes of the feature filters, one channel
+    ImageF lab;          ///< filtered, Hunt-adjusted CIELAB, 3 channels
+    ImageF edge, point;  ///< magnitudes of the feature filters, one channel
 };
 
 /// sqrt(h^2 + v^2).
@@ -173,7 +177,8 @@ ImageF magnitude(const ImageF& h, const ImageF& v) {
     return out;
 }
 
-Seen see(ImageView<const float> rgb, const SensitivityFilters& sensitivity, const FeatureFilters& features, int threads) {
+Seen see(ImageView<const float> rgb, const SensitivityFilters& sensitivity, const FeatureFilters& features,
+         int threads) {
     const int width = rgb.width, height = rgb.height;
     ImageF plane[3];
     for (ImageF& p : plane) p = ImageF(width, height, 1);
@@ -204,8 +209,10 @@ Seen see(ImageView<const float> rgb, const SensitivityFilters& sensitivity, cons
         }
     });
     for (float& v : plane[0].pixels()) v = (v + 16) / 116;  // to [0, 1]
-    seen.edge = magnitude(filter(plane[0], features.edge, features.smooth), filter(plane[0], features.smooth, features.edge));
-    seen.point = magnitude(filter(plane[0], features.point, features.smooth), filter(plane[0], features.smooth, features.point));
+    seen.edge =
+        magnitude(filter(plane[0], features.edge, features.smooth), filter(plane[0], features.smooth, features.edge));
+    seen.point =
+        magnitude(filter(plane[0], features.point, features.smooth), filter(plane[0], features.smooth, features.point));
     return seen;
 }
 
@@ -216,7 +223,8 @@ float linear_of_srgb(float v) {
 
 }  // namespace
 
-ImageF flip_linear(ImageView<const float> test, ImageView<const float> reference, const FlipOptions& options, int threads) {
+ImageF flip_linear(ImageView<const float> test, ImageView<const float> reference, const FlipOptions& options,
+                   int threads) {
     assert(options.pixels_per_degree > 0 && test.width == reference.width && test.height == reference.height);
     const SensitivityFilters sensitivity(options.pixels_per_degree);
     const FeatureFilters features(options.pixels_per_degree);
@@ -235,7 +243,8 @@ ImageF flip_linear(ImageView<const float> test, ImageView<const float> reference
     return error;
 }
 
-ImageF flip(ImageView<const float> test_srgb, ImageView<const float> reference_srgb, const FlipOptions& options, int threads) {
+ImageF flip(ImageView<const float> test_srgb, ImageView<const float> reference_srgb, const FlipOptions& options,
+            int threads) {
     const auto linear = [&](ImageView<const float> image) {
         ImageF out(image.width, image.height, 3);
         parallel_for(image.height, threads, [&](int y) {

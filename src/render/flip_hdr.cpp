@@ -1,4 +1,5 @@
-// HDR-FLIP: Andersson, Nilsson, Shirley, Akenine-Moeller 2021, "Visualizing errors in rendered high dynamic range images".
+// HDR-FLIP: Andersson, Nilsson, Shirley, Akenine-Moeller 2021, "Visualizing errors in rendered high dynamic range
+// images".
 #include "domelight/metrics.h"
 #include "domelight/parallel.h"
 
@@ -11,7 +12,8 @@
 namespace domelight {
 namespace {
 
-// ACES's filmic curve by Narkowicz's fit, its input times 0.6 (section 3.2): (k0 x^2 + k1 x + k2) / (k3 x^2 + k4 x + k5).
+// ACES's filmic curve by Narkowicz's fit, its input times 0.6 (section 3.2): (k0 x^2 + k1 x + k2) / (k3 x^2 + k4 x +
+// k5).
 constexpr double k0 = 0.36 * 2.51, k1 = 0.6 * 0.03, k2 = 0, k3 = 0.36 * 2.43, k4 = 0.6 * 0.59, k5 = 0.14;
 constexpr double k_bright = 0.85;  ///< where the tone mapper is taken to saturate
 
@@ -64,7 +66,8 @@ ImageF exposed(ImageView<const float> image, double stops, int threads) {
 
 }  // namespace
 
-HdrFlip hdr_flip(ImageView<const float> test, ImageView<const float> reference, const FlipOptions& options, int threads) {
+HdrFlip hdr_flip(ImageView<const float> test, ImageView<const float> reference, const FlipOptions& options,
+                 int threads) {
     const ExposureRange range = exposures_of(reference);
     HdrFlip result;
     result.start = range.start, result.stop = range.stop, result.count = range.count;
@@ -72,7 +75,8 @@ HdrFlip hdr_flip(ImageView<const float> test, ImageView<const float> reference, 
     result.exposure = ImageF(test.width, test.height, 1, float(range.start));
     for (int i = 0; i < range.count; ++i) {
         const double stops = range.start + (range.stop - range.start) * i / (range.count - 1);
-        const ImageF error = flip_linear(exposed(test, stops, threads).view(), exposed(reference, stops, threads).view(), options, threads);
+        const ImageF error = flip_linear(exposed(test, stops, threads).view(),
+                                         exposed(reference, stops, threads).view(), options, threads);
         for (std::size_t p = 0; p < error.pixels().size(); ++p)
             if (error.pixels()[p] > result.error.pixels()[p]) {
                 result.error.pixels()[p] = error.pixels()[p];

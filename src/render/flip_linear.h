@@ -6,6 +6,7 @@
 namespace domelight {
 
 /// FLIP of two images in linear sRGB, [0, 1].
-ImageF flip_linear(ImageView<const float> test, ImageView<const float> reference, const FlipOptions& options, int threads);
+ImageF flip_linear(ImageView<const float> test, ImageView<const float> reference, const FlipOptions& options,
+                   int threads);
 
 }  // namespace domelight

@@ -60,7 +60,8 @@ Errors errors_of(const ErrorSums& s) {
     constexpr double infinite = std::numeric_limits<double>::infinity();
     const double values = 3 * double(s.pixels);
     e.rmse = std::sqrt(s.squared / values);
-    if (s.squared > 0) e.relative_rmse = s.reference_squared > 0 ? std::sqrt(s.squared / s.reference_squared) : infinite;
+    if (s.squared > 0)
+        e.relative_rmse = s.reference_squared > 0 ? std::sqrt(s.squared / s.reference_squared) : infinite;
     e.tone_mapped_rmse = std::sqrt(s.tone_mapped_squared / values);
     e.mean_ratio = s.test == s.reference ? 1 : s.test / s.reference;
     e.largest = s.largest;

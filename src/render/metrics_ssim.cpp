@@ -1,4 +1,5 @@
-// Structural similarity: Wang, Bovik, Sheikh, Simoncelli 2004, "Image quality assessment: from error visibility to structural similarity".
+// Structural similarity: Wang, Bovik, Sheikh, Simoncelli 2004, "Image quality assessment: from error visibility to
+// structural similarity".
 #include "domelight/metrics.h"
 #include "domelight/parallel.h"
 
@@ -33,8 +34,8 @@ ImageF bordered(int width, int height) {
 
 ImageF ssim(ImageView<const float> test, ImageView<const float> reference, Mask mask, int threads) {
     const int width = test.width, height = test.height;
-    // Weighted moments: the weight m (1 inside the mask and the image), m a, m b, m a^2, m b^2, m a b. Luminances are taken relative to 1/2 for the
-    // squares: in floats that keeps the variance of nearly equal pixels.
+    // Weighted moments: the weight m (1 inside the mask and the image), m a, m b, m a^2, m b^2, m a b. Luminances are
+    // taken relative to 1/2 for the squares: in floats that keeps the variance of nearly equal pixels.
     ImageF planes[6];
     for (ImageF& plane : planes) plane = bordered(width, height);
     parallel_for(height, threads, [&](int y) {
@@ -57,7 +58,8 @@ ImageF ssim(ImageView<const float> test, ImageView<const float> reference, Mask 
             const double a = m[1] / m[0], b = m[2] / m[0];
             const double aa = std::max(m[3] / m[0] - a * a, 0.0), bb = std::max(m[4] / m[0] - b * b, 0.0);
             // What rounding leaves of flat windows must not correlate by more than itself: equal images have exactly 1.
-            const double most = std::sqrt(aa * bb), ab = std::clamp(m[5] / m[0] - a * b, -most, most), mean_a = a + 0.5, mean_b = b + 0.5;
+            const double most = std::sqrt(aa * bb), ab = std::clamp(m[5] / m[0] - a * b, -most, most), mean_a = a + 0.5,
+                         mean_b = b + 0.5;
             *result.at(x, y) = float((2 * mean_a * mean_b + k_c1) * (2 * ab + k_c2) /
                                      ((mean_a * mean_a + mean_b * mean_b + k_c1) * (aa + bb + k_c2)));
         }

@@ -1,5 +1,4 @@
 #include "domelight/bake_audit.h"
-
 #include "domelight/projection.h"
 #include "domelight/random.h"
 
@@ -21,7 +20,9 @@ ImageF environment(int height = 32) {
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < 2 * height; ++x) {
             const Vec3d d = latlong_direction({(x + 0.5) / (2 * height), (y + 0.5) / height});
-            const auto lamp = [&](Vec3d at, double sharpness) { return std::exp(sharpness * (dot(normalize(at), d) - 1)); };
+            const auto lamp = [&](Vec3d at, double sharpness) {
+                return std::exp(sharpness * (dot(normalize(at), d) - 1));
+            };
             float* p = image.at(x, y);
             p[0] = float(0.3 + 0.1 * d.y + 5 * lamp({1, 0.3, 0.2}, 20) + 2 * lamp({-0.4, -0.2, 1}, 8));
             p[1] = float(0.3 + 0.1 * d.y + 3 * lamp({1, 0.3, 0.2}, 20) + 9 * lamp({-0.3, 0.8, -0.6}, 60));
@@ -41,7 +42,8 @@ std::vector<CubeLevel> bake(const ImageF& light, std::vector<Wanted> wanted, con
     options.world_to_source = m;
     options.sh_bands = 0;
     for (const Wanted& w : wanted)
-        options.specular.push_back(w.roughness > 0 ? LevelSpec{w.size, false, ZonalKernel::ggx(w.roughness)} : LevelSpec{w.size, true, {}});
+        options.specular.push_back(w.roughness > 0 ? LevelSpec{w.size, false, ZonalKernel::ggx(w.roughness)}
+                                                   : LevelSpec{w.size, true, {}});
     ImageRowSource rows(light.view());
     auto result = prefilter(rows, options);
     REQUIRE(bool(result));
@@ -101,7 +103,9 @@ TEST_SUITE("bake") {
                               {{{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, -1}}}, 1, "mirrored in z"},
                               {{{Vec3d{1, 0, 0}, Vec3d{0, -1, 0}, Vec3d{0, 0, 1}}}, 1, "mirrored in y (upside down)"},
                               {mirror * turned(90), 1, "mirrored in x, then turned by 90 degrees about +Y"},
-                              {{{Vec3d{1, 0, 0}, Vec3d{0, 0, 1}, Vec3d{0, -1, 0}}}, 3, "turned: its +X shows our +X, its +Y shows our -Z, its +Z shows our +Y"}};
+                              {{{Vec3d{1, 0, 0}, Vec3d{0, 0, 1}, Vec3d{0, -1, 0}}},
+                               3,
+                               "turned: its +X shows our +X, its +Y shows our -Z, its +Z shows our +Y"}};
         for (const Case& c : cases) {
             CAPTURE(c.words);
             const auto audit = audit_bake(bake(light, {{16, 0.5}}, c.m, c.scale), source_of(light), {.texels = 600});
@@ -147,7 +151,8 @@ TEST_SUITE("bake") {
     TEST_CASE("audit: NaN texels are left out, black levels and no levels are errors") {
         const ImageF light = environment();
         std::vector<CubeLevel> levels = bake(light, {{16, 0.5}});
-        for (int i = 0; i < 50; ++i) levels[0].cube.pixels()[std::size_t(31 * i)] = std::numeric_limits<float>::quiet_NaN();
+        for (int i = 0; i < 50; ++i)
+            levels[0].cube.pixels()[std::size_t(31 * i)] = std::numeric_limits<float>::quiet_NaN();
         const auto audit = audit_bake(levels, source_of(light));
         REQUIRE(bool(audit));
         CHECK(audit->levels[0].error < 1e-3);
@@ -161,7 +166,8 @@ TEST_SUITE("bake") {
     TEST_CASE("audit: the same bits on one thread and on three") {
         const ImageF light = environment(16);
         const auto levels = bake(light, {{8, 0.6}});
-        const auto one = audit_bake(levels, source_of(light), {.threads = 1}), three = audit_bake(levels, source_of(light), {.threads = 3});
+        const auto one = audit_bake(levels, source_of(light), {.threads = 1}),
+                   three = audit_bake(levels, source_of(light), {.threads = 3});
         REQUIRE(bool(one));
         REQUIRE(bool(three));
         CHECK(one->levels[0].roughness == three->levels[0].roughness);

@@ -16,7 +16,8 @@ ImageF lamps() {
         for (int x = 0; x < 64; ++x) {
             const Vec3d d = latlong_direction({(x + 0.5) / 64, (y + 0.5) / 32});
             for (int c = 0; c < 3; ++c)
-                image.at(x, y)[c] = float(1 + std::exp(9 * (dot(normalize(Vec3d{0.8, 0.3 + 0.2 * c, 0.4}), d) - 1)) + 0.2 * d.z);
+                image.at(x, y)[c] =
+                    float(1 + std::exp(9 * (dot(normalize(Vec3d{0.8, 0.3 + 0.2 * c, 0.4}), d) - 1)) + 0.2 * d.z);
         }
     return image;
 }
@@ -49,7 +50,8 @@ TEST_CASE("prefilter: a source that is mirrored or turned in any way gives the c
                         for (int x = 0; x < 8; ++x) {
                             const CubePoint p = cube_point(m * cube_direction(f, {(x + 0.5) / 8, (y + 0.5) / 8}));
                             const float* a = turned.specular[level].cube.face(f).at(x, y);
-                            const float* b = plain.specular[level].cube.face(p.face).at(int(p.uv.u * 8), int(p.uv.v * 8));
+                            const float* b =
+                                plain.specular[level].cube.face(p.face).at(int(p.uv.u * 8), int(p.uv.v * 8));
                             for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(double(a[c]) - b[c]));
                         }
                 CAPTURE(order);

@@ -19,7 +19,8 @@ namespace {
 constexpr int k_width = 6, k_height = 4;
 
 /// A file in which channel c of the list has the value c + x / 10 + y.
-std::filesystem::path write_layers(const std::filesystem::path& file, const std::vector<std::string>& names, Imath::Box2i data = {{0, 0}, {k_width - 1, k_height - 1}},
+std::filesystem::path write_layers(const std::filesystem::path& file, const std::vector<std::string>& names,
+                                   Imath::Box2i data = {{0, 0}, {k_width - 1, k_height - 1}},
                                    const std::string& objects = "") {
     Imf::Header header(Imath::Box2i({0, 0}, {k_width - 1, k_height - 1}), data);
     if (!objects.empty()) header.insert("objects", Imf::StringAttribute(objects));
@@ -49,9 +50,11 @@ Picture read(const std::filesystem::path& file, const PictureOptions& options = 
 }  // namespace
 
 TEST_SUITE("io") {
-    TEST_CASE("read_picture: a layer is found by its name, by its last part, and a single channel stands for all three") {
+    TEST_CASE(
+        "read_picture: a layer is found by its name, by its last part, and a single channel stands for all three") {
         const test::TemporaryFolder folder;
-        const auto file = write_layers(folder / "a.exr", {"R", "G", "B", "View.Combined.R", "View.Combined.G", "View.Combined.B", "depth.Z", "N.X", "N.Y", "N.Z"});
+        const auto file = write_layers(folder / "a.exr", {"R", "G", "B", "View.Combined.R", "View.Combined.G",
+                                                          "View.Combined.B", "depth.Z", "N.X", "N.Y", "N.Z"});
         CHECK(read(file).rgb.at(2, 1)[2] == doctest::Approx(2 + 0.2 + 1));
         CHECK(read(file, {.layer = "View.Combined"}).rgb.at(2, 1)[0] == doctest::Approx(3 + 0.2 + 1));
         CHECK(read(file, {.layer = "Combined"}).rgb.at(5, 3)[1] == doctest::Approx(4 + 0.5 + 3));
@@ -64,11 +67,13 @@ TEST_SUITE("io") {
         CHECK(none.error().hint.find("View.Combined") != std::string::npos);
     }
 
-    TEST_CASE("read_picture: variance is that of a sample over the channel samples, unless said otherwise") {
+    TEST_CASE("read_picture: variance is that of the pixel, or of a sample over the channel samples") {
         const test::TemporaryFolder folder;
-        const auto file = write_layers(folder / "a.exr", {"R", "G", "B", "variance.R", "variance.G", "variance.B", "samples"});
-        CHECK(read(file).variance.at(1, 2)[0] == doctest::Approx((3 + 0.1 + 2) / (6 + 0.1 + 2)));
-        CHECK(read(file, {.variance = "pixel"}).variance.at(1, 2)[0] == doctest::Approx(5.1));
+        const auto file =
+            write_layers(folder / "a.exr", {"R", "G", "B", "variance.R", "variance.G", "variance.B", "samples"});
+        CHECK(read(file, {.variance = "sample"}).variance.at(1, 2)[0] ==
+              doctest::Approx((3 + 0.1 + 2) / (6 + 0.1 + 2)));
+        CHECK(read(file).variance.at(1, 2)[0] == doctest::Approx(5.1));
         const auto without = write_layers(folder / "b.exr", {"R", "G", "B", "variance.R", "variance.G", "variance.B"});
         CHECK(read(without).variance.at(1, 2)[1] == doctest::Approx(6.1));
         CHECK_FALSE(read_picture(without, {.variance = "sample"}));
@@ -77,7 +82,8 @@ TEST_SUITE("io") {
 
     TEST_CASE("read_picture: objects come with their names") {
         const test::TemporaryFolder folder;
-        const Picture p = read(write_layers(folder / "a.exr", {"object", "R", "G", "B"}, {{0, 0}, {k_width - 1, k_height - 1}}, "floor\nball\n"));
+        const Picture p = read(write_layers(folder / "a.exr", {"object", "R", "G", "B"},
+                                            {{0, 0}, {k_width - 1, k_height - 1}}, "floor\nball\n"));
         REQUIRE_FALSE(p.objects.empty());
         CHECK(*p.objects.at(0, 1) == doctest::Approx(1));
         REQUIRE(p.object_names.size() == 2);

@@ -100,7 +100,8 @@ TEST_SUITE("render") {
     }
 
     TEST_CASE("ssim: an image against its negative about the mean has the closed form of anticorrelation") {
-        // A checkerboard of 0.5 +- d, tone mapped values: within any window of full size, mean ~ 0.5 and covariance = -variance.
+        // A checkerboard of 0.5 +- d, tone mapped values: within any window of full size, mean ~ 0.5 and covariance =
+        // -variance.
         const double d = 0.2;
         ImageF a(64, 64, 3), b(64, 64, 3);
         for (int y = 0; y < 64; ++y)
@@ -131,14 +132,16 @@ TEST_SUITE("render") {
         const ImageF test = noisy(truth, 0.2, 1), reference = noisy(truth, 0.2, 2);
         const NoiseSummary n = compare_noisy(test.view(), reference.view(), variance.view(), variance.view());
         CHECK(n.values == 36000);
-        // Standard errors over 36 000 values: chi2 sqrt(2 / n) = 0.0075, share 0.0011, mean z 0.0053; four of them allowed.
+        // Standard errors over 36 000 values: chi2 sqrt(2 / n) = 0.0075, share 0.0011, mean z 0.0053; four of them
+        // allowed.
         CHECK(std::abs(n.chi2 - 1) < 0.03);
         CHECK(std::abs(n.share_above_2 - 0.0455) < 0.0044);
         CHECK(std::abs(n.mean_z) < 0.021);
         CHECK(std::abs(n.total_z) < 4);
         CHECK(n.ratio_low < n.mean_ratio);
         // sd of the ratio of means = sqrt(2) 0.2 / sqrt(36000) = 0.00149
-        CHECK(n.ratio_high - n.ratio_low == doctest::Approx(2 * 1.96 * std::sqrt(2.0) * 0.2 / std::sqrt(36000.0)).epsilon(0.01));
+        CHECK(n.ratio_high - n.ratio_low ==
+              doctest::Approx(2 * 1.96 * std::sqrt(2.0) * 0.2 / std::sqrt(36000.0)).epsilon(0.01));
 
         ImageF biased = test;
         for (float& v : biased.pixels()) v += 0.02f;
@@ -170,8 +173,9 @@ TEST_SUITE("render") {
             double ppd, mean, at_20_10, at_95_63;
         };
         // Printed by flip_reference.py; both programs compute in floats, which leaves about 1e-6 of a mean.
-        for (const Known& k : {Known{67.0206, 0.168433130, 0.1443399, 0.3725525}, Known{30, 0.309566230, 0.3809222, 0.5039243},
-                               Known{120, 0.123588473, 0.1228113, 0.3485322}}) {
+        for (const Known& k :
+             {Known{67.0206, 0.168433130, 0.1443399, 0.3725525}, Known{30, 0.309566230, 0.3809222, 0.5039243},
+              Known{120, 0.123588473, 0.1228113, 0.3485322}}) {
             const ImageF error = flip(test.view(), reference.view(), {k.ppd});
             CAPTURE(k.ppd);
             CHECK(std::abs(mean_of(error.view()) - k.mean) < 1e-5);
