@@ -192,7 +192,7 @@ void print_text(const BakeWords& w, const Bake& bake, const BakeAudit& audit, co
     }
     fmt::print(
         "\n  roughness     of GGX (n = v = r) that fits best, 0: the environment itself\n"
-        "  scale         median of theirs / exact          energy   mean over the sphere over the source's\n"
+        "  scale         median of theirs / exact          energy   ratio of the means over the sphere\n"
         "  error         RMS of (theirs - fit) / max(theirs, fit), every direction alike; RMSE relative, the brightest "
         "count most\n");
     if (stated) fmt::print("  stated        roughness by {}; errors there, at scale 1\n", bake.stated_by);

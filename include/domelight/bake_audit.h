@@ -46,7 +46,7 @@ struct LevelAudit {
     double roughness_within = 0; ///< the fit is less than a twentieth worse (or 0.0005) this far from it
     bool roughness_known = true; ///< false: every roughness fits alike
     double scale = 1;            ///< median over texels of theirs / exact (luminance)
-    double energy = 1;           ///< mean over the sphere of theirs over that of the source (luminance)
+    double energy = 1;           ///< mean over the sphere of theirs over that of exact (luminance), as their texels sample it
     double error = 0;            ///< RMS over the sphere of (theirs - fit) / max(theirs, fit), [0, 1]: every direction counts alike
     double relative_rmse = 0;    ///< sqrt(sum (theirs - fit)^2 / sum fit^2): the brightest directions count most
     double largest = 0;          ///< of |theirs - fit| / max(theirs, fit)

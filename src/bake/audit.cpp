@@ -56,12 +56,9 @@ class Exact {
             auto filtered = filter(options);
             if (!filtered) return filtered.error();
             for (std::size_t i = 0; i < some.size(); ++i) use(int(first + i), filtered->specular[i].cube);
-            mean_ = filtered->mean;
         }
         return {};
     }
-    /// Mean luminance of the source, after the first levels().
-    double mean() const { return 0.2126 * mean_.x + 0.7152 * mean_.y + 0.0722 * mean_.z; }
 
   private:
     Result<FilterResult> filter(const FilterOptions& options) const {
@@ -71,7 +68,6 @@ class Exact {
     }
     const AuditSource& source_;
     int threads_;
-    mutable Vec3d mean_;
 };
 
 /// The level that tells orientations apart best at little cost: the one nearest to 32 texels.
@@ -114,13 +110,15 @@ Result<CubeOrientation> find_orientation(const TexelSample& sample, const Exact&
 struct Candidate {
     double roughness = 0;
     Fit fit;
+    double mean =
+        0;  ///< luminance over the sphere, of the same texels as the level's: coarse faces are a coarse quadrature
 };
 
 /// Fits at further roughnesses, kept in rising order.
 Result<void> try_roughness(const TexelSample& sample, const std::vector<int>& turned, const Exact& exact,
                            std::span<const double> roughness, std::vector<Candidate>& tried) {
     const auto ok = exact.levels(sample.size, roughness, [&](int i, const Cubemap& cube) {
-        tried.push_back({roughness[std::size_t(i)], fit_level(sample, cube, turned)});
+        tried.push_back({roughness[std::size_t(i)], fit_level(sample, cube, turned), mean_luminance(cube)});
     });
     std::sort(tried.begin(), tried.end(),
               [](const Candidate& a, const Candidate& b) { return a.roughness < b.roughness; });
@@ -197,7 +195,7 @@ Result<LevelAudit> audit_level(const CubeLevel& level, const TexelSample& sample
     audit.error = found.fit.error;
     audit.relative_rmse = found.fit.relative_rmse;
     audit.largest = found.fit.largest;
-    audit.energy = exact.mean() > 0 ? sample.mean / exact.mean() : 1;
+    audit.energy = found.mean > 0 ? sample.mean / found.mean : 1;
     audit.stated_roughness = level.roughness;
     if (level.roughness) {
         const double r = *level.roughness;

@@ -55,6 +55,21 @@ const std::vector<Mat3>& cube_orientations() {
     return all;
 }
 
+double mean_luminance(const Cubemap& cube) {
+    const int n = cube.size();
+    double sum = 0, weight = 0;
+    for (int y = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x) {
+            const double w = cube_solid_angle(x, y, n);
+            for (int f = 0; f < 6; ++f) {
+                const float* p = cube.face(f).at(x, y);
+                const float l = luminance_of({p[0], p[1], p[2]});
+                if (std::isfinite(l)) sum += w * l, weight += w;
+            }
+        }
+    return weight > 0 ? sum / weight : 0;
+}
+
 TexelSample sample_texels(const Cubemap& cube, int most) {
     TexelSample sample;
     const int n = cube.size();
@@ -65,11 +80,7 @@ TexelSample sample_texels(const Cubemap& cube, int most) {
         return Vec3f{p[0], p[1], p[2]};
     };
     const auto finite = [](const Vec3f& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
-    const auto solid_angle = [&](std::int64_t i) { return cube_solid_angle(int(i % n), int(i / n) % n, n); };
-    double sum = 0, weight = 0;
-    for (std::int64_t i = 0; i < all; ++i)
-        if (const Vec3f v = value(i); finite(v)) sum += solid_angle(i) * luminance_of(v), weight += solid_angle(i);
-    sample.mean = weight > 0 ? sum / weight : 0;
+    sample.mean = mean_luminance(cube);
     for (std::int64_t k = 0; k < pieces; ++k) {
         const std::int64_t begin = all * k / pieces, end = all * (k + 1) / pieces;
         const std::int64_t i = begin + std::int64_t(mixed(std::uint64_t(k) + 1) % std::uint64_t(end - begin));
@@ -77,7 +88,7 @@ TexelSample sample_texels(const Cubemap& cube, int most) {
         if (!finite(v)) continue;
         v = {std::max(v.x, 0.0f), std::max(v.y, 0.0f), std::max(v.z, 0.0f)};
         sample.texels.push_back(int(i));
-        sample.weights.push_back(solid_angle(i) * double(all) / double(pieces));
+        sample.weights.push_back(cube_solid_angle(int(i % n), int(i / n) % n, n) * double(all) / double(pieces));
         sample.values.push_back(v);
         sample.luminance.push_back(luminance_of(v));
     }

@@ -24,6 +24,9 @@ struct TexelSample {
 /// All finite texels, or `most` of them, one from each of as many pieces of the strip.
 TexelSample sample_texels(const Cubemap& cube, int most);
 
+/// Mean luminance over the sphere, of the finite texels.
+double mean_luminance(const Cubemap& cube);
+
 /// For each sampled texel, the one of a cube of the same size that lies in direction `m` d.
 std::vector<int> turned_texels(const TexelSample& sample, const Mat3& m);
 

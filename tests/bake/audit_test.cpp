@@ -83,7 +83,7 @@ TEST_SUITE("bake") {
             CHECK(level.error < 1e-3);
             CHECK(level.relative_rmse < 1e-3);
             CHECK(std::abs(level.scale - 1) < 1e-3);
-            CHECK(std::abs(level.energy - 1) < 2e-3);  // texels of 8^2 faces, at their centres, are a coarse quadrature
+            CHECK(std::abs(level.energy - 1) < 1e-3);
             CHECK(level.stated_error < 1e-5);
         }
     }
@@ -112,8 +112,8 @@ TEST_SUITE("bake") {
             REQUIRE(bool(audit));
             CHECK(audit->orientation.words == c.words);
             CHECK(audit->orientation.next_error > 5 * audit->orientation.error);
-            CHECK(audit->levels[0].scale == doctest::Approx(c.scale).epsilon(1e-3));
-            CHECK(audit->levels[0].energy == doctest::Approx(c.scale).epsilon(2e-3));
+            CHECK(std::abs(audit->levels[0].scale / c.scale - 1) < 1e-3);
+            CHECK(std::abs(audit->levels[0].energy / c.scale - 1) < 2e-3);
             CHECK(std::abs(audit->levels[0].roughness - 0.5) < 1e-3);
             CHECK(audit->levels[0].error < 1e-3);
         }
