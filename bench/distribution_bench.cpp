@@ -1,13 +1,21 @@
-// Drawing from an environment: million samples a second, densities included, by method, on random and on stratified points, and as a ratio to plain
-// binary search in the same run; table time and memory; the error of an estimate with 4096 low-discrepancy points.
+// Drawing from an environment: million samples a second, densities included, by method, on random and on stratified
+// points, and as a ratio to plain binary search in the same run; table time and memory; the error of an estimate with
+// 4096 low-discrepancy points.
 //
 //   distribution_bench [--quick] [--set AVX2|SSE4|SCALAR] [FILE.hdr]
 //
 // --quick: 4096 x 2048 only. --set: no better instruction set than this one.
-// Without a file: the 4k environment under DOMELIGHT_DATA, else the built-in sky. CPU time of this thread, medians of interleaved rounds.
+// Without a file: the 4k environment under DOMELIGHT_DATA, else the built-in sky. CPU time of this thread, medians of
+// interleaved rounds.
+
+#include "domelight/distribution.h"
+#include "domelight/environment.h"
+#include "domelight/projection.h"
+#include "domelight/sky.h"
+
+#include "simd/instruction_set.h"
 
 #include <fmt/core.h>
-
 #include <time.h>
 
 #include <algorithm>
@@ -17,12 +25,6 @@
 #include <functional>
 #include <map>
 #include <random>
-
-#include "domelight/distribution.h"
-#include "domelight/environment.h"
-#include "domelight/projection.h"
-#include "domelight/sky.h"
-#include "simd/instruction_set.h"
 
 using namespace domelight;
 
@@ -39,7 +41,8 @@ double median(std::vector<double> v) {
     return v[v.size() / 2];
 }
 
-/// Luminance x sin theta of an environment brought to `height` rows: means of blocks, or neighbours' bilinear mix where it must grow.
+/// Luminance x sin theta of an environment brought to `height` rows: means of blocks, or neighbours' bilinear mix where
+/// it must grow.
 ImageF weights_of(const ImageF& rgb, int height) {
     ImageF weights(2 * height, height, 1);
     const auto luminance = [&](int x, int y) {
@@ -56,8 +59,8 @@ ImageF weights_of(const ImageF& rgb, int height) {
                 for (int j = 0; j < step; ++j)
                     for (int i = 0; i < step; ++i) sum += luminance(x * step + i, y * step + j) / (step * step);
             } else {
-                const double fx = (x + 0.5) * scale - 0.5, fy = (y + 0.5) * scale - 0.5, ix = std::floor(fx), iy = std::floor(fy), s = fx - ix,
-                             t = fy - iy;
+                const double fx = (x + 0.5) * scale - 0.5, fy = (y + 0.5) * scale - 0.5, ix = std::floor(fx),
+                             iy = std::floor(fy), s = fx - ix, t = fy - iy;
                 const auto row = [&](int j) { return luminance(int(ix), j) * (1 - s) + luminance(int(ix) + 1, j) * s; };
                 sum = row(int(iy)) * (1 - t) + row(int(iy) + 1) * t;
             }
@@ -118,11 +121,12 @@ std::vector<UnitPoint> hammersley(int count, UnitPoint shift) {
     return points;
 }
 
-/// Root mean square of the relative error of an integral over the square by 4096 points, over 32 shifts of them: weight x a smooth function (a
-/// cosine lobe's), with the weight read as the density is, texel by texel or bilinear.
+/// Root mean square of the relative error of an integral over the square by 4096 points, over 32 shifts of them: weight
+/// x a smooth function (a cosine lobe's), with the weight read as the density is, texel by texel or bilinear.
 double relative_error(const Distribution2D& d, const Distribution2D& exact, bool random) {
     const auto integrand = [&](double u, double v) {
-        return exact.pdf_uv(u, v) * std::max(0.0, std::sin(k_pi * v) * std::cos(2 * k_pi * (u - 0.3)) * 0.6 + std::cos(k_pi * v) * 0.8);
+        return exact.pdf_uv(u, v) *
+               std::max(0.0, std::sin(k_pi * v) * std::cos(2 * k_pi * (u - 0.3)) * 0.6 + std::cos(k_pi * v) * 0.8);
     };
     constexpr int k_points = 4096, k_shifts = 32;
     std::mt19937_64 bits(9);
@@ -148,11 +152,13 @@ double relative_error(const Distribution2D& d, const Distribution2D& exact, bool
     return std::sqrt(square) / mean;
 }
 
-constexpr DistributionMethod k_methods[] = {DistributionMethod::binary, DistributionMethod::guided, DistributionMethod::alias,
-                                            DistributionMethod::hierarchical, DistributionMethod::bilinear};
+constexpr DistributionMethod k_methods[] = {DistributionMethod::binary, DistributionMethod::guided,
+                                            DistributionMethod::alias, DistributionMethod::hierarchical,
+                                            DistributionMethod::bilinear};
 
 struct Figures {
-    double build_ms = 0, megabytes = 0, random = 0, random_one = 0, stratified = 0, stratified_one = 0, error = 0, error_random = 0;
+    double build_ms = 0, megabytes = 0, random = 0, random_one = 0, stratified = 0, stratified_one = 0, error = 0,
+           error_random = 0;
 };
 
 /// Seconds a point: batched, and one at a time.
@@ -211,8 +217,10 @@ void run(const ImageF& weights, int rounds, int count) {
             const std::size_t n = method == DistributionMethod::hierarchical ? count / 8 : count;
             times[0][method].push_back(seconds_batched(d, std::span(random).first(n), out));
             times[1][method].push_back(seconds_single(d, std::span(random).first(n), out));
-            times[2][method].push_back(seconds_batched(d, std::span(stratified).first(std::min(n, stratified.size())), out));
-            times[3][method].push_back(seconds_single(d, std::span(stratified).first(std::min(n, stratified.size())), out));
+            times[2][method].push_back(
+                seconds_batched(d, std::span(stratified).first(std::min(n, stratified.size())), out));
+            times[3][method].push_back(
+                seconds_single(d, std::span(stratified).first(std::min(n, stratified.size())), out));
         }
     for (auto method : k_methods) {
         Figures& f = figures[method];
@@ -227,17 +235,20 @@ void run(const ImageF& weights, int rounds, int count) {
     }
 
     fmt::print("  million samples a second with density: batched (one at a time)\n");
-    fmt::print("  {:<14} {:>16} {:>16} {:>8} {:>8} {:>10} {:>8} {:>12} {:>12}\n", "method", "random", "stratified", "ratio", "ratio", "table ms",
-               "MB", "RMSE Hamm.", "RMSE random");
+    fmt::print("  {:<14} {:>16} {:>16} {:>8} {:>8} {:>10} {:>8} {:>12} {:>12}\n", "method", "random", "stratified",
+               "ratio", "ratio", "table ms", "MB", "RMSE Hamm.", "RMSE random");
     const Figures plain = figures[DistributionMethod::binary];
     for (auto method : k_methods) {
         const Figures& f = figures[method];
-        fmt::print("  {:<14} {:>8.1f} ({:>5.1f}) {:>8.1f} ({:>5.1f}) {:>8.2f} {:>8.2f} {:>10.1f} {:>8.2f} {:>12.2e} {:>12.2e}\n", method_name(method),
-                   f.random, f.random_one, f.stratified, f.stratified_one, f.random / plain.random, f.stratified / plain.stratified, f.build_ms,
-                   f.megabytes, f.error, f.error_random);
+        fmt::print(
+            "  {:<14} {:>8.1f} ({:>5.1f}) {:>8.1f} ({:>5.1f}) {:>8.2f} {:>8.2f} {:>10.1f} {:>8.2f} {:>12.2e} "
+            "{:>12.2e}\n",
+            method_name(method), f.random, f.random_one, f.stratified, f.stratified_one, f.random / plain.random,
+            f.stratified / plain.stratified, f.build_ms, f.megabytes, f.error, f.error_random);
     }
     // The yardstick is the faster of its two forms.
-    const double binary_random = std::max(plain.random, plain.random_one), binary_stratified = std::max(plain.stratified, plain.stratified_one);
+    const double binary_random = std::max(plain.random, plain.random_one),
+                 binary_stratified = std::max(plain.stratified, plain.stratified_one);
     const Figures guided = figures[DistributionMethod::guided], alias = figures[DistributionMethod::alias],
                   bilinear = figures[DistributionMethod::bilinear];
     const auto line = [&](const char* what, double is, const char* sign, double aim, bool reached) {
@@ -278,7 +289,8 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "error: {}\n", image.error().format());
         return 1;
     }
-    fmt::print("{}, kernels on {}\n", file.empty() ? "built-in sky" : file.substr(file.rfind('/') + 1), simd::instruction_set());
+    fmt::print("{}, kernels on {}\n", file.empty() ? "built-in sky" : file.substr(file.rfind('/') + 1),
+               simd::instruction_set());
     for (int height : {512, 2048, 4096}) {
         if (quick && height != 2048) continue;
         run(weights_of(*image, height), quick ? 5 : 9, 1 << 20);

@@ -1,10 +1,16 @@
-// CPU time until an estimate of the reflection integral is within 1 % (one standard deviation), for each strategy and surface: what a sampler is for.
+// CPU time until an estimate of the reflection integral is within 1 % (one standard deviation), for each strategy and
+// surface: what a sampler is for.
 //
 //   estimate_bench [ENVIRONMENT ...]
 //
-// Without files: the built-in sky and, under DOMELIGHT_DATA, a sunrise, a square at noon without sun and a studio. Time per sample and variance are
-// measured in the same run, with independent random points; "Sobol" is the time with Owen-scrambled Sobol points, by the number of them at which
-// the error over 16 randomisations falls below 1 %.
+// Without files: the built-in sky and, under DOMELIGHT_DATA, a sunrise, a square at noon without sun and a studio. Time
+// per sample and variance are measured in the same run, with independent random points; "Sobol" is the time with
+// Owen-scrambled Sobol points, by the number of them at which the error over 16 randomisations falls below 1 %.
+
+#include "domelight/environment.h"
+#include "domelight/projection.h"
+#include "domelight/reflection_estimate.h"
+#include "domelight/sky.h"
 
 #include <fmt/core.h>
 
@@ -13,11 +19,6 @@
 #include <ctime>
 #include <filesystem>
 #include <vector>
-
-#include "domelight/environment.h"
-#include "domelight/projection.h"
-#include "domelight/reflection_estimate.h"
-#include "domelight/sky.h"
 
 using namespace domelight;
 
@@ -68,8 +69,10 @@ void report(const Surface& surface, const std::string& name, const Samplers& sam
     EstimateOptions o;
     o.samples = 1 << 20;
     o.sequence = Sequence::sobol;
-    const double truth = luminance(estimate_reflection(surface, samplers.compensated, Strategy::mis_balance, o).radiance);
-    fmt::print("  {}: {:.5g}\n    {:<26}{:>10}{:>14}{:>14}{:>14}\n", name, truth, "strategy", "ns/sample", "samples to 1%", "ms to 1%", "Sobol, ms");
+    const double truth =
+        luminance(estimate_reflection(surface, samplers.compensated, Strategy::mis_balance, o).radiance);
+    fmt::print("  {}: {:.5g}\n    {:<26}{:>10}{:>14}{:>14}{:>14}\n", name, truth, "strategy", "ns/sample",
+               "samples to 1%", "ms to 1%", "Sobol, ms");
     for (const Row& row : k_rows) {
         const EnvironmentSampler& sampler = row.compensated ? samplers.compensated : samplers.plain;
         o.sequence = Sequence::random;
@@ -81,7 +84,8 @@ void report(const Surface& surface, const std::string& name, const Samplers& sam
             const double start = cpu_seconds();
             const Estimate e = estimate_reflection(surface, sampler, row.strategy, o);
             times.push_back((cpu_seconds() - start) / e.samples);
-            const double error = luminance(e.standard_error) / truth;  // of the channels together: they move as one, nearly
+            const double error =
+                luminance(e.standard_error) / truth;  // of the channels together: they move as one, nearly
             square += error * error * e.samples / 5;
         }
         std::nth_element(times.begin(), times.begin() + 2, times.end());
@@ -99,8 +103,8 @@ void report(const Surface& surface, const std::string& name, const Samplers& sam
             }
             if (sum < 1e-4) break;
         }
-        fmt::print("    {:<26}{:>10.0f}{:>14.0f}{:>14.3g}{:>13}{:.3g}\n", row.name, times[2] * 1e9, samples, samples * times[2] * 1e3,
-                   n >= 1 << 18 ? ">" : "", n * times[2] * 1e3);
+        fmt::print("    {:<26}{:>10.0f}{:>14.0f}{:>14.3g}{:>13}{:.3g}\n", row.name, times[2] * 1e9, samples,
+                   samples * times[2] * 1e3, n >= 1 << 18 ? ">" : "", n * times[2] * 1e3);
     }
 }
 
@@ -110,7 +114,8 @@ void report(const std::string& name, const ImageF& image) {
     const Vec3d normal = normalize(Vec3d{0.3, 0.9, 0.2}), view = normalize(Vec3d{-0.5, 0.6, 0.4});
     report(make_surface(normal, view, LambertBrdf{}), "Lambert", samplers);
     for (const float roughness : {0.1f, 0.3f, 0.6f, 1.f})
-        report(make_surface(normal, view, GgxBrdf{roughness * roughness}), fmt::format("GGX, roughness {}", roughness), samplers);
+        report(make_surface(normal, view, GgxBrdf{roughness * roughness}), fmt::format("GGX, roughness {}", roughness),
+               samplers);
 }
 
 }  // namespace
@@ -123,13 +128,17 @@ int main(int argc, char** argv) {
         ImageF sky(1024, 512, 3);
         if (make_sky(options)->read(sky.view())) report("built-in sky", sky);
         if (const char* data = std::getenv("DOMELIGHT_DATA"))
-            for (const char* name : {"env_highres/spruit_sunrise_1k.hdr", "env_latlong/potsdamer_platz_1k.hdr", "env_latlong/studio_small_03_1k.hdr"})
+            for (const char* name : {"env_highres/spruit_sunrise_1k.hdr", "env_latlong/potsdamer_platz_1k.hdr",
+                                     "env_latlong/studio_small_03_1k.hdr"})
                 files.push_back(std::filesystem::path(data) / name);
     }
     for (const auto& file : files) {
         auto environment = open_environment({file});
-        auto image = environment && environment->latlong ? read_latlong(*environment->latlong) : Result<ImageF>(Error{"not a lat-long", "", ""});
-        if (image) report(file.filename().string(), *image);
-        else fmt::print("\n{}: {}\n", file.filename().string(), image.error().format());
+        auto image = environment && environment->latlong ? read_latlong(*environment->latlong)
+                                                         : Result<ImageF>(Error{"not a lat-long", "", ""});
+        if (image)
+            report(file.filename().string(), *image);
+        else
+            fmt::print("\n{}: {}\n", file.filename().string(), image.error().format());
     }
 }

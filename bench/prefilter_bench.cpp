@@ -1,13 +1,14 @@
-// The exact filter's time from float rows in memory to float maps, with level 0 and irradiance: 4096 x 2048 to 1024^2 and 11 levels, and smaller jobs.
-// CPU time of the whole process; rows "/AVX2" keep the kernels to AVX2.
+// The exact filter's time from float rows in memory to float maps, with level 0 and irradiance: 4096 x 2048 to 1024^2
+// and 11 levels, and smaller jobs. CPU time of the whole process; rows "/AVX2" keep the kernels to AVX2.
+
+#include "domelight/prefilter.h"
+#include "domelight/sky.h"
+
+#include "simd/instruction_set.h"
 
 #include <benchmark/benchmark.h>
 
 #include <map>
-
-#include "domelight/prefilter.h"
-#include "domelight/sky.h"
-#include "simd/instruction_set.h"
 
 using namespace domelight;
 
@@ -31,7 +32,8 @@ void prefilter_chain(benchmark::State& state, const char* set) {
     FilterOptions options;
     options.threads = int(state.range(3));
     options.irradiance_size = 32;
-    for (int l = 0; l < levels; ++l) options.specular.push_back({std::max(1, size >> l), l == 0, ZonalKernel::ggx(double(l) / (levels - 1))});
+    for (int l = 0; l < levels; ++l)
+        options.specular.push_back({std::max(1, size >> l), l == 0, ZonalKernel::ggx(double(l) / (levels - 1))});
     simd::limit_instruction_set(set);
     for (auto _ : state) {
         ImageRowSource source(image);
@@ -43,7 +45,10 @@ void prefilter_chain(benchmark::State& state, const char* set) {
 }
 
 void jobs(benchmark::internal::Benchmark* b) {
-    b->ArgNames({"height", "size", "levels", "threads"})->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+    b->ArgNames({"height", "size", "levels", "threads"})
+        ->Unit(benchmark::kMillisecond)
+        ->MeasureProcessCPUTime()
+        ->UseRealTime();
     b->Args({2048, 1024, 11, 1})->Args({2048, 1024, 11, 2})->Args({1024, 256, 5, 1})->Args({512, 512, 7, 1});
 }
 

@@ -1,8 +1,16 @@
-// Rendering speed: CPU time, rays a second beside Embree's bare rate, and the tone-mapped error against a converged picture.
+// Rendering speed: CPU time, rays a second beside Embree's bare rate, and the tone-mapped error against a converged
+// picture.
 //
-//   render_bench [SCENE.glb|sphere ENVIRONMENT [MATERIAL]]      MATERIAL: keep | lambert:A | metal:R, given to every object but the one named floor
+//   render_bench [SCENE.glb|sphere ENVIRONMENT [MATERIAL]]      MATERIAL: keep | lambert:A | metal:R, given to every
+//   object but the one named floor
 //
 // One thread. Without arguments a sphere under the built-in sky.
+
+#include "domelight/environment.h"
+#include "domelight/render.h"
+#include "domelight/sky.h"
+
+#include "render/shapes.h"
 
 #include <fmt/core.h>
 
@@ -10,11 +18,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
-
-#include "domelight/environment.h"
-#include "domelight/render.h"
-#include "domelight/sky.h"
-#include "render/shapes.h"
 
 using namespace domelight;
 
@@ -48,7 +51,8 @@ int main(int argc, char** argv) {
             return Result<Scene>(std::move(sphere));
         }();
         auto environment = open_environment({argv[2]});
-        auto rows = environment && environment->latlong ? read_latlong(*environment->latlong) : Result<ImageF>(Error{"not a lat-long", argv[2], ""});
+        auto rows = environment && environment->latlong ? read_latlong(*environment->latlong)
+                                                        : Result<ImageF>(Error{"not a lat-long", argv[2], ""});
         if (!loaded || !rows) {
             fmt::print(stderr, "{}\n", !loaded ? loaded.error().format() : rows.error().format());
             return 1;
@@ -94,7 +98,7 @@ int main(int argc, char** argv) {
             last = std::move(*r);
         }
         error = tone_mapped_rmse(last.radiance, truth->radiance);
-        fmt::print("{:>4} spp  {:.4f} s CPU  {:.2f} Mrays/s  RMSE {:.5f}   to 0.01: {:.3f} s\n", n, best, double(last.rays) / best * 1e-6, error,
-                   best * std::pow(error / 0.01, 2));
+        fmt::print("{:>4} spp  {:.4f} s CPU  {:.2f} Mrays/s  RMSE {:.5f}   to 0.01: {:.3f} s\n", n, best,
+                   double(last.rays) / best * 1e-6, error, best * std::pow(error / 0.01, 2));
     }
 }

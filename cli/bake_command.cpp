@@ -39,8 +39,9 @@ std::vector<std::string> target_names() {
 }
 
 void declare(Arguments& a, BakeWords& w) {
-    a.positional("ENV", w.environments,
-                 "environments; without one the built-in sky, eight stops down; six faces (px nx py ny pz nz) are one cube");
+    a.positional(
+        "ENV", w.environments,
+        "environments; without one the built-in sky, eight stops down; six faces (px nx py ny pz nz) are one cube");
     a.group("What to bake");
     a.text("-o,--output", "DIR", w.output,
            "folder for the results; several environments go to DIR/NAME, several targets to DIR/TARGET");

@@ -45,7 +45,8 @@ Result<Environment> built_in_sky(const EnvironmentOptions& options) {
     sky.projection = "latlong";
     // A sun of true radiance, 1e7 W/(m^2 sr), is far beyond half floats: eight stops down it fits.
     constexpr double built_in_exposure = -8;
-    sky.latlong = std::make_unique<ScaledRows>(make_sky(SkyOptions{}), float(std::exp2(options.exposure + built_in_exposure)));
+    sky.latlong =
+        std::make_unique<ScaledRows>(make_sky(SkyOptions{}), float(std::exp2(options.exposure + built_in_exposure)));
     sky.width = sky.latlong->width();
     sky.height = sky.latlong->height();
     sky.world_to_source = rotation_y(options.rotate_y_deg * k_pi / 180).transposed();

@@ -27,7 +27,8 @@ constexpr Command k_commands[] = {
     {"info", "what an environment, a texture or a bake holds", run_info},
     {"render", "a scene under an environment: the truth by path tracing, or what an engine draws", run_render},
     {"lights", "the sun and other small bright sources as lights, and the environment without them", run_lights},
-    {"sample", "light directions from an environment, pictures of them, and the error each strategy leaves", run_sample},
+    {"sample", "light directions from an environment, pictures of them, and the error each strategy leaves",
+     run_sample},
     {"sky", "a physically based sky, or the labelled six-axis environment", run_sky},
 };
 

@@ -1,5 +1,5 @@
-#include "domelight/image_io.h"
 #include "domelight/bake.h"
+#include "domelight/image_io.h"
 #include "domelight/render.h"
 #include "domelight/shading.h"
 
@@ -21,7 +21,8 @@ struct RenderWords {
     CommonOptions common;
     std::vector<std::string> scenes, environment_files, outputs;
     EnvironmentOptions environment;
-    std::string shading = "reference", strategy = "mis", occlusion = "on", background = "environment", maps, tonemap = "agx", irradiance = "cube";
+    std::string shading = "reference", strategy = "mis", occlusion = "on", background = "environment", maps,
+                tonemap = "agx", irradiance = "cube";
     std::optional<int> width, height, spp, bounces, seed;
     std::vector<double> camera_position, camera_target;
     double fov_deg = 35, noise = 0, time = 0, ev = std::numeric_limits<double>::quiet_NaN();
@@ -29,12 +30,15 @@ struct RenderWords {
 };
 
 void declare(Arguments& a, RenderWords& w) {
-    a.positional("SCENE", w.scenes, "a model (.glb, .gltf, .obj, .ply), or one that is built in: spheres, ball, furnace");
+    a.positional("SCENE", w.scenes,
+                 "a model (.glb, .gltf, .obj, .ply), or one that is built in: spheres, ball, furnace");
     a.group("The picture");
-    a.texts("-o,--output", "FILE", w.outputs, "where to write it, several allowed: .exr (all layers), .hdr, .png (tone mapped)");
+    a.texts("-o,--output", "FILE", w.outputs,
+            "where to write it, several allowed: .exr (all layers), .hdr, .png (tone mapped)");
     a.integer("--width", "N", w.width, "pixels (512)");
     a.integer("--height", "N", w.height, "pixels (512)");
-    a.numbers("--camera-position", "x,y,z", w.camera_position, "the eye (the scene's camera, or one that shows all of it)");
+    a.numbers("--camera-position", "x,y,z", w.camera_position,
+              "the eye (the scene's camera, or one that shows all of it)");
     a.numbers("--camera-target", "x,y,z", w.camera_target, "what it looks at (0,0,0)");
     a.number("--fov-deg", "DEGREES", w.fov_deg, "vertical field of view with --camera-position (35)");
     a.choice("--background", w.background, {"environment", "transparent"}, "where no surface is (environment)");
@@ -48,25 +52,31 @@ void declare(Arguments& a, RenderWords& w) {
              "reference = path tracing; the others as a real-time engine draws them from baked maps (reference)");
     a.choice("--strategy", w.strategy, {"mis", "env", "brdf"}, "reference: where light directions come from (mis)");
     a.integer("--spp", "N", w.spp, "samples of each pixel (64)");
-    a.number("--noise", "X", w.noise, "reference: more samples where a pixel's standard error of L/(1+L) is above this");
+    a.number("--noise", "X", w.noise,
+             "reference: more samples where a pixel's standard error of L/(1+L) is above this");
     a.number("--time", "SECONDS", w.time, "reference: as many samples as fit into this time");
     a.integer("--bounces", "N", w.bounces, "reference: of indirect light; 0 is direct light with shadows (4)");
-    a.choice("--occlusion", w.occlusion, {"on", "off"}, "off: no shadows, no indirect light, no occlusion maps, as a shader without them (on)");
+    a.choice("--occlusion", w.occlusion, {"on", "off"},
+             "off: no shadows, no indirect light, no occlusion maps, as a shader without them (on)");
     a.flag("--multiple-scattering", w.multiple_scattering, "gives back what single scattering loses on rough surfaces");
     a.text("--maps", "DIR", w.maps, "split-sum, phong: what `domelight bake` wrote (baked in memory)");
-    a.choice("--irradiance", w.irradiance, {"cube", "sh"}, "split-sum, phong: the irradiance cube, or nine harmonics (cube)");
+    a.choice("--irradiance", w.irradiance, {"cube", "sh"},
+             "split-sum, phong: the irradiance cube, or nine harmonics (cube)");
     a.flag("--bent-lookup", w.bent_lookup, "split-sum: the lookup leans towards the normal on rough surfaces");
     a.integer("--seed", "N", w.seed, "another randomisation (0)");
     add_common_options(a, w.common);
 }
 
 Result<void> check(const RenderWords& w) {
-    if (w.scenes.size() != 1) return Error{w.scenes.empty() ? "is missing" : "is given twice", "SCENE", "One model, or spheres, ball or furnace."};
+    if (w.scenes.size() != 1)
+        return Error{w.scenes.empty() ? "is missing" : "is given twice", "SCENE",
+                     "One model, or spheres, ball or furnace."};
     if (w.outputs.empty()) return Error{"is missing", "--output", "Say where the picture goes: -o picture.png."};
     for (const std::string& o : w.outputs) {
         const std::string extension = std::filesystem::path(o).extension().string();
         if (extension != ".exr" && extension != ".hdr" && extension != ".png")
-            return Error{fmt::format("\"{}\" ends in none of the formats", o), "--output", "Accepted: .exr, .hdr, .png."};
+            return Error{fmt::format("\"{}\" ends in none of the formats", o), "--output",
+                         "Accepted: .exr, .hdr, .png."};
     }
     const auto within = [](const char* option, double value, double low, double high) -> Result<void> {
         if (value >= low && value <= high) return {};
@@ -79,7 +89,8 @@ Result<void> check(const RenderWords& w) {
     if (auto ok = within("--fov-deg", w.fov_deg, 0.1, 170); !ok) return ok;
     if (auto ok = within("--noise", w.noise, 0, 1); !ok) return ok;
     if (auto ok = within("--time", w.time, 0, 1e6); !ok) return ok;
-    for (const auto& [option, value] : {std::pair{"--camera-position", &w.camera_position}, {"--camera-target", &w.camera_target}})
+    for (const auto& [option, value] :
+         {std::pair{"--camera-position", &w.camera_position}, {"--camera-target", &w.camera_target}})
         if (!value->empty() && value->size() != 3) return Error{"wants three numbers", option, "x,y,z"};
     return {};
 }
@@ -92,10 +103,15 @@ RenderOptions render_options(const RenderWords& w, const Scene& scene) {
     RenderOptions o;
     o.width = w.width.value_or(512);
     o.height = w.height.value_or(512);
-    const auto vector = [](const std::vector<double>& v) { return v.empty() ? Vec3f{} : Vec3f(Vec3d{v[0], v[1], v[2]}); };
-    o.camera = w.camera_position.empty() ? default_camera(scene, float(o.width) / float(o.height))
-                                         : look_at(vector(w.camera_position), vector(w.camera_target), float(w.fov_deg * k_pi / 180));
-    o.strategy = w.strategy == "env" ? LightStrategy::environment : w.strategy == "brdf" ? LightStrategy::brdf : LightStrategy::mis;
+    const auto vector = [](const std::vector<double>& v) {
+        return v.empty() ? Vec3f{} : Vec3f(Vec3d{v[0], v[1], v[2]});
+    };
+    o.camera = w.camera_position.empty()
+                   ? default_camera(scene, float(o.width) / float(o.height))
+                   : look_at(vector(w.camera_position), vector(w.camera_target), float(w.fov_deg * k_pi / 180));
+    o.strategy = w.strategy == "env"    ? LightStrategy::environment
+                 : w.strategy == "brdf" ? LightStrategy::brdf
+                                        : LightStrategy::mis;
     o.samples = w.spp.value_or(64);
     o.noise = w.noise;
     o.seconds = w.time;
@@ -108,16 +124,19 @@ RenderOptions render_options(const RenderWords& w, const Scene& scene) {
     return o;
 }
 
-Result<RenderResult> render(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler, const RenderOptions& o) {
+Result<RenderResult> render(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler,
+                            const RenderOptions& o) {
     if (w.shading == "reference") return render_reference(scene, sampler, o);
     ShadingOptions shading;
-    for (const ShadingModel m : {ShadingModel::split_sum, ShadingModel::phong, ShadingModel::mirror, ShadingModel::refract})
+    for (const ShadingModel m :
+         {ShadingModel::split_sum, ShadingModel::phong, ShadingModel::mirror, ShadingModel::refract})
         if (shading_model_name(m) == w.shading) shading.model = m;
     shading.sh_irradiance = w.irradiance == "sh";
     shading.bent_lookup = w.bent_lookup;
     shading.multiple_scattering = w.multiple_scattering;
     shading.occlusion = o.occlusion;
-    auto maps = w.maps.empty() ? LightMaps::bake(sampler.image(), sampler.world_to_source(), o.threads) : LightMaps::load(w.maps);
+    auto maps = w.maps.empty() ? LightMaps::bake(sampler.image(), sampler.world_to_source(), o.threads)
+                               : LightMaps::load(w.maps);
     if (!maps) return maps.error();
     return render_shaded(scene, *maps, sampler, shading, o);
 }
@@ -158,10 +177,10 @@ Result<void> write_picture(const std::string& file, const RenderResult& r, const
 }
 
 Result<void> write_layers(const std::string& file, const RenderResult& r) {
-    const ExrLayer layers[] = {{"", r.radiance, ""},          {"", r.opacity, "A"},           {"direct", r.direct, ""},
-                               {"indirect", r.indirect, ""},  {"diffuse", r.diffuse, ""},     {"specular", r.specular, ""},
-                               {"albedo", r.albedo, ""},      {"normal", r.normal, ""},       {"depth", r.depth, "Z"},
-                               {"object", r.object, "Y"},     {"variance", r.variance, ""},   {"samples", r.samples, "Y"}};
+    const ExrLayer layers[] = {{"", r.radiance, ""},         {"", r.opacity, "A"},         {"direct", r.direct, ""},
+                               {"indirect", r.indirect, ""}, {"diffuse", r.diffuse, ""},   {"specular", r.specular, ""},
+                               {"albedo", r.albedo, ""},     {"normal", r.normal, ""},     {"depth", r.depth, "Z"},
+                               {"object", r.object, "Y"},    {"variance", r.variance, ""}, {"samples", r.samples, "Y"}};
     return write_exr_layers(file, layers);
 }
 
@@ -175,16 +194,19 @@ Result<void> write(const std::string& file, const RenderResult& r, const RenderW
 void print_result(const RenderWords& w, const Scene& scene, const RenderResult& r, const RenderOptions& o, double ev) {
     const bool reference = w.shading == "reference";
     if (w.common.json) {
-        nlohmann::ordered_json json{{"version", version()}, {"files", w.outputs},    {"width", o.width},
-                                    {"height", o.height},   {"shading", w.shading},  {"triangles", scene.triangle_count()},
-                                    {"samples", r.sample_count}, {"seconds", r.seconds}, {"ev", ev}};
+        nlohmann::ordered_json json{
+            {"version", version()},      {"files", w.outputs},   {"width", o.width},
+            {"height", o.height},        {"shading", w.shading}, {"triangles", scene.triangle_count()},
+            {"samples", r.sample_count}, {"seconds", r.seconds}, {"ev", ev}};
         if (reference) json["noise"] = r.noise, json["rays"] = r.rays;
         json["warnings"] = scene.warnings;
         fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     } else if (!w.common.quiet) {
-        fmt::print("{}: {} x {}, {} triangles, {} samples a pixel at most, {:.2f} s", join(w.outputs, ", "), o.width, o.height,
-                   scene.triangle_count(), r.sample_count, r.seconds);
-        if (reference) fmt::print(", noise {:.4f} of L/(1+L), {:.2f} million rays a second", r.noise, double(r.rays) / r.seconds * 1e-6);
+        fmt::print("{}: {} x {}, {} triangles, {} samples a pixel at most, {:.2f} s", join(w.outputs, ", "), o.width,
+                   o.height, scene.triangle_count(), r.sample_count, r.seconds);
+        if (reference)
+            fmt::print(", noise {:.4f} of L/(1+L), {:.2f} million rays a second", r.noise,
+                       double(r.rays) / r.seconds * 1e-6);
         fmt::print("\n");
     }
 }
@@ -193,10 +215,12 @@ void print_result(const RenderWords& w, const Scene& scene, const RenderResult& 
 
 int run_render(const std::vector<std::string>& words) {
     RenderWords w;
-    Arguments arguments("render", "Renders a scene under an environment: the truth by path tracing, or what a real-time engine would draw.",
-                        {"domelight render spheres -o spheres.png --width 256 --height 128 --spp 4",
-                         "domelight render helmet.glb --env sunset.hdr -o truth.exr,truth.png --spp 256",
-                         "domelight render ball --env sunset.hdr --shading split-sum -o engine.png"});
+    Arguments arguments(
+        "render",
+        "Renders a scene under an environment: the truth by path tracing, or what a real-time engine would draw.",
+        {"domelight render spheres -o spheres.png --width 256 --height 128 --spp 4",
+         "domelight render helmet.glb --env sunset.hdr -o truth.exr,truth.png --spp 256",
+         "domelight render ball --env sunset.hdr --shading split-sum -o engine.png"});
     declare(arguments, w);
     if (auto ok = arguments.parse(words); !ok) return print_error(ok.error(), exit_usage);
     if (arguments.help_wanted()) {
@@ -222,7 +246,8 @@ int run_render(const std::vector<std::string>& words) {
     RenderOptions options = render_options(w, *scene);
     auto traced = RayScene::build(std::move(*scene), options.threads);
     if (!traced) return print_error(traced.error().at(w.scenes[0]));
-    auto sampler = EnvironmentSampler::build(*environment, reference_sampler_options(options.strategy, options.threads));
+    auto sampler =
+        EnvironmentSampler::build(*environment, reference_sampler_options(options.strategy, options.threads));
     if (!sampler) return print_error(sampler.error());
     Result<RenderResult> result = Error{"", "", ""};
     {

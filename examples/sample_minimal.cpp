@@ -1,4 +1,5 @@
-// The smallest renderer: the light that a white matte surface facing up sends back under an HDR environment, by importance sampling.
+// The smallest renderer: the light that a white matte surface facing up sends back under an HDR environment, by
+// importance sampling.
 //
 //     sample_minimal studio.hdr
 
@@ -28,7 +29,9 @@ Result<Vec3f> light_of(const char* photograph) {
 int main(int argc, char** argv) {
     if (argc != 2) return 2;
     const auto light = light_of(argv[1]);
-    if (!light) std::fprintf(stderr, "error: %s\n", light.error().format().c_str());
-    else std::printf("%g %g %g\n", light->x, light->y, light->z);
+    if (!light)
+        std::fprintf(stderr, "error: %s\n", light.error().format().c_str());
+    else
+        std::printf("%g %g %g\n", light->x, light->y, light->z);
     return light ? 0 : 1;
 }

@@ -1,15 +1,15 @@
 #pragma once
 // How far a filtered map is from the truth: what the tests assert and `accuracy_bench` prints.
 
+#include "domelight/prefilter.h"
+#include "domelight/projection.h"
+#include "domelight/reference.h"
+
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
 #include <vector>
-
-#include "domelight/prefilter.h"
-#include "domelight/projection.h"
-#include "domelight/reference.h"
 
 namespace domelight::test {
 
@@ -40,8 +40,8 @@ struct CubeTexel {
     Vec3d direction;
 };
 
-/// Texels to look at: `random` anywhere, and as many where a strong light shows every weakness: near it, opposite it and on the ring 90 degrees from
-/// it; then the poles, and texels along the faces' edges.
+/// Texels to look at: `random` anywhere, and as many where a strong light shows every weakness: near it, opposite it
+/// and on the ring 90 degrees from it; then the poles, and texels along the faces' edges.
 inline std::vector<CubeTexel> texels_to_test(int size, const Vec3d& light, int random, unsigned seed = 1) {
     std::mt19937 engine(seed);
     std::normal_distribution<double> normal;
@@ -67,15 +67,17 @@ inline std::vector<CubeTexel> texels_to_test(int size, const Vec3d& light, int r
     for (int face = 0; face < 6; ++face)
         for (int i = 0; i < std::max(1, random / 32); ++i) {
             const int at = int(engine() % size), end = i % 2 ? size - 1 : 0;
-            if (i % 4 < 2) add_texel(face, at, end);
-            else add_texel(face, end, at);
+            if (i % 4 < 2)
+                add_texel(face, at, end);
+            else
+                add_texel(face, end, at);
         }
     return texels;
 }
 
 /// Holds one map (a cube, in the source's frame) against the kernel integrated over the image.
-inline Accuracy measure(const std::string& name, const Cubemap& map, const ZonalKernel& kernel, ImageView<const float> image, const Vec3d& mean,
-                        const std::vector<CubeTexel>& texels) {
+inline Accuracy measure(const std::string& name, const Cubemap& map, const ZonalKernel& kernel,
+                        ImageView<const float> image, const Vec3d& mean, const std::vector<CubeTexel>& texels) {
     std::vector<Vec3d> directions;
     for (const CubeTexel& t : texels) directions.push_back(t.direction);
     const auto truth = convolve_exactly(image, kernel, directions);
@@ -98,7 +100,8 @@ inline Accuracy measure(const std::string& name, const Cubemap& map, const Zonal
     return result;
 }
 
-/// The exact filter's maps of an image, each held against the truth at about 2 `random` texels. Mirror levels are left out.
+/// The exact filter's maps of an image, each held against the truth at about 2 `random` texels. Mirror levels are left
+/// out.
 inline std::vector<Accuracy> measure_levels(ImageView<const float> image, FilterOptions options, int random) {
     std::vector<Accuracy> rows;
     ImageRowSource source(image);
@@ -110,7 +113,8 @@ inline std::vector<Accuracy> measure_levels(ImageView<const float> image, Filter
     };
     for (std::size_t l = 0; l < options.specular.size(); ++l)
         if (!options.specular[l].mirror)
-            add(lobe_name(options.specular[l].kernel.lobe) + " level " + std::to_string(l), result->specular[l].cube, options.specular[l].kernel);
+            add(lobe_name(options.specular[l].kernel.lobe) + " level " + std::to_string(l), result->specular[l].cube,
+                options.specular[l].kernel);
     if (options.irradiance_size > 0) add("irradiance", result->irradiance_over_pi.cube, ZonalKernel::cosine());
     return rows;
 }
@@ -135,7 +139,8 @@ inline ImageF sun_image(int height, double contrast, double elevation, double az
             double covered = 0;
             if (length(d - sun) < 4 * k_pi / height + radius)
                 for (int s = 0; s < sub * sub; ++s) {
-                    const Vec3d e = latlong_direction({(x + (s % sub + 0.5) / sub) / (2 * height), (y + (s / sub + 0.5) / sub) / height});
+                    const Vec3d e = latlong_direction(
+                        {(x + (s % sub + 0.5) / sub) / (2 * height), (y + (s / sub + 0.5) / sub) / height});
                     covered += length(e - sun) < radius;
                 }
             const double sky = 0.6 + 0.4 * d.y, disc = contrast * covered / (sub * sub);

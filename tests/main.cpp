@@ -18,8 +18,10 @@ struct Counter : doctest::IReporter {
     void test_case_reenter(const doctest::TestCaseData&) override {}
     void test_case_end(const doctest::CurrentTestCaseStats& stats) override {
         ++g_cases;
-        if (stats.failure_flags) ++g_failed;
-        else if (g_current_skipped) ++g_skipped;
+        if (stats.failure_flags)
+            ++g_failed;
+        else if (g_current_skipped)
+            ++g_skipped;
     }
     void test_case_exception(const doctest::TestCaseException&) override {}
     void subcase_start(const doctest::SubcaseSignature&) override {}
@@ -46,6 +48,7 @@ int main(int argc, char** argv) {
     context.setOption("no-path-filenames", true);
     const int status = context.run();
     if (context.shouldExit()) return status;
-    std::printf("domelight-tests: %d passed, %d failed, %d skipped\n", g_cases - g_failed - g_skipped, g_failed, g_skipped);
+    std::printf("domelight-tests: %d passed, %d failed, %d skipped\n", g_cases - g_failed - g_skipped, g_failed,
+                g_skipped);
     return status;
 }

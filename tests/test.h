@@ -43,10 +43,10 @@ class TemporaryFolder {
 }  // namespace domelight::test
 
 /// Leaves the test case as skipped unless the file under DOMELIGHT_DATA is there; defines `name` as its path.
-#define DOMELIGHT_DATA_FILE(name, relative)                                                                        \
-    const auto name##_folder = ::domelight::test::data_folder();                                                   \
-    if (!name##_folder || !std::filesystem::exists(*name##_folder / (relative))) {                                 \
-        ::domelight::test::note_skip("DOMELIGHT_DATA has no " relative);                                           \
-        return;                                                                                                    \
-    }                                                                                                              \
+#define DOMELIGHT_DATA_FILE(name, relative)                                        \
+    const auto name##_folder = ::domelight::test::data_folder();                   \
+    if (!name##_folder || !std::filesystem::exists(*name##_folder / (relative))) { \
+        ::domelight::test::note_skip("DOMELIGHT_DATA has no " relative);           \
+        return;                                                                    \
+    }                                                                              \
     const std::filesystem::path name = *name##_folder / (relative)

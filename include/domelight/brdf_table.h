@@ -17,16 +17,19 @@ struct BrdfTableOptions {
     int threads = 0;
 };
 
-/// Channels of the table, each float; u = NdotV, v = roughness (row 0 is the smoothest), at texel centres (i + 1/2) / size.
+/// Channels of the table, each float; u = NdotV, v = roughness (row 0 is the smoothest), at texel centres (i + 1/2) /
+/// size.
 ///   0  scale: int D G Vis (1 - Fc) NdotL dl     1  bias: int ... Fc ...     (specular reflectance = F0 scale + bias)
 ///   2  charlie: directional albedo of the sheen lobe
 /// with Fc = (1 - VdotH)^5. By Gauss-Legendre quadrature (docs/math/prefilter.md), maximum error <= 1e-5.
 ImageF brdf_table(const BrdfTableOptions& options = {});
 
-/// The multiple-scattering form that Filament reads: (int Fc ..., int ...) = (bias, scale + bias), third channel as above.
+/// The multiple-scattering form that Filament reads: (int Fc ..., int ...) = (bias, scale + bias), third channel as
+/// above.
 ImageF brdf_table_multiscatter(ImageView<const float> table);
 
-/// The split-sum's integrateBRDF as the courses have it: Hammersley points and GGX half vectors (Karis 2013), for comparison.
+/// The split-sum's integrateBRDF as the courses have it: Hammersley points and GGX half vectors (Karis 2013), for
+/// comparison.
 ImageF brdf_table_montecarlo(const BrdfTableOptions& options, int samples);
 
 /// The default table (128^2, correlated), computed when the library was built.

@@ -5,6 +5,10 @@
 //     if (!light) return light.error();
 //     auto [u, v, pdf_uv] = light->sample(point);
 
+#include "domelight/image.h"
+#include "domelight/result.h"
+#include "domelight/unit_point.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -13,16 +17,13 @@
 #include <span>
 #include <string>
 
-#include "domelight/image.h"
-#include "domelight/result.h"
-#include "domelight/unit_point.h"
-
 namespace domelight {
 
-/// Weights of a grid of texels, by rows. Each is finite and >= 0, and already holds whatever makes equal areas of the unit square differ (on a
-/// lat-long environment sin theta), for that depends on the projection.
+/// Weights of a grid of texels, by rows. Each is finite and >= 0, and already holds whatever makes equal areas of the
+/// unit square differ (on a lat-long environment sin theta), for that depends on the projection.
 ///
-/// row   row(y, room) returns the `width` weights of row y, 0 <= y < height: in `room` (width floats, for who computes them) or where they are.
+/// row   row(y, room) returns the `width` weights of row y, 0 <= y < height: in `room` (width floats, for who computes
+/// them) or where they are.
 ///       Asked once for each row, in no particular order, on as many threads as the table is built with.
 struct Weights {
     int width = 0, height = 0;
@@ -34,15 +35,18 @@ struct Weights {
 
 /// A point and its density.
 struct DistributionSample {
-    double u = 0, v = 0;  ///< in [0, 1); u to the right, v down, texel (i, j) covering [i, i+1) / width x [j, j+1) / height
-    double pdf_uv = 0;    ///< density over the unit square: 1 everywhere if all weights are equal
+    double u = 0,
+           v = 0;  ///< in [0, 1); u to the right, v down, texel (i, j) covering [i, i+1) / width x [j, j+1) / height
+    double pdf_uv = 0;  ///< density over the unit square: 1 everywhere if all weights are equal
 };
 
-/// A density over the unit square that points can be drawn from. Immutable once built, so any number of threads may draw.
+/// A density over the unit square that points can be drawn from. Immutable once built, so any number of threads may
+/// draw.
 ///
-/// Every method maps the unit square onto itself; `sample` pushes a point of 32-bit fixed point through that map, `pdf_uv` is one over the map's
-/// Jacobian (with alias tables, which lay several pieces of the square over each texel, the sum over the pieces), and `invert` goes back. All-zero
-/// weights give the uniform distribution. No call returns NaN or a point outside [0, 1), and every `UnitPoint` is valid.
+/// Every method maps the unit square onto itself; `sample` pushes a point of 32-bit fixed point through that map,
+/// `pdf_uv` is one over the map's Jacobian (with alias tables, which lay several pieces of the square over each texel,
+/// the sum over the pieces), and `invert` goes back. All-zero weights give the uniform distribution. No call returns
+/// NaN or a point outside [0, 1), and every `UnitPoint` is valid.
 class Distribution2D {
   public:
     virtual ~Distribution2D() = default;
@@ -53,15 +57,17 @@ class Distribution2D {
     /// Density over the unit square at (u, v), >= 0; what lies outside [0, 1) counts as the nearest point inside.
     virtual double pdf_uv(double u, double v) const = 0;
 
-    /// The point that `sample` maps to (u, v); nothing where the density is zero there, or where the method cannot tell (alias tables cut the unit
-    /// square into pieces and put them together in another order).
+    /// The point that `sample` maps to (u, v); nothing where the density is zero there, or where the method cannot tell
+    /// (alias tables cut the unit square into pieces and put them together in another order).
     virtual std::optional<UnitPoint> invert(double u, double v) const;
 
-    /// Many points at once: u[i], v[i] in [0, 1) and pdf_uv[i] > 0 are those of sample(points[i]) rounded to float. With the piecewise-constant
-    /// methods (u, v) stays in its texel: int(double(u) * width) is the drawn column. All four spans have the same length.
+    /// Many points at once: u[i], v[i] in [0, 1) and pdf_uv[i] > 0 are those of sample(points[i]) rounded to float.
+    /// With the piecewise-constant methods (u, v) stays in its texel: int(double(u) * width) is the drawn column. All
+    /// four spans have the same length.
     ///
     /// This default calls the scalar form; methods that can do better give the same bits.
-    virtual void sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v, std::span<float> pdf_uv) const;
+    virtual void sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v,
+                        std::span<float> pdf_uv) const;
 
     virtual int width() const = 0;
     virtual int height() const = 0;
@@ -88,7 +94,9 @@ std::string method_name(DistributionMethod method);
 
 /// Builds the tables of `method`; `threads` 0: all cores. Same bits on any number of threads.
 ///
-/// Errors: no texels; more than 65535 columns or rows; a weight that is NaN, infinite or negative (the error names the texel).
-Result<std::unique_ptr<Distribution2D>> make_distribution(const Weights& weights, DistributionMethod method, int threads = 1);
+/// Errors: no texels; more than 65535 columns or rows; a weight that is NaN, infinite or negative (the error names the
+/// texel).
+Result<std::unique_ptr<Distribution2D>> make_distribution(const Weights& weights, DistributionMethod method,
+                                                          int threads = 1);
 
 }  // namespace domelight

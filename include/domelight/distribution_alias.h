@@ -1,19 +1,20 @@
 #pragma once
 // Alias tables in 32-bit fixed point.
 
+#include "domelight/distribution.h"
+
 #include <cstdint>
 #include <vector>
-
-#include "domelight/distribution.h"
 
 namespace domelight {
 
 /// Alias tables of `count` discrete distributions over `items` items each, in quanta of 2^-32 (Walker 1974; Vose 1991).
 ///
-/// The 2^32 quanta are shared out exactly as in GuidedRows, then cut up and packed into 2^bits cells of equal size, 2^bits >= items: the first
-/// `split` quanta of a cell belong to the item of the cell's number, the rest to its alias. With xi's upper bits for the cell and its lower bits for
-/// the place in it, nothing is rounded: each item is drawn for exactly as many of the 2^32 numbers xi as it owns quanta, and cell and alias together
-/// take just 32 bits, which leaves the other half of an entry for the item's quanta, hence its density.
+/// The 2^32 quanta are shared out exactly as in GuidedRows, then cut up and packed into 2^bits cells of equal size,
+/// 2^bits >= items: the first `split` quanta of a cell belong to the item of the cell's number, the rest to its alias.
+/// With xi's upper bits for the cell and its lower bits for the place in it, nothing is rounded: each item is drawn for
+/// exactly as many of the 2^32 numbers xi as it owns quanta, and cell and alias together take just 32 bits, which
+/// leaves the other half of an entry for the item's quanta, hence its density.
 struct AliasRows {
     struct Entry {
         std::uint32_t last_quantum;     ///< quanta of the cell's own item, less 1
@@ -42,10 +43,11 @@ struct AliasRows {
 
 /// Marginal and conditional draws by alias tables: one fetch for a row, one or two for a column, no search.
 ///
-/// The fastest method where points are random. It takes neighbouring points apart, so a low-discrepancy set loses what it is good for, and a lattice
-/// does worse than random points: Hammersley points' lower bits, which choose between item and alias, are all alike (4096 of them on a 4096 x 2048
-/// sunrise: relative error 0.46, random points 0.04). Densities are those of GuidedDistribution, to the bit. Resolves 2^32 positions in
-/// each direction. 8 bytes a texel where the width is a power of two, else up to twice that.
+/// The fastest method where points are random. It takes neighbouring points apart, so a low-discrepancy set loses what
+/// it is good for, and a lattice does worse than random points: Hammersley points' lower bits, which choose between
+/// item and alias, are all alike (4096 of them on a 4096 x 2048 sunrise: relative error 0.46, random points 0.04).
+/// Densities are those of GuidedDistribution, to the bit. Resolves 2^32 positions in each direction. 8 bytes a texel
+/// where the width is a power of two, else up to twice that.
 class AliasDistribution final : public Distribution2D {
   public:
     /// Errors: as make_distribution.
@@ -53,7 +55,8 @@ class AliasDistribution final : public Distribution2D {
 
     DistributionSample sample(UnitPoint point) const override;
     double pdf_uv(double u, double v) const override;
-    void sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v, std::span<float> pdf_uv) const override;
+    void sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v,
+                std::span<float> pdf_uv) const override;
     int width() const override { return conditional_.items; }
     int height() const override { return conditional_.count; }
     std::size_t memory_bytes() const override { return marginal_.memory_bytes() + conditional_.memory_bytes(); }

@@ -4,10 +4,11 @@
 
 namespace domelight {
 
-/// Marginal and conditional inverse transform by binary search of cumulative sums in float, as renderers do it (pbrt-v4's PiecewiseConstant2D).
-/// Simple, and here as the yardstick.
+/// Marginal and conditional inverse transform by binary search of cumulative sums in float, as renderers do it
+/// (pbrt-v4's PiecewiseConstant2D). Simple, and here as the yardstick.
 ///
-/// Its densities are the differences of the stored sums, so they agree with what is drawn; but a texel of less than 2^-24 of its row's sum is lost.
+/// Its densities are the differences of the stored sums, so they agree with what is drawn; but a texel of less than
+/// 2^-24 of its row's sum is lost.
 class BinaryDistribution final : public Distribution2D {
   public:
     /// Errors: as make_distribution.
@@ -16,7 +17,8 @@ class BinaryDistribution final : public Distribution2D {
     DistributionSample sample(UnitPoint point) const override;
     double pdf_uv(double u, double v) const override;
     std::optional<UnitPoint> invert(double u, double v) const override;
-    void sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v, std::span<float> pdf_uv) const override;
+    void sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v,
+                std::span<float> pdf_uv) const override;
     int width() const override { return width_; }
     int height() const override { return height_; }
     std::size_t memory_bytes() const override { return (rows_.size() + columns_.size()) * sizeof(float); }

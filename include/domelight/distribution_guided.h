@@ -1,24 +1,27 @@
 #pragma once
 // Inverse transform in constant time, in 32-bit fixed point.
 
+#include "domelight/distribution.h"
+
 #include <cstdint>
 #include <vector>
-
-#include "domelight/distribution.h"
 
 namespace domelight {
 
 /// Cumulative tables of `count` discrete distributions over `items` items each, in quanta of 2^-32, with guide tables.
 ///
-/// Item i of a distribution owns q_i of the 2^32 quanta: none if its weight is zero, else at least one, 2^32 together. A draw is the item that owns
-/// quantum xi. The guide (Chen and Asau 1974; the "indexed search" or cutpoint method of Devroye 1986, III.2.4) has about as many cells as items;
-/// cell k names the first item that owns a quantum of k 2^32 / cells or more, where the search for any xi in the cell begins: two or three steps on average,
-/// however the weights are spread.
+/// Item i of a distribution owns q_i of the 2^32 quanta: none if its weight is zero, else at least one, 2^32 together.
+/// A draw is the item that owns quantum xi. The guide (Chen and Asau 1974; the "indexed search" or cutpoint method of
+/// Devroye 1986, III.2.4) has about as many cells as items; cell k names the first item that owns a quantum of k 2^32 /
+/// cells or more, where the search for any xi in the cell begins: two or three steps on average, however the weights
+/// are spread.
 struct GuidedRows {
     int count = 0, items = 0;
-    int shift = 0;                                                    ///< cell of xi: xi >> shift
-    std::vector<std::uint32_t, LargeAllocator<std::uint32_t>> last;   ///< [count][1 + items], then 16 more: the last quantum of items -1, 0, 1, ...
-    std::vector<std::uint16_t, LargeAllocator<std::uint16_t>> guide;  ///< [count][cells + 8]: 8 to spare, so that a row can be filled blindly
+    int shift = 0;  ///< cell of xi: xi >> shift
+    std::vector<std::uint32_t, LargeAllocator<std::uint32_t>>
+        last;  ///< [count][1 + items], then 16 more: the last quantum of items -1, 0, 1, ...
+    std::vector<std::uint16_t, LargeAllocator<std::uint16_t>>
+        guide;  ///< [count][cells + 8]: 8 to spare, so that a row can be filled blindly
 
     GuidedRows() = default;
     GuidedRows(int count, int items);
@@ -49,8 +52,8 @@ struct GuidedRows {
 /// A piecewise-constant density over [0, 1), drawn in constant time.
 class GuidedDistribution1D {
   public:
-    /// weights   n weights, finite, >= 0; all zero: the uniform density. Errors: none or more than 65535 weights; one that is NaN, infinite or
-    /// negative.
+    /// weights   n weights, finite, >= 0; all zero: the uniform density. Errors: none or more than 65535 weights; one
+    /// that is NaN, infinite or negative.
     static Result<GuidedDistribution1D> build(std::span<const float> weights);
 
     struct Sample {
@@ -70,9 +73,9 @@ class GuidedDistribution1D {
 
 /// Marginal and conditional inverse transform by guide tables.
 ///
-/// Monotone: a stratified or low-discrepancy set of points stays one in every row. A texel of positive weight is never lost, one of zero weight never
-/// drawn, and pdf_uv is computed from the very quanta that the draw uses. A UnitPoint stands for the middle of its quantum, and
-/// invert(sample(p)) == p exactly. 6 bytes a texel.
+/// Monotone: a stratified or low-discrepancy set of points stays one in every row. A texel of positive weight is never
+/// lost, one of zero weight never drawn, and pdf_uv is computed from the very quanta that the draw uses. A UnitPoint
+/// stands for the middle of its quantum, and invert(sample(p)) == p exactly. 6 bytes a texel.
 class GuidedDistribution final : public Distribution2D {
   public:
     /// Errors: as make_distribution.
@@ -81,7 +84,8 @@ class GuidedDistribution final : public Distribution2D {
     DistributionSample sample(UnitPoint point) const override;
     double pdf_uv(double u, double v) const override;
     std::optional<UnitPoint> invert(double u, double v) const override;
-    void sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v, std::span<float> pdf_uv) const override;
+    void sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v,
+                std::span<float> pdf_uv) const override;
     int width() const override { return conditional_.items; }
     int height() const override { return conditional_.count; }
     std::size_t memory_bytes() const override { return marginal_.memory_bytes() + conditional_.memory_bytes(); }

@@ -4,11 +4,13 @@
 
 namespace domelight {
 
-/// Warping down a pyramid of sums (Clarberg, Jarosz, Akenine-Moller, Jensen 2005, "Wavelet importance sampling", 4.2): at each level the unit square
-/// is split left : right by the light in the two halves of the cell, then top : bottom within the half drawn.
+/// Warping down a pyramid of sums (Clarberg, Jarosz, Akenine-Moller, Jensen 2005, "Wavelet importance sampling", 4.2):
+/// at each level the unit square is split left : right by the light in the two halves of the cell, then top : bottom
+/// within the half drawn.
 ///
-/// Points near each other stay near each other in both directions, so low-discrepancy points give the least error of all methods; it is also the
-/// slowest. Not monotone (a column's border depends on the row), but invertible. 4 bytes a texel and a third.
+/// Points near each other stay near each other in both directions, so low-discrepancy points give the least error of
+/// all methods; it is also the slowest. Not monotone (a column's border depends on the row), but invertible. 4 bytes a
+/// texel and a third.
 class HierarchicalDistribution final : public Distribution2D {
   public:
     /// Errors: as make_distribution.

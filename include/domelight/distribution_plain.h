@@ -1,18 +1,18 @@
 #pragma once
 // The textbook's way to draw from a piecewise-constant density, in double: what the fast methods are tested against.
 
+#include "domelight/distribution.h"
+
 #include <cstdint>
 #include <span>
 #include <vector>
-
-#include "domelight/distribution.h"
 
 namespace domelight {
 
 /// A piecewise-constant density over [0, 1): p(x) = f_i / mean(f) on [i, i+1) / n.
 ///
-/// Inverse transform sampling (Pharr, Jakob, Humphreys, Physically Based Rendering, 4th ed., 2.3 and A.4.6): the cumulative function is
-/// P(x_i) = sum_{k<i} f_k / sum f, linear in between; x with P(x) = xi has density p.
+/// Inverse transform sampling (Pharr, Jakob, Humphreys, Physically Based Rendering, 4th ed., 2.3 and A.4.6): the
+/// cumulative function is P(x_i) = sum_{k<i} f_k / sum f, linear in between; x with P(x) = xi has density p.
 class PlainDistribution1D {
   public:
     /// values   n >= 1 values, finite, >= 0; all zero: the uniform density
@@ -25,8 +25,8 @@ class PlainDistribution1D {
     };
     /// Looks for the interval with P(x_i) <= xi < P(x_{i+1}) from the left. xi in [0, 1).
     Sample sample_linear(double xi) const;
-    /// The loop of a fragment shader: walks along the values, taking each off what is left of xi * sum(f), until one is larger than the rest; the
-    /// rest over that value is the position in it. Needs no cumulative table.
+    /// The loop of a fragment shader: walks along the values, taking each off what is left of xi * sum(f), until one is
+    /// larger than the rest; the rest over that value is the position in it. Needs no cumulative table.
     Sample sample_walk(double xi) const;
     double pdf(double x) const;
     /// P(x), the xi that gives x.

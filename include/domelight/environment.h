@@ -1,5 +1,10 @@
 #pragma once
 
+#include "domelight/image.h"
+#include "domelight/result.h"
+#include "domelight/row_source.h"
+#include "domelight/vec.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -7,19 +12,15 @@
 #include <string>
 #include <vector>
 
-#include "domelight/image.h"
-#include "domelight/result.h"
-#include "domelight/row_source.h"
-#include "domelight/vec.h"
-
 namespace domelight {
 
 /// What a reader found and mended. Complete once all rows have been read.
 struct RepairReport {
-    std::int64_t not_a_number = 0;  ///< texels with a NaN channel: set to the mean of their finite neighbours on the row, else 0
-    std::int64_t infinite = 0;      ///< texels with an infinite channel: set to the largest finite value of the format
-    std::int64_t negative = 0;      ///< texels with a negative channel: the channel set to 0
-    double negative_radiance = 0;   ///< most negative value met
+    std::int64_t not_a_number =
+        0;  ///< texels with a NaN channel: set to the mean of their finite neighbours on the row, else 0
+    std::int64_t infinite = 0;     ///< texels with an infinite channel: set to the largest finite value of the format
+    std::int64_t negative = 0;     ///< texels with a negative channel: the channel set to 0
+    double negative_radiance = 0;  ///< most negative value met
     std::vector<std::string> warnings;  ///< "PNG is not HDR: values above 1 are clipped", ...
     std::int64_t repaired() const { return not_a_number + infinite + negative; }
 };
@@ -27,32 +28,35 @@ struct RepairReport {
 /// How to understand an environment's file where it does not say so itself.
 struct EnvironmentOptions {
     std::string projection = "auto";  ///< auto | latlong | cube-cross | cube-strip | cube-faces
-    /// Lat-long convention: default, usd, mitsuba, openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]"; empty: what the file says, else default.
+    /// Lat-long convention: default, usd, mitsuba, openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]"; empty:
+    /// what the file says, else default.
     std::string latlong = "";
-    std::string decode = "auto";      ///< PNG and JPEG: auto (= srgb) | srgb | gamma22 | linear
-    double rotate_y_deg = 0;          ///< turns the light about +Y: +X moves towards +Z
-    std::string up = "+Y";            ///< the world axis (of the file's author) that the image's top shows: +Y, +Z, ...
-    double exposure = 0;              ///< stops: radiance is multiplied by 2^exposure
+    std::string decode = "auto";  ///< PNG and JPEG: auto (= srgb) | srgb | gamma22 | linear
+    double rotate_y_deg = 0;      ///< turns the light about +Y: +X moves towards +Z
+    std::string up = "+Y";        ///< the world axis (of the file's author) that the image's top shows: +Y, +Z, ...
+    double exposure = 0;          ///< stops: radiance is multiplied by 2^exposure
     std::int64_t max_bytes = std::int64_t(1) << 30;  ///< refuses images whose decoding would need more memory than this
-    int threads = 0;                  ///< for decoding; 0: all
+    int threads = 0;                                 ///< for decoding; 0: all
 };
 
 /// An environment opened for reading: a lat-long image handed on by rows, or a cube in memory.
 struct Environment {
     std::filesystem::path file;
-    std::string format;      ///< "Radiance HDR", "OpenEXR", "PNG", "JPEG", "sky"
-    std::string projection;  ///< "latlong" or "cube"
-    int width = 0, height = 0;  ///< of the image as stored
+    std::string format;                  ///< "Radiance HDR", "OpenEXR", "PNG", "JPEG", "sky"
+    std::string projection;              ///< "latlong" or "cube"
+    int width = 0, height = 0;           ///< of the image as stored
     std::unique_ptr<RowSource> latlong;  ///< set for lat-long; in the default convention up to `world_to_source`
     Cubemap cube;                        ///< set for cubes
-    /// Where to look in the source for light from a world direction: convention, up axis and rotation together (orthogonal, may mirror).
+    /// Where to look in the source for light from a world direction: convention, up axis and rotation together
+    /// (orthogonal, may mirror).
     Mat3 world_to_source;
     std::shared_ptr<RepairReport> report;
 };
 
 /// Opens an environment. `files` is one image, or the six faces of a cube in any order (recognised by name).
 /// Errors: no such file, unknown or broken format, wrong shape, over `max_bytes`; each names the file.
-Result<Environment> open_environment(const std::vector<std::filesystem::path>& files, const EnvironmentOptions& options = {});
+Result<Environment> open_environment(const std::vector<std::filesystem::path>& files,
+                                     const EnvironmentOptions& options = {});
 
 /// All rows of a lat-long environment in memory.
 Result<ImageF> read_latlong(RowSource& source);

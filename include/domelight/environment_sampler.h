@@ -15,20 +15,21 @@ namespace domelight {
 /// What a texel is drawn in proportion to.
 enum class LightWeight {
     radiant_power,  ///< luminance (Rec. 709) times solid angle, sin theta: the right one
-    grayscale,      ///< the courses' textbook form: 0.2989 R + 0.5866 G + 0.1145 B without sin theta, which draws too much at the poles
+    grayscale,  ///< the courses' textbook form: 0.2989 R + 0.5866 G + 0.1145 B without sin theta, which draws too much
+                ///< at the poles
 };
 
 struct EnvironmentSamplerOptions {
-    /// `bilinear` goes with a bilinear lookup of the radiance, every other method with the raw texel: a density of one kind with a lookup of the
-    /// other has many times the error beside a sun.
+    /// `bilinear` goes with a bilinear lookup of the radiance, every other method with the raw texel: a density of one
+    /// kind with a lookup of the other has many times the error beside a sun.
     DistributionMethod method = DistributionMethod::bilinear;
     LightWeight weight = LightWeight::radiant_power;
-    /// MIS compensation (Karlik et al. 2019): the mean is subtracted from the density, so that the dim half of the sky is left to the other
-    /// strategy. Only for use with one that covers it: alone, the sampler then misses light. Where nothing would be left (a constant
-    /// environment), the density stays as it is.
+    /// MIS compensation (Karlik et al. 2019): the mean is subtracted from the density, so that the dim half of the sky
+    /// is left to the other strategy. Only for use with one that covers it: alone, the sampler then misses light. Where
+    /// nothing would be left (a constant environment), the density stays as it is.
     bool compensate = false;
-    /// A part of the samples, [0, 1], drawn uniformly over the sphere (a defensive mixture): no direction's density falls below this share of
-    /// 1 / 4 pi.
+    /// A part of the samples, [0, 1], drawn uniformly over the sphere (a defensive mixture): no direction's density
+    /// falls below this share of 1 / 4 pi.
     double uniform_share = 0;
     int threads = 0;  ///< for building; 0: all
 };
@@ -51,15 +52,17 @@ struct LightSampleSpans {
 
 /// Draws light directions from an environment. Immutable once built; any number of threads may draw.
 ///
-/// The image is a lat-long: a cube is first averaged over the texels of one four times as wide as a face (area_resample.h), whose radiance the
-/// samples then have. Everything returned is finite. An environment without light is drawn uniformly over the image.
+/// The image is a lat-long: a cube is first averaged over the texels of one four times as wide as a face
+/// (area_resample.h), whose radiance the samples then have. Everything returned is finite. An environment without light
+/// is drawn uniformly over the image.
 class EnvironmentSampler {
   public:
     /// Reads and keeps an environment. Errors: what reading it gives; no texels.
     static Result<EnvironmentSampler> build(Environment& environment, const EnvironmentSamplerOptions& options = {});
-    /// A lat-long image (default convention up to `world_to_source`, 3 channels) in memory, which must outlive the sampler. Errors: no texels;
-    /// a value that is NaN, infinite or negative (names the texel).
-    static Result<EnvironmentSampler> build(ImageView<const float> latlong, const EnvironmentSamplerOptions& options = {},
+    /// A lat-long image (default convention up to `world_to_source`, 3 channels) in memory, which must outlive the
+    /// sampler. Errors: no texels; a value that is NaN, infinite or negative (names the texel).
+    static Result<EnvironmentSampler> build(ImageView<const float> latlong,
+                                            const EnvironmentSamplerOptions& options = {},
                                             const Mat3& world_to_source = {});
 
     /// A direction for a point of the unit square.
@@ -100,8 +103,9 @@ class EnvironmentSampler {
     std::unique_ptr<Distribution2D> distribution_;
 };
 
-/// The tables as textures for a shader that draws for itself by binary search or the courses' loop: RG float, R the cumulative share up to and
-/// including the texel (the last is 1), G the density over the unit square. See docs/math/importance.md for the ten lines that read them.
+/// The tables as textures for a shader that draws for itself by binary search or the courses' loop: RG float, R the
+/// cumulative share up to and including the texel (the last is 1), G the density over the unit square. See
+/// docs/math/importance.md for the ten lines that read them.
 struct SamplingTextures {
     ImageF rows;     ///< 1 wide, height rows: the marginal
     ImageF columns;  ///< width x height: each row's conditional

@@ -1,13 +1,13 @@
 #pragma once
 
+#include "domelight/large_allocator.h"
+
 #include <cassert>
 #include <cstddef>
 #include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
-
-#include "domelight/large_allocator.h"
 
 namespace domelight {
 
@@ -22,7 +22,10 @@ struct ImageView {
 
     ImageView() = default;
     ImageView(T* data_, int width_, int height_, int channels_, std::ptrdiff_t stride_ = 0)
-        : data(data_), width(width_), height(height_), channels(channels_),
+        : data(data_),
+          width(width_),
+          height(height_),
+          channels(channels_),
           stride(stride_ ? stride_ : std::ptrdiff_t(width_) * channels_) {}
     /// A mutable view is also a const one.
     template <typename U>
@@ -84,7 +87,8 @@ class Image {
 
 using ImageF = Image<float>;
 
-/// Six square faces +X -X +Y -Y +Z -Z in OpenGL's orientation (docs/conventions.md), RGB float radiance unless said otherwise.
+/// Six square faces +X -X +Y -Y +Z -Z in OpenGL's orientation (docs/conventions.md), RGB float radiance unless said
+/// otherwise.
 class Cubemap {
   public:
     Cubemap() = default;

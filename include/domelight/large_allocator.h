@@ -7,14 +7,15 @@
 
 namespace domelight {
 
-/// Memory for large arrays, from the system directly and in large pages where it has them: a 64 MB array in 4 KB pages costs 16384 page faults,
-/// which takes longer than filling it. Free it with the same size. Throws std::bad_alloc.
+/// Memory for large arrays, from the system directly and in large pages where it has them: a 64 MB array in 4 KB pages
+/// costs 16384 page faults, which takes longer than filling it. Free it with the same size. Throws std::bad_alloc.
 void* allocate_large(std::size_t bytes);
 void free_large(void* memory, std::size_t bytes) noexcept;
 /// Whether what allocate_large returns is zero already.
 extern const bool k_large_is_zero;
 
-/// An allocator for pixels: large arrays by allocate_large, and elements without a given value are not written (their values are undefined).
+/// An allocator for pixels: large arrays by allocate_large, and elements without a given value are not written (their
+/// values are undefined).
 template <typename T>
 struct LargeAllocator {
     using value_type = T;
@@ -31,8 +32,10 @@ struct LargeAllocator {
         return static_cast<T*>(allocate_large(n * sizeof(T)));
     }
     void deallocate(T* memory, std::size_t n) noexcept {
-        if (n * sizeof(T) < k_large_bytes) std::allocator<T>().deallocate(memory, n);
-        else free_large(memory, n * sizeof(T));
+        if (n * sizeof(T) < k_large_bytes)
+            std::allocator<T>().deallocate(memory, n);
+        else
+            free_large(memory, n * sizeof(T));
     }
     template <typename U>
     void construct(U* place) noexcept {

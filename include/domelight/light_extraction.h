@@ -62,9 +62,9 @@ struct LightExtractionReport {
 
 struct LightExtraction {
     std::vector<ExtractedLight> lights;  ///< the largest share first
-    /// The image without the lights. Where one stood, its surroundings continue across (harmonic interpolation), so that
-    /// no texel there is brighter than the rim; all other texels are the image's own. >= 0, and in no channel more power
-    /// than the image had.
+    /// The image without the lights. Where one stood, its surroundings continue across (harmonic interpolation), so
+    /// that no texel there is brighter than the rim; all other texels are the image's own. >= 0, and in no channel more
+    /// power than the image had.
     ImageF remainder;
     LightExtractionReport report;
 };

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "domelight/image.h"
 #include "domelight/progress.h"
 #include "domelight/result.h"
@@ -11,14 +7,18 @@
 #include "domelight/vec.h"
 #include "domelight/zonal_kernel.h"
 
+#include <cstdint>
+#include <span>
+#include <vector>
+
 namespace domelight {
 
 enum class Layout { cube, latlong };
 
 /// One level of a specular chain.
 struct LevelSpec {
-    int size = 0;           ///< cube: face size; lat-long: height (the width is twice that)
-    bool mirror = false;    ///< the environment itself, averaged over each texel; `kernel` is not used
+    int size = 0;         ///< cube: face size; lat-long: height (the width is twice that)
+    bool mirror = false;  ///< the environment itself, averaged over each texel; `kernel` is not used
     ZonalKernel kernel;
 };
 
@@ -42,18 +42,19 @@ struct FilteredMap {
 };
 
 struct FilterResult {
-    std::vector<FilteredMap> specular;      ///< one for each LevelSpec
-    FilteredMap irradiance_over_pi;         ///< E / pi
-    /// Radiance coefficients a_lm, real orthonormal basis with the Condon-Shortley sign left out, order l^2 + l + m, world space (z is +Z):
-    /// the axis of the basis is +Z as in Ramamoorthi and Hanrahan 2001; docs/conventions.md lists the polynomials.
+    std::vector<FilteredMap> specular;  ///< one for each LevelSpec
+    FilteredMap irradiance_over_pi;     ///< E / pi
+    /// Radiance coefficients a_lm, real orthonormal basis with the Condon-Shortley sign left out, order l^2 + l + m,
+    /// world space (z is +Z): the axis of the basis is +Z as in Ramamoorthi and Hanrahan 2001; docs/conventions.md
+    /// lists the polynomials.
     std::vector<Vec3d> sh;
-    Vec3d mean;                             ///< mean radiance over the sphere, of the bilinear reconstruction
-    std::int64_t clamped = 0;               ///< texels whose truncation error was below zero, set to 0
-    int band_limit = 0;                     ///< highest degree that was used
+    Vec3d mean;                ///< mean radiance over the sphere, of the bilinear reconstruction
+    std::int64_t clamped = 0;  ///< texels whose truncation error was below zero, set to 0
+    int band_limit = 0;        ///< highest degree that was used
 };
 
-/// The exact prefilter: every level is the environment convolved with its kernel, to about 1e-4. The source is the bilinear reconstruction of
-/// the texels (u wraps, v clamps in the half rows at the poles). docs/math/prefilter.md.
+/// The exact prefilter: every level is the environment convolved with its kernel, to about 1e-4. The source is the
+/// bilinear reconstruction of the texels (u wraps, v clamps in the half rows at the poles). docs/math/prefilter.md.
 Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options);
 Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& options);
 

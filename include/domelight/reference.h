@@ -18,11 +18,13 @@ struct ReferenceOptions {
 };
 
 /// The same result as `prefilter`, by a plain method, from a lat-long image in memory.
-Result<FilterResult> prefilter_reference(ImageView<const float> latlong, const FilterOptions& options, const ReferenceOptions& reference = {});
+Result<FilterResult> prefilter_reference(ImageView<const float> latlong, const FilterOptions& options,
+                                         const ReferenceOptions& reference = {});
 
-/// The truth for single directions: the kernel integrated in double over the bilinear reconstruction, patch by patch (2 x 2 Gauss-Legendre
-/// nodes; near the peak and at the horizon, and throughout small images, patches halved until 4 x 4 suffice). A constant stays constant to
-/// 1e-7. `directions` are of unit length and in the source's frame.
-std::vector<Vec3d> convolve_exactly(ImageView<const float> latlong, const ZonalKernel& kernel, std::span<const Vec3d> directions, int threads = 0);
+/// The truth for single directions: the kernel integrated in double over the bilinear reconstruction, patch by patch (2
+/// x 2 Gauss-Legendre nodes; near the peak and at the horizon, and throughout small images, patches halved until 4 x 4
+/// suffice). A constant stays constant to 1e-7. `directions` are of unit length and in the source's frame.
+std::vector<Vec3d> convolve_exactly(ImageView<const float> latlong, const ZonalKernel& kernel,
+                                    std::span<const Vec3d> directions, int threads = 0);
 
 }  // namespace domelight

@@ -1,12 +1,13 @@
 #pragma once
-// The reflection integral under an environment, L_o = int f(V, L) L_i(L) NdotL dL, by every strategy of the lecture notes.
-
-#include <functional>
-#include <string>
+// The reflection integral under an environment, L_o = int f(V, L) L_i(L) NdotL dL, by every strategy of the lecture
+// notes.
 
 #include "domelight/brdf.h"
 #include "domelight/environment_sampler.h"
 #include "domelight/sequences.h"
+
+#include <functional>
+#include <string>
 
 namespace domelight {
 
@@ -35,13 +36,15 @@ enum class Strategy {
     environment,  ///< in proportion to radiance
     mis_balance,  ///< half BRDF, half environment, balance heuristic (Veach 1997, 9.2.2)
     mis_power,    ///< the same with the power heuristic, exponent 2
-    product,      ///< a few candidates from the environment, one of them kept in proportion to f L NdotL / p (resampled importance sampling, Talbot 2005)
+    product,      ///< a few candidates from the environment, one of them kept in proportion to f L NdotL / p (resampled
+                  ///< importance sampling, Talbot 2005)
 };
 /// "riemann", "uniform", ...; as in the enumeration with - for _.
 std::string strategy_name(Strategy strategy);
 
 struct EstimateOptions {
-    int samples = 1024;  ///< directions looked at in all; the MIS forms give half to each strategy, product counts its candidates
+    int samples =
+        1024;  ///< directions looked at in all; the MIS forms give half to each strategy, product counts its candidates
     Sequence sequence = Sequence::random;
     std::uint64_t seed = 1;
     int candidates = 8;  ///< of `product` for each sample kept
@@ -49,11 +52,13 @@ struct EstimateOptions {
 
 struct Estimate {
     Vec3d radiance;        ///< the estimate of L_o
-    Vec3d standard_error;  ///< of it, from the samples' variance; meaningful for Sequence::random, an upper guess for the others, 0 for riemann
+    Vec3d standard_error;  ///< of it, from the samples' variance; meaningful for Sequence::random, an upper guess for
+                           ///< the others, 0 for riemann
     int samples = 0;       ///< directions looked at
 };
 
 /// L_o by one strategy. `sampler` gives the radiance for all of them; the MIS forms may take one with compensation.
-Estimate estimate_reflection(const Surface& surface, const EnvironmentSampler& sampler, Strategy strategy, const EstimateOptions& options = {});
+Estimate estimate_reflection(const Surface& surface, const EnvironmentSampler& sampler, Strategy strategy,
+                             const EstimateOptions& options = {});
 
 }  // namespace domelight

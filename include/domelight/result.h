@@ -10,7 +10,8 @@ namespace domelight {
 
 /// What went wrong, where, and what to do about it. `format()` gives the lines a program prints after "error: ".
 struct Error {
-    std::string what;   ///< one sentence without a full stop: "image is 1000 x 600, but a lat-long map must be twice as wide as high"
+    std::string what;   ///< one sentence without a full stop: "image is 1000 x 600, but a lat-long map must be twice as
+                        ///< wide as high"
     std::string where;  ///< file, option or place; may be empty
     std::string hint;   ///< what to do; may be empty
 

@@ -5,8 +5,8 @@
 
 namespace domelight {
 
-/// A lat-long image in the default convention, handed on from the top row down: RGB float radiance, linear Rec. 709, finite and >= 0.
-/// A 16384 x 8192 image passes through without ever being in memory whole.
+/// A lat-long image in the default convention, handed on from the top row down: RGB float radiance, linear Rec. 709,
+/// finite and >= 0. A 16384 x 8192 image passes through without ever being in memory whole.
 class RowSource {
   public:
     virtual ~RowSource() = default;

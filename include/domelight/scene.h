@@ -1,14 +1,15 @@
 #pragma once
-// What is lit: surfaces, their materials and textures, lights and cameras, in the world of glTF 2.0: metres, right-handed, +Y up.
+// What is lit: surfaces, their materials and textures, lights and cameras, in the world of glTF 2.0: metres,
+// right-handed, +Y up.
+
+#include "domelight/result.h"
+#include "domelight/vec.h"
 
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
-
-#include "domelight/result.h"
-#include "domelight/vec.h"
 
 namespace domelight {
 
@@ -20,7 +21,8 @@ struct Affine {
     Vec3f point(const Vec3f& p) const { return vector(p) + translation; }
     /// a * b: b first.
     Affine operator*(const Affine& b) const { return {vector(b.x), vector(b.y), vector(b.z), point(b.translation)}; }
-    /// Turns a normal (a plane, not a vector); not of unit length. By the cofactors, so that a flat scale leaves it finite.
+    /// Turns a normal (a plane, not a vector); not of unit length. By the cofactors, so that a flat scale leaves it
+    /// finite.
     Vec3f normal(const Vec3f& n) const { return cross(y, z) * n.x + cross(z, x) * n.y + cross(x, y) * n.z; }
     float determinant() const { return dot(cross(x, y), z); }
 };
@@ -39,20 +41,23 @@ struct SceneTexture {
     int texcoord = 0;  ///< which set of texture coordinates, 0 or 1
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool nearest = false;
-    /// KHR_texture_transform: uv' = translation * rotation * scale * uv; a positive rotation is counter-clockwise as seen
-    /// with v running down (the GLSL in the extension's text turns the other way, its sample model and other readers do not).
+    /// KHR_texture_transform: uv' = translation * rotation * scale * uv; a positive rotation is counter-clockwise as
+    /// seen with v running down (the GLSL in the extension's text turns the other way, its sample model and other
+    /// readers do not).
     float offset_u = 0, offset_v = 0, rotation = 0, scale_u = 1, scale_v = 1;
     explicit operator bool() const { return image >= 0; }
 };
 
-/// A surface: glTF's metallic-roughness model and its extensions. Factors are linear; colour textures are decoded from sRGB.
+/// A surface: glTF's metallic-roughness model and its extensions. Factors are linear; colour textures are decoded from
+/// sRGB.
 struct Material {
     enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 
     std::string name;
     bool unlit = false;    ///< KHR_materials_unlit: the base colour, and nothing else
     bool lambert = false;  ///< extras.lambert: a pure Lambert surface of the base colour, no specular
-    bool phong = false;    ///< a modified Phong surface: base colour diffuse (1 - metalness), specular f0, exponent from roughness
+    bool phong =
+        false;  ///< a modified Phong surface: base colour diffuse (1 - metalness), specular f0, exponent from roughness
     bool double_sided = false;
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5f;
@@ -62,7 +67,7 @@ struct Material {
     float metalness = 1, roughness = 1;
     Vec3f emission;  ///< radiance, KHR_materials_emissive_strength included
     float ior = 1.5f;
-    float specular = 1;            ///< KHR_materials_specular
+    float specular = 1;  ///< KHR_materials_specular
     Vec3f specular_color{1, 1, 1};
     float normal_scale = 1, occlusion_strength = 1;
 
@@ -80,7 +85,8 @@ struct Material {
     SceneTexture specular_texture /* A */, specular_color_texture /* sRGB */;
     SceneTexture clearcoat_texture /* R */, clearcoat_roughness_texture /* G */, clearcoat_normal_texture;
     SceneTexture sheen_color_texture /* sRGB */, sheen_roughness_texture /* A */;
-    SceneTexture transmission_texture /* R */, thickness_texture /* G */, anisotropy_texture /* RG direction, B strength */;
+    SceneTexture transmission_texture /* R */, thickness_texture /* G */,
+        anisotropy_texture /* RG direction, B strength */;
 };
 
 /// Triangles of one material. Arrays other than `positions` and `indices` are empty or as long as `positions`.
@@ -101,9 +107,10 @@ struct Mesh {
         Vec3f rgb{1, 1, 1};
         float a = 1;
     };
-    std::vector<Color> colors;             ///< linear, multiplied with the base colour
-    std::vector<std::uint32_t> indices;    ///< three a triangle, each < positions.size(); counter-clockwise from the front
-    int material = 0;                      ///< of Scene::materials
+    std::vector<Color> colors;  ///< linear, multiplied with the base colour
+    std::vector<std::uint32_t>
+        indices;       ///< three a triangle, each < positions.size(); counter-clockwise from the front
+    int material = 0;  ///< of Scene::materials
     int triangle_count() const { return int(indices.size() / 3); }
 };
 
@@ -128,7 +135,7 @@ struct PunctualLight {
 /// A pinhole camera (or a parallel one) looking along -z of its frame, +y up.
 struct Camera {
     Affine to_world;
-    float fov_y = 0.6f;   ///< radians
+    float fov_y = 0.6f;  ///< radians
     bool orthographic = false;
     float half_height = 1;  ///< orthographic: metres
     float aspect = 0;       ///< width / height of the picture that it was made for; 0: not said
@@ -158,13 +165,14 @@ struct SceneOptions {
     int threads = 0;              ///< for decoding textures; 0: all
 };
 
-/// Reads glTF 2.0 (.gltf, .glb), .obj or .ply. Errors name the file and what is wrong in it: broken JSON, missing buffers and textures, paths out
-/// of the file's folder, cyclic nodes, indices and accessors out of range, extensions that are required and unknown, no triangles. Mended with a
-/// warning: NaN vertices and degenerate triangles (left out), normals of no length (recomputed).
+/// Reads glTF 2.0 (.gltf, .glb), .obj or .ply. Errors name the file and what is wrong in it: broken JSON, missing
+/// buffers and textures, paths out of the file's folder, cyclic nodes, indices and accessors out of range, extensions
+/// that are required and unknown, no triangles. Mended with a warning: NaN vertices and degenerate triangles (left
+/// out), normals of no length (recomputed).
 Result<Scene> load_scene(const std::filesystem::path& file, const SceneOptions& options = {});
 
-/// Scenes for when there is none: "spheres" (roughness from left to right, metal above dielectric), "ball" (a material ball on a plinth), "furnace"
-/// (one white sphere). Errors: another name.
+/// Scenes for when there is none: "spheres" (roughness from left to right, metal above dielectric), "ball" (a material
+/// ball on a plinth), "furnace" (one white sphere). Errors: another name.
 Result<Scene> built_in_scene(const std::string& name);
 
 }  // namespace domelight

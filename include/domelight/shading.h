@@ -1,19 +1,19 @@
 #pragma once
 // What a real-time engine draws: a scene lit by the maps that `bake` writes, each model as its shader has it.
 
-#include <memory>
-#include <optional>
-
 #include "domelight/render.h"
 #include "domelight/spherical_harmonics.h"
+
+#include <memory>
+#include <optional>
 
 namespace domelight {
 
 /// The maps of a bake, as a shader binds them. Lookups are in world directions.
 class LightMaps {
   public:
-    /// Reads what `domelight bake -o DIR` wrote for the generic target: specular.ktx2, irradiance.ktx2, sh.json, brdf.ktx2, roughness by level from
-    /// manifest.json. Errors name the file.
+    /// Reads what `domelight bake -o DIR` wrote for the generic target: specular.ktx2, irradiance.ktx2, sh.json,
+    /// brdf.ktx2, roughness by level from manifest.json. Errors name the file.
     static Result<LightMaps> load(const std::filesystem::path& folder);
     /// Bakes them in memory with the generic target's sizes.
     static Result<LightMaps> bake(ImageView<const float> latlong, const Mat3& world_to_source, int threads = 0);
@@ -49,15 +49,17 @@ std::string shading_model_name(ShadingModel model);
 
 struct ShadingOptions {
     ShadingModel model = ShadingModel::split_sum;
-    bool sh_irradiance = false;        ///< nine coefficients instead of the irradiance cube
-    bool bent_lookup = false;          ///< the lookup leans from the mirror direction to the normal (Lagarde and de Rousiers 2014, 4.9.3)
+    bool sh_irradiance = false;  ///< nine coefficients instead of the irradiance cube
+    bool bent_lookup =
+        false;  ///< the lookup leans from the mirror direction to the normal (Lagarde and de Rousiers 2014, 4.9.3)
     bool multiple_scattering = false;  ///< Fdez-Aguera 2019
-    bool occlusion = true;             ///< occlusion textures, with specular occlusion (Lagarde and de Rousiers 2014, 4.10.2)
+    bool occlusion = true;  ///< occlusion textures, with specular occlusion (Lagarde and de Rousiers 2014, 4.10.2)
 };
 
-/// Draws with one of them: the same camera, samples and layers (radiance, opacity, diffuse, specular, albedo, normal, depth, object) as
-/// render_reference. No shadows: compare with RenderOptions::occlusion = false. `environment` is the background and what mirror and refract read.
-Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment, const ShadingOptions& shading,
-                                   const RenderOptions& options);
+/// Draws with one of them: the same camera, samples and layers (radiance, opacity, diffuse, specular, albedo, normal,
+/// depth, object) as render_reference. No shadows: compare with RenderOptions::occlusion = false. `environment` is the
+/// background and what mirror and refract read.
+Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment,
+                                   const ShadingOptions& shading, const RenderOptions& options);
 
 }  // namespace domelight

@@ -1,15 +1,15 @@
 #pragma once
 
-#include <cstdint>
+#include "domelight/large_allocator.h"
+#include "domelight/prefilter.h"
+#include "domelight/result.h"
+
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
-
-#include "domelight/large_allocator.h"
-#include "domelight/prefilter.h"
-#include "domelight/result.h"
 
 namespace domelight {
 
@@ -25,27 +25,30 @@ double encoding_max(Encoding encoding);                        ///< largest valu
 /// What an encoding did to a level.
 struct EncodingReport {
     std::int64_t clipped_texels = 0;
-    double clipped_energy = 0;   ///< radiant power lost by clipping over the level's power, 0..1, solid-angle weighted luminance
-    double rms_error = 0;        ///< relative RMS error of the stored values against the float ones, clipped texels left out
+    double clipped_energy =
+        0;  ///< radiant power lost by clipping over the level's power, 0..1, solid-angle weighted luminance
+    double rms_error = 0;  ///< relative RMS error of the stored values against the float ones, clipped texels left out
 };
 
 /// Encoded texels: like any byte vector, but one made by size alone is not cleared.
 using TexelBytes = std::vector<std::uint8_t, LargeAllocator<std::uint8_t>>;
 
-/// A GPU texture in memory: levels, each of all faces (cube: 6, +X -X +Y -Y +Z -Z, OpenGL's orientation; else 1), texels tightly packed.
+/// A GPU texture in memory: levels, each of all faces (cube: 6, +X -X +Y -Y +Z -Z, OpenGL's orientation; else 1),
+/// texels tightly packed.
 struct Texture {
     Encoding encoding = Encoding::rgba16f;
     int width = 0, height = 0;
     int faces = 1;
-    std::vector<TexelBytes> levels;                ///< level l: faces one after the other, (width >> l) x (height >> l) texels each
-    std::map<std::string, std::string> metadata;    ///< key/value data, UTF-8 without terminator
+    std::vector<TexelBytes> levels;  ///< level l: faces one after the other, (width >> l) x (height >> l) texels each
+    std::map<std::string, std::string> metadata;  ///< key/value data, UTF-8 without terminator
     int level_width(int l) const { return std::max(1, width >> l); }
     int level_height(int l) const { return std::max(1, height >> l); }
 };
 
-/// Encodes float RGB maps (each level half the size of the one before) as a texture. Clips what the encoding cannot hold and says so, one report
-/// a level. Deterministic on any number of threads.
-Texture encode_texture(std::span<const FilteredMap> levels, Encoding encoding, int threads, std::vector<EncodingReport>* reports = nullptr);
+/// Encodes float RGB maps (each level half the size of the one before) as a texture. Clips what the encoding cannot
+/// hold and says so, one report a level. Deterministic on any number of threads.
+Texture encode_texture(std::span<const FilteredMap> levels, Encoding encoding, int threads,
+                       std::vector<EncodingReport>* reports = nullptr);
 /// An RG or RGB float image (a BRDF table) as a texture of one level.
 Texture encode_table(ImageView<const float> table, Encoding encoding);
 /// Float texels of one face of a level: RGB, or RG for two-channel encodings.
@@ -54,7 +57,8 @@ ImageF decode_texture(const Texture& texture, int level, int face);
 enum class Supercompression { none, zstd };
 
 /// Containers. An output appears whole or not at all; an existing file is replaced only by a complete one.
-Result<void> write_ktx2(const std::filesystem::path& file, const Texture& texture, Supercompression compression = Supercompression::none);
+Result<void> write_ktx2(const std::filesystem::path& file, const Texture& texture,
+                        Supercompression compression = Supercompression::none);
 Result<void> write_ktx1(const std::filesystem::path& file, const Texture& texture);
 Result<void> write_dds(const std::filesystem::path& file, const Texture& texture);
 
@@ -67,8 +71,8 @@ struct TextureInfo {
     bool decodable = false;  ///< read_texture can decode it
 };
 Result<TextureInfo> read_texture_info(const std::filesystem::path& file);
-/// Reads a texture in one of our encodings, or in half or float RGB or R (which gain the missing channels). Checks every size and offset against
-/// the file before it allocates; refuses what would need more than 2 GiB.
+/// Reads a texture in one of our encodings, or in half or float RGB or R (which gain the missing channels). Checks
+/// every size and offset against the file before it allocates; refuses what would need more than 2 GiB.
 Result<Texture> read_texture(const std::filesystem::path& file);
 
 }  // namespace domelight

@@ -6,8 +6,9 @@ namespace domelight {
 
 /// A point of the unit square in 32-bit fixed point: (x, y) / 2^32, so in [0, 1) by construction.
 ///
-/// Sequences make them and samplers take them. A float in [0, 1) has 24 bits, and an environment of 4096 x 2048 texels uses 23 of them to find the
-/// texel: nothing would be left of where in it. 32 bits are what cumulative tables in 32-bit fixed point can tell apart.
+/// Sequences make them and samplers take them. A float in [0, 1) has 24 bits, and an environment of 4096 x 2048 texels
+/// uses 23 of them to find the texel: nothing would be left of where in it. 32 bits are what cumulative tables in
+/// 32-bit fixed point can tell apart.
 struct UnitPoint {
     std::uint32_t x = 0, y = 0;
     constexpr bool operator==(const UnitPoint&) const = default;

@@ -56,7 +56,8 @@ struct Mat3 {
 
     constexpr Vec3d operator*(const Vec3d& v) const { return {dot(row[0], v), dot(row[1], v), dot(row[2], v)}; }
     constexpr Mat3 transposed() const {
-        return {{Vec3d{row[0].x, row[1].x, row[2].x}, Vec3d{row[0].y, row[1].y, row[2].y}, Vec3d{row[0].z, row[1].z, row[2].z}}};
+        return {{Vec3d{row[0].x, row[1].x, row[2].x}, Vec3d{row[0].y, row[1].y, row[2].y},
+                 Vec3d{row[0].z, row[1].z, row[2].z}}};
     }
     constexpr Mat3 operator*(const Mat3& b) const {
         const Mat3 t = b.transposed();
@@ -67,7 +68,8 @@ struct Mat3 {
     constexpr bool operator==(const Mat3&) const = default;
 };
 
-/// Turns directions about +Y by `angle` radians; a positive angle moves +X towards +Z (so that the content of a lat-long image moves right).
+/// Turns directions about +Y by `angle` radians; a positive angle moves +X towards +Z (so that the content of a
+/// lat-long image moves right).
 inline Mat3 rotation_y(double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
     return {{Vec3d{c, 0, -s}, Vec3d{0, 1, 0}, Vec3d{s, 0, c}}};

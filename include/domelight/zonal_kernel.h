@@ -7,14 +7,14 @@ namespace domelight {
 
 /// Which rotationally symmetric lobe an environment is convolved with.
 enum class Lobe {
-    ggx,            ///< GGX with n = v = r, weighted by n.l: K(c) ~ max(c, 0) / (alpha^2 (1 + c) + 1 - c)^2
-    charlie,        ///< sheen, as the Khronos tools sample it: K(c) ~ max(c, 0) (1 - c)^(1 / (2 alpha))
-    phong_brdf,     ///< modified Phong BRDF under n = v = r: (n + 2) / 2 pi max(c, 0)^(n + 1)
-    phong_plain,    ///< plain Phong map: (n + 1) / 2 pi max(c, 0)^n
+    ggx,          ///< GGX with n = v = r, weighted by n.l: K(c) ~ max(c, 0) / (alpha^2 (1 + c) + 1 - c)^2
+    charlie,      ///< sheen, as the Khronos tools sample it: K(c) ~ max(c, 0) (1 - c)^(1 / (2 alpha))
+    phong_brdf,   ///< modified Phong BRDF under n = v = r: (n + 2) / 2 pi max(c, 0)^(n + 1)
+    phong_plain,  ///< plain Phong map: (n + 1) / 2 pi max(c, 0)^n
 };
 
-/// A lobe with its width: a density over directions (per steradian) of c = cos of the angle to the lobe's axis, normalised to 1 over the
-/// sphere. docs/math/prefilter.md derives each one.
+/// A lobe with its width: a density over directions (per steradian) of c = cos of the angle to the lobe's axis,
+/// normalised to 1 over the sphere. docs/math/prefilter.md derives each one.
 struct ZonalKernel {
     Lobe lobe = Lobe::ggx;
     double width = 1;  ///< ggx and charlie: alpha = roughness^2, in (0, 1]; phong: the exponent n >= 0
@@ -24,13 +24,16 @@ struct ZonalKernel {
     /// The clamped cosine max(c, 0) / pi: convolving with it gives E / pi. The same as ggx at alpha = 1.
     static ZonalKernel cosine() { return {Lobe::ggx, 1}; }
 
-    /// Density per steradian at angle `theta` (radians, 0..pi) from the axis. From the angle, not its cosine: 1 - c keeps its digits.
+    /// Density per steradian at angle `theta` (radians, 0..pi) from the axis. From the angle, not its cosine: 1 - c
+    /// keeps its digits.
     double density(double theta) const;
 
-    /// The eigenvalues k_l = 2 pi int K(c) P_l(c) dc for l = 0..band_limit, k_0 = 1. In double, absolute error below 1e-9.
+    /// The eigenvalues k_l = 2 pi int K(c) P_l(c) dc for l = 0..band_limit, k_0 = 1. In double, absolute error below
+    /// 1e-9.
     std::vector<double> coefficients(int band_limit) const;
 
-    /// Angle (radians) that is the kernel's natural length: b = 2 alpha / sqrt(1 - alpha^2) for ggx, the same notion for the others.
+    /// Angle (radians) that is the kernel's natural length: b = 2 alpha / sqrt(1 - alpha^2) for ggx, the same notion
+    /// for the others.
     double angular_width() const;
 };
 

@@ -1,17 +1,17 @@
 #pragma once
 
+#include "domelight/large_allocator.h"
+
 #include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <new>
 #include <type_traits>
 
-#include "domelight/large_allocator.h"
-
 namespace domelight {
 
-/// An array of trivial values on a 64-byte boundary, as the SIMD kernels want it; large ones straight from the system, in large pages. Moves, does
-/// not copy. Zeroed unless asked otherwise.
+/// An array of trivial values on a 64-byte boundary, as the SIMD kernels want it; large ones straight from the system,
+/// in large pages. Moves, does not copy. Zeroed unless asked otherwise.
 template <typename T>
 class AlignedArray {
     static_assert(std::is_trivial_v<T>);
@@ -37,8 +37,10 @@ class AlignedArray {
     struct Free {
         std::size_t large_bytes = 0;
         void operator()(T* p) const {
-            if (large_bytes) free_large(p, large_bytes);
-            else std::free(p);
+            if (large_bytes)
+                free_large(p, large_bytes);
+            else
+                std::free(p);
         }
     };
     std::unique_ptr<T, Free> data_;

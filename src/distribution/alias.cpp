@@ -1,15 +1,16 @@
 #include "domelight/distribution_alias.h"
 
-#include <bit>
-#include <cassert>
-
 #include "distribution/quanta.h"
 #include "distribution/weight_rows.h"
 #include "simd/distribution_alias.h"
 
+#include <bit>
+#include <cassert>
+
 namespace domelight {
 
-AliasRows::AliasRows(int count_, int items_) : count(count_), items(items_), bits(std::bit_width(unsigned(items_ - 1))) {
+AliasRows::AliasRows(int count_, int items_)
+    : count(count_), items(items_), bits(std::bit_width(unsigned(items_ - 1))) {
     // One bit at least: a shift by 32 is not defined.
     bits = std::max(bits, 1);
     entries.resize(std::size_t(count) << bits);
@@ -20,7 +21,8 @@ void AliasRows::fill(int row, std::span<const float> weights, std::span<const do
     const int cells = 1 << bits, split_bits = 32 - bits;
     const std::uint64_t room = std::uint64_t(1) << split_bits;  // quanta of a cell
 
-    // Vose's method in integers: cells whose item has less than a cell's room ("small") are topped up from items with more ("large").
+    // Vose's method in integers: cells whose item has less than a cell's room ("small") are topped up from items with
+    // more ("large").
     std::vector<std::uint64_t> left(cells);  // quanta not yet placed
     std::vector<std::int32_t> stack(cells);  // small from the front, large from the back
     int small = 0, large = cells;
@@ -97,7 +99,8 @@ DistributionSample AliasDistribution::sample(UnitPoint point) const {
             row.quanta * column.quanta * (double(width()) * height() * 0x1p-64)};
 }
 
-void AliasDistribution::sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v, std::span<float> pdf_uv) const {
+void AliasDistribution::sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v,
+                               std::span<float> pdf_uv) const {
     assert(u.size() == points.size() && v.size() == points.size() && pdf_uv.size() == points.size());
     simd::sample_alias(marginal_, conditional_, points, u.data(), v.data(), pdf_uv.data());
 }

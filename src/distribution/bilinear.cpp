@@ -1,12 +1,12 @@
 #include "domelight/distribution_bilinear.h"
 
-#include <bit>
-#include <cassert>
-
 #include "distribution/bilinear_place.h"
 #include "distribution/quanta.h"
 #include "distribution/weight_rows.h"
 #include "simd/distribution_bilinear.h"
+
+#include <bit>
+#include <cassert>
 
 namespace domelight {
 
@@ -83,7 +83,8 @@ struct Mixture {
 
     double edge(int i) const { return above * above_edges[i] + below * below_edges[i]; }
     LinearSegment segment(int i) const {
-        const double a = above * (double(above_edges[i + 1]) - above_edges[i]), b = below * (double(below_edges[i + 1]) - below_edges[i]);
+        const double a = above * (double(above_edges[i + 1]) - above_edges[i]),
+                     b = below * (double(below_edges[i + 1]) - below_edges[i]);
         const double begin = (a * above_shape[i] + b * below_shape[i]) * (2.0 / 65535);
         return {begin, 2 * (a + b) - begin};
     }
@@ -105,13 +106,15 @@ struct Tables {
 
     Row at(int s, double t) const {
         const RowSegment place = row_segment(s, height());
-        // The segment runs from the sum of one row to that of the next, so the lower row's share is its part of the value.
+        // The segment runs from the sum of one row to that of the next, so the lower row's share is its part of the
+        // value.
         const LinearSegment segment = marginal_segment(s);
         const double value = segment.at(t), below = segment.end * t / std::max(value, 1e-300);
         const double pdf_v = value * (1 / place.length) * (height() * (1 / k_total));
         return {(place.start + t * place.length) * (1.0 / height()),
                 pdf_v,
-                {columns.edges_of(s), columns.edges_of(s + 1), columns.shape_of(s), columns.shape_of(s + 1), 1 - below, below},
+                {columns.edges_of(s), columns.edges_of(s + 1), columns.shape_of(s), columns.shape_of(s + 1), 1 - below,
+                 below},
                 s};
     }
 
@@ -127,7 +130,8 @@ struct Tables {
     /// The segment of the mixture in which `mass` is reached.
     int find(const Row& row, std::uint32_t xi, double mass) const {
         const std::size_t cell = std::uint64_t(xi) >> columns.shift;
-        const std::uint16_t *above = columns.guide_of(row.above) + cell, *below = columns.guide_of(row.above + 1) + cell;
+        const std::uint16_t *above = columns.guide_of(row.above) + cell,
+                            *below = columns.guide_of(row.above + 1) + cell;
         int first = std::min(above[0], below[0]), last = std::max(above[1], below[1]);
         while (first < last) {
             const int middle = (first + last) / 2;
@@ -208,7 +212,8 @@ DistributionSample BilinearDistribution::sample(UnitPoint point) const {
     return {u, std::min(row.v, 1 - 0x1p-53), row.pdf_v * pdf_u};
 }
 
-void BilinearDistribution::sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v, std::span<float> pdf_uv) const {
+void BilinearDistribution::sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v,
+                                  std::span<float> pdf_uv) const {
     assert(u.size() == points.size() && v.size() == points.size() && pdf_uv.size() == points.size());
     simd::sample_bilinear(rows_, columns_, row_begins_.data(), points, u.data(), v.data(), pdf_uv.data());
 }
@@ -228,7 +233,8 @@ std::optional<UnitPoint> BilinearDistribution::invert(double u, double v) const 
     const auto [i, r] = column_place(u, width());
     const Mixture mixture = tables.at(s, t).mixture;
     const auto quantum = [](double mass) { return unit_fixed((mass + 0x1p31) * (1 / k_total)); };
-    return UnitPoint{quantum(mixture.edge(i) + mixture.segment(i).before(r)), quantum(rows_.edges_of(0)[s] + tables.marginal_segment(s).before(t))};
+    return UnitPoint{quantum(mixture.edge(i) + mixture.segment(i).before(r)),
+                     quantum(rows_.edges_of(0)[s] + tables.marginal_segment(s).before(t))};
 }
 
 }  // namespace domelight

@@ -1,9 +1,9 @@
-#include <algorithm>
-
 #include "domelight/distribution_bilinear.h"
 
 #include "distribution/bilinear_place.h"
 #include "distribution/weight_rows.h"
+
+#include <algorithm>
 
 namespace domelight {
 
@@ -23,7 +23,8 @@ Result<PlainBilinearDistribution> PlainBilinearDistribution::build(const Weights
 double PlainBilinearDistribution::node(int i, int s, double t) const {
     const RowSegment place = row_segment(s, height_);
     i %= width_;
-    return weights_[std::size_t(place.above) * width_ + i] * (1 - t) + weights_[std::size_t(place.below) * width_ + i] * t;
+    return weights_[std::size_t(place.above) * width_ + i] * (1 - t) +
+           weights_[std::size_t(place.below) * width_ + i] * t;
 }
 
 DistributionSample PlainBilinearDistribution::sample(UnitPoint point) const {
@@ -48,7 +49,8 @@ DistributionSample PlainBilinearDistribution::sample(UnitPoint point) const {
     const double r = column(i).invert(rest);
     double u = (i + 0.5 + r) / width_;
     if (u >= 1) u -= 1;
-    return {u, std::min((place.start + t * place.length) / height_, 1 - 0x1p-53), column(i).at(r) * width_ * height_ / total_};
+    return {u, std::min((place.start + t * place.length) / height_, 1 - 0x1p-53),
+            column(i).at(r) * width_ * height_ / total_};
 }
 
 double PlainBilinearDistribution::pdf_uv(double u, double v) const {

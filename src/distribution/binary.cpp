@@ -1,9 +1,9 @@
 #include "domelight/distribution_binary.h"
 
-#include <algorithm>
-
 #include "distribution/texel_float.h"
 #include "distribution/weight_rows.h"
+
+#include <algorithm>
 
 namespace domelight {
 
@@ -35,7 +35,8 @@ double inside(float t) {
 void fill_cumulative(std::span<const double> sums, float* cdf) {
     const double scale = 1 / sums.back();
     cdf[0] = 0;
-    for (std::size_t i = 0; i < sums.size(); ++i) cdf[i + 1] = sums[i] == sums.back() ? 1.0f : std::min(1.0f, float(sums[i] * scale));
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        cdf[i + 1] = sums[i] == sums.back() ? 1.0f : std::min(1.0f, float(sums[i] * scale));
 }
 
 }  // namespace
@@ -82,7 +83,8 @@ DistributionSample BinaryDistribution::sample(UnitPoint point) const {
     return {(p.column + inside(p.t)) * (1.0 / width_), (p.row + inside(p.s)) * (1.0 / height_), p.pdf_uv};
 }
 
-void BinaryDistribution::sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v, std::span<float> pdf_uv) const {
+void BinaryDistribution::sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v,
+                                std::span<float> pdf_uv) const {
     const double to_u = 1.0 / width_, to_v = 1.0 / height_;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Place p = find(points[i]);

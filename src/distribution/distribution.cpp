@@ -1,23 +1,26 @@
 #include "domelight/distribution.h"
 
-#include <algorithm>
-#include <cassert>
-
 #include "distribution/texel_float.h"
 #include "distribution/weight_rows.h"
+
+#include <algorithm>
+#include <cassert>
 
 namespace domelight {
 
 Weights Weights::of(ImageView<const float> image) {
     assert(image.channels == 1);
-    return {image.width, image.height, [image](int y, std::span<float>) { return std::span<const float>(image.row(y), std::size_t(image.width)); }};
+    return {image.width, image.height, [image](int y, std::span<float>) {
+                return std::span<const float>(image.row(y), std::size_t(image.width));
+            }};
 }
 
 std::optional<UnitPoint> Distribution2D::invert(double, double) const {
     return std::nullopt;
 }
 
-void Distribution2D::sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v, std::span<float> pdf_uv) const {
+void Distribution2D::sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v,
+                            std::span<float> pdf_uv) const {
     assert(u.size() == points.size() && v.size() == points.size() && pdf_uv.size() == points.size());
     const int w = width(), h = height();
     for (std::size_t i = 0; i < points.size(); ++i) {

@@ -1,12 +1,12 @@
 #include "domelight/distribution_guided.h"
 
-#include <fmt/format.h>
-
-#include <bit>
-
 #include "distribution/quanta.h"
 #include "distribution/weight_rows.h"
 #include "simd/distribution_guided.h"
+
+#include <fmt/format.h>
+
+#include <bit>
 
 namespace domelight {
 
@@ -43,8 +43,8 @@ void GuidedRows::fill(int row, std::span<const float> weights, std::span<const d
     share_quanta([&](int i) { return weights[i] > 0; }, sums, k_total,
                  [&](int i, std::uint64_t end) {
                      l[i] = std::uint32_t(end - 1);
-                     // Cells that begin before `end` begin in item i. Mostly few: eight are written blindly, what was too much is overwritten by
-                     // later items.
+                     // Cells that begin before `end` begin in item i. Mostly few: eight are written blindly, what was
+                     // too much is overwritten by later items.
                      const std::size_t cells_begun = (end + cell - 1) >> shift;
                      for (std::size_t k = 0; k < 8; ++k) g[filled + k] = std::uint16_t(i);
                      for (std::size_t k = filled + 8; k < cells_begun; ++k) g[k] = std::uint16_t(i);
@@ -84,7 +84,8 @@ Result<GuidedDistribution1D> GuidedDistribution1D::build(std::span<const float> 
 GuidedDistribution1D::Sample GuidedDistribution1D::sample(std::uint32_t xi) const {
     const int i = rows_.find(0, xi);
     const std::uint64_t quanta = rows_.quanta(0, i);
-    return {(i + position_in(xi, rows_.first_quantum(0, i), quanta)) * (1.0 / size()), double(quanta) * size() * 0x1p-32, i};
+    return {(i + position_in(xi, rows_.first_quantum(0, i), quanta)) * (1.0 / size()),
+            double(quanta) * size() * 0x1p-32, i};
 }
 
 double GuidedDistribution1D::pdf(double x) const {
@@ -132,7 +133,8 @@ DistributionSample GuidedDistribution::sample(UnitPoint point) const {
             double(row) * double(column) * (double(width()) * height() * 0x1p-64)};
 }
 
-void GuidedDistribution::sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v, std::span<float> pdf_uv) const {
+void GuidedDistribution::sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v,
+                                std::span<float> pdf_uv) const {
     assert(u.size() == points.size() && v.size() == points.size() && pdf_uv.size() == points.size());
     simd::sample_guided(marginal_, conditional_, points, u.data(), v.data(), pdf_uv.data());
 }

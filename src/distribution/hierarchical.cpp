@@ -1,9 +1,9 @@
 #include "domelight/distribution_hierarchical.h"
 
+#include "distribution/weight_rows.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "distribution/weight_rows.h"
 
 namespace domelight {
 
@@ -32,7 +32,8 @@ Result<HierarchicalDistribution> HierarchicalDistribution::build(const Weights& 
         for (int j = 0; j < to.height; ++j)
             for (int i = 0; i < to.width; ++i)
                 to.sums[std::size_t(j) * to.width + i] =
-                    float(from.at(2 * i, 2 * j) + from.at(2 * i + 1, 2 * j) + from.at(2 * i, 2 * j + 1) + from.at(2 * i + 1, 2 * j + 1));
+                    float(from.at(2 * i, 2 * j) + from.at(2 * i + 1, 2 * j) + from.at(2 * i, 2 * j + 1) +
+                          from.at(2 * i + 1, 2 * j + 1));
         d.levels_.push_back(std::move(to));
     }
     return d;
@@ -47,7 +48,8 @@ struct HierarchicalDistribution::Split {
 
 HierarchicalDistribution::Split HierarchicalDistribution::split(int level, int i, int j) const {
     const Level& below = levels_[level];
-    const double a = below.at(2 * i, 2 * j), b = below.at(2 * i + 1, 2 * j), c = below.at(2 * i, 2 * j + 1), e = below.at(2 * i + 1, 2 * j + 1);
+    const double a = below.at(2 * i, 2 * j), b = below.at(2 * i + 1, 2 * j), c = below.at(2 * i, 2 * j + 1),
+                 e = below.at(2 * i + 1, 2 * j + 1);
     const auto share = [](double one, double other) { return one > 0 ? one / (one + other) : 0.0; };
     return {share(a + c, b + e), {share(a, c), share(b, e)}};
 }

@@ -40,7 +40,8 @@ std::string method_name(DistributionMethod method) {
     return "";
 }
 
-Result<std::unique_ptr<Distribution2D>> make_distribution(const Weights& weights, DistributionMethod method, int threads) {
+Result<std::unique_ptr<Distribution2D>> make_distribution(const Weights& weights, DistributionMethod method,
+                                                          int threads) {
     switch (method) {
         case DistributionMethod::linear:
             return boxed(PlainDistribution2D::build(weights, PlainDistribution2D::Search::linear));

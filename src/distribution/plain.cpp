@@ -1,8 +1,8 @@
 #include "domelight/distribution_plain.h"
 
-#include <algorithm>
-
 #include "distribution/weight_rows.h"
+
+#include <algorithm>
 
 namespace domelight {
 

@@ -6,13 +6,15 @@
 
 namespace domelight {
 
-/// Shares `total` quanta out among items in proportion to their weights: use(i, end) with the number of quanta of items 0 .. i together.
+/// Shares `total` quanta out among items in proportion to their weights: use(i, end) with the number of quanta of items
+/// 0 .. i together.
 ///
 /// positive   positive(i): whether item i has a weight
 /// sums       of the weights of items 0 .. i, in double; sums.back() > 0
 ///
-/// Each item of positive weight gets one quantum first, so that none is lost beside a sun; the rest goes by the cumulative sums rounded down, so an
-/// item is off by a quantum at most and errors do not add up. An item of no weight adds nothing to either, exactly.
+/// Each item of positive weight gets one quantum first, so that none is lost beside a sun; the rest goes by the
+/// cumulative sums rounded down, so an item is off by a quantum at most and errors do not add up. An item of no weight
+/// adds nothing to either, exactly.
 template <typename Positive, typename Use>
 void share_quanta(const Positive& positive, std::span<const double> sums, std::uint64_t total, const Use& use) {
     std::int64_t count = 0;

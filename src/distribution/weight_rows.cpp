@@ -1,5 +1,7 @@
 #include "distribution/weight_rows.h"
 
+#include "domelight/parallel.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,8 +9,6 @@
 #include <cmath>
 #include <limits>
 #include <vector>
-
-#include "domelight/parallel.h"
 
 namespace domelight {
 
@@ -21,7 +21,8 @@ int running_sums(std::span<const float> weights, std::span<double> sums) {
         sums[x] = sum += w;
     }
     if (!bad) return -1;
-    const auto first = std::find_if(weights.begin(), weights.end(), [](float w) { return !(w >= 0 && std::isfinite(w)); });
+    const auto first =
+        std::find_if(weights.begin(), weights.end(), [](float w) { return !(w >= 0 && std::isfinite(w)); });
     return int(first - weights.begin());
 }
 
@@ -35,8 +36,9 @@ Result<void> for_each_weight_row(const Weights& weights, int threads,
     const int width = weights.width, height = weights.height;
     if (width < 1 || height < 1) return Error{"there are no texels to draw from", "", ""};
     if (width > k_most || height > k_most)
-        return Error{fmt::format("{} x {} texels are too many to draw from: at most {} on a side", width, height, k_most), "",
-                     "resample the environment to a smaller size"};
+        return Error{
+            fmt::format("{} x {} texels are too many to draw from: at most {} on a side", width, height, k_most), "",
+            "resample the environment to a smaller size"};
 
     std::vector<int> bad(height, -1);
     std::vector<float> bad_weight(height, 0.0f);
@@ -55,8 +57,9 @@ Result<void> for_each_weight_row(const Weights& weights, int threads,
     });
     for (int y = 0; y < height; ++y)
         if (bad[y] >= 0)
-            return Error{fmt::format("the weight of the texel in column {}, row {} is {}", bad[y], y, weight_fault(bad_weight[y])), "",
-                         "weights must be finite and not negative; repair the environment before drawing from it"};
+            return Error{fmt::format("the weight of the texel in column {}, row {} is {}", bad[y], y,
+                                     weight_fault(bad_weight[y])),
+                         "", "weights must be finite and not negative; repair the environment before drawing from it"};
     return {};
 }
 

@@ -1,17 +1,18 @@
 #pragma once
 // Reading weights row by row, with the checks that every method makes.
 
+#include "domelight/distribution.h"
+
 #include <functional>
 #include <span>
 
-#include "domelight/distribution.h"
-
 namespace domelight {
 
-/// Calls use(y, weights, sums) for every row, on up to `threads` threads; sums[x] is the sum of weights 0 .. x of the row, in double, from left to
-/// right. Errors: as make_distribution; `use` may then have been called for some rows.
-Result<void> for_each_weight_row(const Weights& weights, int threads,
-                                 const std::function<void(int y, std::span<const float> row, std::span<const double> sums)>& use);
+/// Calls use(y, weights, sums) for every row, on up to `threads` threads; sums[x] is the sum of weights 0 .. x of the
+/// row, in double, from left to right. Errors: as make_distribution; `use` may then have been called for some rows.
+Result<void> for_each_weight_row(
+    const Weights& weights, int threads,
+    const std::function<void(int y, std::span<const float> row, std::span<const double> sums)>& use);
 
 /// sums[x] of one row; returns the first weight that is NaN, infinite or negative, or -1.
 int running_sums(std::span<const float> weights, std::span<double> sums);

@@ -9,10 +9,10 @@
 
 namespace domelight::area {
 
-/// int g d omega over regions of the sphere, g the reconstruction of a cubemap that continues across edges (BorderedCube):
-/// between the centres of a face's texels bilinear on the face's plane; past the outermost centres towards the texels
-/// of the neighbouring face that lie across the edge; and towards each of the cube's corners to the mean of the three
-/// texels that meet there. g is continuous everywhere.
+/// int g d omega over regions of the sphere, g the reconstruction of a cubemap that continues across edges
+/// (BorderedCube): between the centres of a face's texels bilinear on the face's plane; past the outermost centres
+/// towards the texels of the neighbouring face that lie across the edge; and towards each of the cube's corners to the
+/// mean of the three texels that meet there. g is continuous everywhere.
 ///
 /// By Stokes on each face's plane (S to the right, T down, -1..1): d omega = dS dT / (1 + S^2 + T^2)^(3/2), so with
 /// F(S, T) = int_{S_ref}^S g (1 + S^2 + T^2)^(-3/2) dS, int_R g d omega = closed integral of F dT around R, which is

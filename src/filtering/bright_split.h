@@ -18,12 +18,15 @@ class BrightSplit {
   public:
     BrightSplit(int width, int height) : width_(width), height_(height) {}
 
-    /// Sets the bright texels of the next rows to 0 and keeps them; `summaries`: simd::summarize of each row. Any choice is exact; which ones are taken (over 300
-    /// times the mean of what was left in the rows so far, k_most at most) does not depend on how rows are handed over.
+    /// Sets the bright texels of the next rows to 0 and keeps them; `summaries`: simd::summarize of each row. Any
+    /// choice is exact; which ones are taken (over 300 times the mean of what was left in the rows so far, k_most at
+    /// most) does not depend on how rows are handed over.
     void take_from(ImageView<float> rows, std::span<const simd::Summary> summaries);
     bool empty() const { return texels_.empty(); }
     /// Spherical-harmonic coefficients of what was taken out.
-    Spectrum spectrum(int band_limit, int threads) const { return analyse_texels(width_, height_, texels_, band_limit, threads); }
+    Spectrum spectrum(int band_limit, int threads) const {
+        return analyse_texels(width_, height_, texels_, band_limit, threads);
+    }
     /// The texels as a tree of lights for a kernel.
     struct Lights {
         std::vector<simd::LightNode> nodes;

@@ -1,13 +1,14 @@
 #include "filtering/cube_analysis.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "domelight/parallel.h"
 #include "domelight/projection.h"
+
 #include "filtering/ring_analysis.h"
 #include "filtering/sphere_grid.h"
 #include "math/gauss_legendre.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace domelight {
 namespace {
@@ -35,10 +36,13 @@ std::vector<AxisNode> axis_nodes(int size, int nodes_a_cell) {
 }
 
 /// Enough nodes that a function of this band limit is integrated over a texel's width.
-int nodes_a_cell(int size, int band_limit) { return std::clamp(2 + int(0.75 * band_limit / size), 2, 10); }
+int nodes_a_cell(int size, int band_limit) {
+    return std::clamp(2 + int(0.75 * band_limit / size), 2, 10);
+}
 
 /// Spreads the patches of one face.
-void scatter_face(const BorderedCube& cube, int face, std::span<const AxisNode> axis, const simd::TapTable& table, SphereGrid& grid) {
+void scatter_face(const BorderedCube& cube, int face, std::span<const AxisNode> axis, const simd::TapTable& table,
+                  SphereGrid& grid) {
     const int count = int(axis.size());
     std::vector<double> x(count), y(count), z(count);
     std::vector<float> rgb(3 * std::size_t(count));
@@ -49,10 +53,12 @@ void scatter_face(const BorderedCube& cube, int face, std::span<const AxisNode> 
             const Vec3d d = cube_direction(face, {0.5 * (right.at + 1), 0.5 * (down.at + 1)});
             x[i] = d.x, y[i] = d.y, z[i] = d.z;
             // A face at distance 1: d omega = ds dt / (1 + s^2 + t^2)^(3/2).
-            const double r2 = 1 + right.at * right.at + down.at * down.at, weight = right.weight * down.weight / (r2 * std::sqrt(r2));
+            const double r2 = 1 + right.at * right.at + down.at * down.at,
+                         weight = right.weight * down.weight / (r2 * std::sqrt(r2));
             const float *a = cube.texel(face, right.cell, down.cell), *b = cube.texel(face, right.cell, down.cell + 1);
             for (int c = 0; c < 3; ++c) {
-                const double top = a[c] + right.fraction * (a[c + 3] - double(a[c])), bottom = b[c] + right.fraction * (b[c + 3] - double(b[c]));
+                const double top = a[c] + right.fraction * (a[c + 3] - double(a[c])),
+                             bottom = b[c] + right.fraction * (b[c + 3] - double(b[c]));
                 rgb[3 * i + c] = float(weight * (top + down.fraction * (bottom - top)));
             }
         }
@@ -78,11 +84,13 @@ void gather_grids(std::vector<SphereGrid>& grids, int threads) {
 }  // namespace
 
 Spectrum analyse_cube(const BorderedCube& cube, int band_limit, int threads) {
-    RingAnalysis rings(ring_grid_for(band_limit).width, band_limit, std::vector<std::complex<double>>(band_limit + 1, 1));
+    RingAnalysis rings(ring_grid_for(band_limit).width, band_limit,
+                       std::vector<std::complex<double>>(band_limit + 1, 1));
     const RingGrid grid = rings.grid();
     const simd::TapTable table(InterpolationTaps(8, double(band_limit) / grid.rings, k_decay));
     const auto axis = axis_nodes(cube.size(), nodes_a_cell(cube.size(), band_limit));
-    // Faces overlap on the rings, so each has a grid of its own, unless these would take too much memory; never a matter of the threads.
+    // Faces overlap on the rings, so each has a grid of its own, unless these would take too much memory; never a
+    // matter of the threads.
     const int grid_count = std::int64_t(grid.rings) * grid.width < (4 << 20) ? 6 : 1;
     std::vector<SphereGrid> grids;
     for (int g = 0; g < grid_count; ++g) grids.emplace_back(grid);
@@ -93,7 +101,8 @@ Spectrum analyse_cube(const BorderedCube& cube, int band_limit, int threads) {
 
     const std::ptrdiff_t stride = grids[0].view().stride;
     parallel_for(3 * rings.batch_count(), threads, [&](int task) {
-        const int batch = task / 3, first = batch * RingAnalysis::k_batch, rows = std::min(RingAnalysis::k_batch, rings.row_count() - first);
+        const int batch = task / 3, first = batch * RingAnalysis::k_batch,
+                  rows = std::min(RingAnalysis::k_batch, rings.row_count() - first);
         const float* from = grids[0].ring(first - RingAnalysis::k_pad);
         if (rows == RingAnalysis::k_batch) return rings.transform(from, stride, 4, batch, task % 3);
         AlignedArray<float> padded(std::size_t(RingAnalysis::k_batch) * stride);
@@ -132,9 +141,12 @@ BrightPoints bright_points(const BorderedCube& cube, const Vec3d& mean, double l
         // The tent spans the cells before and after the texel.
         for (int j = std::max(0, t.y * per_cell); j < std::min((t.y + 2) * per_cell, int(axis.size())); ++j)
             for (int i = std::max(0, t.x * per_cell); i < std::min((t.x + 2) * per_cell, int(axis.size())); ++i) {
-                const auto tent = [](const AxisNode& node, int texel) { return node.cell == texel ? 1 - node.fraction : node.fraction; };
+                const auto tent = [](const AxisNode& node, int texel) {
+                    return node.cell == texel ? 1 - node.fraction : node.fraction;
+                };
                 const double s = axis[i].at, v = axis[j].at, r2 = 1 + s * s + v * v;
-                const double weight = tent(axis[i], t.x) * tent(axis[j], t.y) * axis[i].weight * axis[j].weight / (r2 * std::sqrt(r2));
+                const double weight =
+                    tent(axis[i], t.x) * tent(axis[j], t.y) * axis[i].weight * axis[j].weight / (r2 * std::sqrt(r2));
                 points.add(cube_direction(t.face, {0.5 * (s + 1), 0.5 * (v + 1)}) / std::sqrt(r2), weight, value);
             }
     }

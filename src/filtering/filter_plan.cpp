@@ -15,7 +15,6 @@ constexpr double k_decay = 16.6, k_decay_split = 11;
 constexpr int k_split_degrees = 600;
 constexpr double k_split_exponent = 500;
 
-
 }  // namespace
 
 int required_band_limit(const ZonalKernel& kernel, bool split) {
@@ -23,9 +22,11 @@ int required_band_limit(const ZonalKernel& kernel, bool split) {
         case Lobe::ggx: {
             // The spectrum falls as b l K_1(b l). The clamp at the horizon adds a tail, alpha^2 l^-2.5.
             const double alpha = kernel.width, b = alpha < 1 ? 2 * alpha / std::sqrt(1 - alpha * alpha) : 1e9;
-            return std::clamp(int(std::ceil((split ? k_decay_split : k_decay) / b)), alpha > 0.05 ? k_least_degrees : 64, k_most_degrees);
+            return std::clamp(int(std::ceil((split ? k_decay_split : k_decay) / b)),
+                              alpha > 0.05 ? k_least_degrees : 64, k_most_degrees);
         }
-        case Lobe::charlie: return kernel.width > 0.06 ? 768 : 1024;
+        case Lobe::charlie:
+            return kernel.width > 0.06 ? 768 : 1024;
         default:
             // cos^n ~ e^{-n theta^2 / 2}: the spectrum is e^{-l^2 / 2n}.
             return std::clamp(int(std::ceil(7 * std::sqrt(kernel.width + 1))), k_least_degrees, k_most_degrees);
@@ -34,9 +35,12 @@ int required_band_limit(const ZonalKernel& kernel, bool split) {
 
 bool leaves_residual(const ZonalKernel& kernel) {
     switch (kernel.lobe) {
-        case Lobe::ggx: return kernel.width > 0.1;
-        case Lobe::charlie: return true;
-        default: return kernel.width < 4;
+        case Lobe::ggx:
+            return kernel.width > 0.1;
+        case Lobe::charlie:
+            return true;
+        default:
+            return kernel.width < 4;
     }
 }
 
@@ -44,9 +48,12 @@ namespace {
 
 bool is_narrow(const ZonalKernel& kernel) {
     switch (kernel.lobe) {
-        case Lobe::ggx: return required_band_limit(kernel, false) > k_split_degrees;
-        case Lobe::charlie: return false;
-        default: return kernel.width > k_split_exponent;
+        case Lobe::ggx:
+            return required_band_limit(kernel, false) > k_split_degrees;
+        case Lobe::charlie:
+            return false;
+        default:
+            return kernel.width > k_split_exponent;
     }
 }
 
@@ -65,8 +72,9 @@ FilterPlan make_filter_plan(const FilterOptions& options) {
     for (int l = 0; l < int(options.specular.size()); ++l)
         if (!options.specular[l].mirror) add(l, options.specular[l].kernel);
     if (options.irradiance_size > 0) add(FilterPlan::k_irradiance, ZonalKernel::cosine());
-    std::stable_sort(needs.begin(), needs.end(),
-                     [](const Need& a, const Need& b) { return std::pair(a.narrow, a.band_limit) > std::pair(b.narrow, b.band_limit); });
+    std::stable_sort(needs.begin(), needs.end(), [](const Need& a, const Need& b) {
+        return std::pair(a.narrow, a.band_limit) > std::pair(b.narrow, b.band_limit);
+    });
 
     FilterPlan plan;
     // The interpolation between rows and rings is made for spectra that have fallen off at the band limit: coefficients

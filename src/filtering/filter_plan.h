@@ -1,9 +1,10 @@
 #pragma once
 
-#include <vector>
-
 #include "domelight/prefilter.h"
+
 #include "filtering/ring_grid.h"
+
+#include <vector>
 
 namespace domelight {
 
@@ -20,17 +21,20 @@ struct FilterPlan {
 
     int band_limit = 0;       ///< of the analysis
     int wide_band_limit = 0;  ///< of all levels that are not narrow
-    /// There are narrow levels: what outshines the rest by far is better taken out of a lat-long image before it is expanded (BrightSplit).
+    /// There are narrow levels: what outshines the rest by far is better taken out of a lat-long image before it is
+    /// expanded (BrightSplit).
     bool split = false;
     std::vector<Group> groups;
 };
 
 FilterPlan make_filter_plan(const FilterOptions& options);
 
-/// Degrees that a lobe needs for the accuracy that docs/math/prefilter.md states; fewer where the brightest texels are taken out (`split`).
+/// Degrees that a lobe needs for the accuracy that docs/math/prefilter.md states; fewer where the brightest texels are
+/// taken out (`split`).
 int required_band_limit(const ZonalKernel& kernel, bool split);
 
-/// Whether the clamp at the horizon leaves a tail that a strong sun shows: what is left out is then summed over the brightest texels.
+/// Whether the clamp at the horizon leaves a tail that a strong sun shows: what is left out is then summed over the
+/// brightest texels.
 bool leaves_residual(const ZonalKernel& kernel);
 
 }  // namespace domelight

@@ -1,15 +1,17 @@
 #include "filtering/latitude_reduction.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "domelight/vec.h"
+
 #include "math/gauss_legendre.h"
 #include "math/interpolation_taps.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace domelight {
 
-LatitudeReduction::LatitudeReduction(int image_height, int rings, double band, double decay) : rows_(rings + 2 * k_pad) {
+LatitudeReduction::LatitudeReduction(int image_height, int rings, double band, double decay)
+    : rows_(rings + 2 * k_pad) {
     const InterpolationTaps taps(2 * k_pad, band, decay);
     // Between two knots (image row centres, ring latitudes) both tent and taps are polynomials; sin theta is smooth.
     std::vector<double> knots{0, k_pi};

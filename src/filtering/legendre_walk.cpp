@@ -7,20 +7,32 @@ namespace {
 
 using simd::k_ring_group;
 
-/// A group takes part once a value passes this. Waiting groups are looked at every few degrees, and in so few a value can grow by 1e10.
+/// A group takes part once a value passes this. Waiting groups are looked at every few degrees, and in so few a value
+/// can grow by 1e10.
 constexpr double k_log_negligible = -55;  // 1e-24
 constexpr int k_waiting_steps = 4;
 /// Scaled values are brought down when they pass this.
 constexpr double k_largest = 1e100;
 
-/// The scaled value at which a waiting group must be looked at: it matters now, or it is about to leave the range of doubles.
-double wake_value(double log_scale) { return std::min(std::exp(std::min(k_log_negligible - log_scale, 700.0)), k_largest); }
+/// The scaled value at which a waiting group must be looked at: it matters now, or it is about to leave the range of
+/// doubles.
+double wake_value(double log_scale) {
+    return std::min(std::exp(std::min(k_log_negligible - log_scale, 700.0)), k_largest);
+}
 
 }  // namespace
 
 LegendreWalk::LegendreWalk(const NorthernRings& rings, int band_limit)
-    : rings_(rings), band_limit_(band_limit), log_norm_(band_limit + 1), steps_(band_limit / 2 + 4), p_(rings.padded), p_prev_(rings.padded),
-      rows_(std::size_t(k_chunk) * rings.padded), log_scale_(rings.padded / k_ring_group), wake_(rings.padded / k_ring_group), active_(rings.padded / k_ring_group) {
+    : rings_(rings),
+      band_limit_(band_limit),
+      log_norm_(band_limit + 1),
+      steps_(band_limit / 2 + 4),
+      p_(rings.padded),
+      p_prev_(rings.padded),
+      rows_(std::size_t(k_chunk) * rings.padded),
+      log_scale_(rings.padded / k_ring_group),
+      wake_(rings.padded / k_ring_group),
+      active_(rings.padded / k_ring_group) {
     // P_mm = sqrt((2m + 1) / 4 pi  prod_{k=1}^{m} (2k - 1) / 2k) sin^m theta.
     double log_product = 0;
     for (int m = 0; m <= band_limit; ++m) {
@@ -53,7 +65,8 @@ void LegendreWalk::start(int m, int parity) {
         log_scale_[g] = active_[g] ? 0 : scale;
         wake_[g] = wake_value(scale);
         for (int r = r0; r < r0 + k_ring_group; ++r) {
-            const double p_mm = r < rings_.count ? std::exp(log_norm_[m] + m * rings_.log_sin_theta[r] - log_scale_[g]) : 0;
+            const double p_mm =
+                r < rings_.count ? std::exp(log_norm_[m] + m * rings_.log_sin_theta[r] - log_scale_[g]) : 0;
             p_[r] = parity ? rings_.cos_theta[r] * std::sqrt(2.0 * m + 3) * p_mm : p_mm;
             p_prev_[r] = 0;
         }
@@ -65,13 +78,14 @@ int LegendreWalk::advance(int first, int count) {
     const int groups = rings_.padded / k_ring_group;
     int first_active = groups;
     for (int g = first_possible_; g < groups; ++g) {
-        if (!active_[g]) advance_waiting_group(g, first, count);
+        if (!active_[g])
+            advance_waiting_group(g, first, count);
         else {
             int end = g + 1;
             while (end < groups && active_[end]) ++end;
             const int r = g * k_ring_group;
-            simd::legendre_rows(steps_.data() + first, count, rings_.cos2_theta.data() + r, p_.data() + r, p_prev_.data() + r,
-                                (end - g) * k_ring_group, rows_.data() + r, rings_.padded);
+            simd::legendre_rows(steps_.data() + first, count, rings_.cos2_theta.data() + r, p_.data() + r,
+                                p_prev_.data() + r, (end - g) * k_ring_group, rows_.data() + r, rings_.padded);
             first_active = std::min(first_active, g);
             g = end - 1;
             continue;
@@ -81,18 +95,20 @@ int LegendreWalk::advance(int first, int count) {
     return first_active * k_ring_group;
 }
 
-/// The same for a group whose values are still negligible: only the state moves, at the group's own scale, until one of them is not.
+/// The same for a group whose values are still negligible: only the state moves, at the group's own scale, until one of
+/// them is not.
 void LegendreWalk::advance_waiting_group(int group, int first, int count) {
     const int r0 = group * k_ring_group;
     float* rows = rows_.data() + r0;
     for (int i = 0; i < count; i += k_waiting_steps) {
         const int n = std::min(k_waiting_steps, count - i);
-        simd::legendre_rows(steps_.data() + first + i, n, rings_.cos2_theta.data() + r0, p_.data() + r0, p_prev_.data() + r0, k_ring_group,
-                            rows + std::ptrdiff_t(i) * rings_.padded, rings_.padded);
+        simd::legendre_rows(steps_.data() + first + i, n, rings_.cos2_theta.data() + r0, p_.data() + r0,
+                            p_prev_.data() + r0, k_ring_group, rows + std::ptrdiff_t(i) * rings_.padded, rings_.padded);
         if (active_[group]) continue;
         for (int k = 0; k < n; ++k) std::fill_n(rows + std::ptrdiff_t(i + k) * rings_.padded, k_ring_group, 0.f);
         double largest = 0;
-        for (int r = r0; r < r0 + k_ring_group; ++r) largest = std::max({largest, std::abs(p_[r]), std::abs(p_prev_[r])});
+        for (int r = r0; r < r0 + k_ring_group; ++r)
+            largest = std::max({largest, std::abs(p_[r]), std::abs(p_prev_[r])});
         if (largest < wake_[group]) continue;
         double& scale = log_scale_[group];
         const bool matters = scale + std::log(largest) > k_log_negligible;

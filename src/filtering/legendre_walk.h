@@ -1,11 +1,11 @@
 #pragma once
 
+#include "filtering/ring_grid.h"
+#include "simd/legendre_kernels.h"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
-
-#include "filtering/ring_grid.h"
-#include "simd/legendre_kernels.h"
 
 namespace domelight {
 
@@ -15,8 +15,8 @@ namespace domelight {
 ///
 /// From x P_l = e_{l+1} P_{l+1} + e_l P_{l-1}, e_l = sqrt((l^2 - m^2) / (4 l^2 - 1)), applied twice:
 ///   P_{l+2} = ((x^2 - e_{l+1}^2 - e_l^2) P_l - e_l e_{l-1} P_{l-2}) / (e_{l+1} e_{l+2}).
-/// It runs in double, which needs no special forms near the poles or the equator. P_mm ~ sin^m theta leaves even the range of doubles, so a group
-/// of rings starts with its own scale and takes part only once its values can matter.
+/// It runs in double, which needs no special forms near the poles or the equator. P_mm ~ sin^m theta leaves even the
+/// range of doubles, so a group of rings starts with its own scale and takes part only once its values can matter.
 class LegendreWalk {
   public:
     /// Degrees handed over at once.
@@ -24,14 +24,15 @@ class LegendreWalk {
 
     LegendreWalk(const NorthernRings& rings, int band_limit);
 
-    /// Degrees of this order and parity, rounded up to an even number (the kernels take pairs; what is above the band limit is to be ignored or zero).
+    /// Degrees of this order and parity, rounded up to an even number (the kernels take pairs; what is above the band
+    /// limit is to be ignored or zero).
     static int padded_count(int band_limit, int m, int parity) {
         const int count = band_limit - m - parity >= 0 ? (band_limit - m - parity) / 2 + 1 : 0;
         return count + count % 2;
     }
 
-    /// Calls visit(first, count, first_ring, p): p[i * padded + ring] holds P_l, l = m + parity + 2 (first + i), for i < count and rings from
-    /// first_ring on; on rings before it they are below 1e-13.
+    /// Calls visit(first, count, first_ring, p): p[i * padded + ring] holds P_l, l = m + parity + 2 (first + i), for i
+    /// < count and rings from first_ring on; on rings before it they are below 1e-13.
     template <typename Visit>
     void walk(int m, int parity, const Visit& visit) {
         start(m, parity);

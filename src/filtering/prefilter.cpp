@@ -1,10 +1,8 @@
 #include "domelight/prefilter.h"
 
-#include <cmath>
-#include <memory>
-
 #include "domelight/area_resample.h"
 #include "domelight/parallel.h"
+
 #include "filtering/bright_texels.h"
 #include "filtering/cube_analysis.h"
 #include "filtering/filter_plan.h"
@@ -12,6 +10,9 @@
 #include "filtering/sh_analysis.h"
 #include "filtering/sh_synthesis.h"
 #include "filtering/spectrum_evaluate.h"
+
+#include <cmath>
+#include <memory>
 
 namespace domelight {
 namespace {
@@ -26,9 +27,10 @@ std::vector<std::unique_ptr<AreaResampler>> make_mirrors(const FilterOptions& op
     for (std::size_t l = 0; l < mirrors.size(); ++l) {
         const LevelSpec& level = options.specular[l];
         if (!level.mirror) continue;
-        mirrors[l] = options.layout == Layout::cube
-                         ? area_resample_to_cube(width, height, level.size, options.world_to_source, options.threads)
-                         : area_resample_to_latlong(width, height, level.size, options.world_to_source, options.threads);
+        mirrors[l] =
+            options.layout == Layout::cube
+                ? area_resample_to_cube(width, height, level.size, options.world_to_source, options.threads)
+                : area_resample_to_latlong(width, height, level.size, options.world_to_source, options.threads);
     }
     return mirrors;
 }
@@ -45,7 +47,9 @@ FilteredMap as_map(Layout layout, ImageF image) {
 
 Vec3d mean_radiance(const Spectrum& spectrum) {
     const double y00 = 1 / std::sqrt(4 * k_pi);
-    return Vec3d{spectrum.coefficient(0, 0, 0).real(), spectrum.coefficient(0, 0, 1).real(), spectrum.coefficient(0, 0, 2).real()} * y00;
+    return Vec3d{spectrum.coefficient(0, 0, 0).real(), spectrum.coefficient(0, 0, 1).real(),
+                 spectrum.coefficient(0, 0, 2).real()} *
+           y00;
 }
 
 /// Makes the levels of a plan, group by group.
@@ -55,9 +59,14 @@ class Synthesis {
     using Bright = std::function<BrightPoints(int band_limit)>;
 
     /// `narrow`: the spectrum for narrow lobes, without what `split` holds; null where nothing was taken out.
-    Synthesis(const Spectrum& spectrum, const Spectrum* narrow, const BrightSplit* split, Bright bright, const FilterOptions& options,
-              FilterResult& result)
-        : spectrum_(spectrum), narrow_(narrow), split_(split), bright_(std::move(bright)), options_(options), result_(result) {}
+    Synthesis(const Spectrum& spectrum, const Spectrum* narrow, const BrightSplit* split, Bright bright,
+              const FilterOptions& options, FilterResult& result)
+        : spectrum_(spectrum),
+          narrow_(narrow),
+          split_(split),
+          bright_(std::move(bright)),
+          options_(options),
+          result_(result) {}
 
     Result<void> run(const FilterPlan& plan) {
         for (const FilterPlan::Group& group : plan.groups) {
@@ -67,14 +76,17 @@ class Synthesis {
                 const std::span levels(group.levels.data() + from, std::min(at_once, group.levels.size() - from));
                 synthesise(group, levels);
                 done_ += levels.size();
-                if (options_.progress && !options_.progress("filter", double(done_) / (options_.specular.size() + 1))) return k_cancelled;
+                if (options_.progress && !options_.progress("filter", double(done_) / (options_.specular.size() + 1)))
+                    return k_cancelled;
             }
         }
         return {};
     }
 
   private:
-    ZonalKernel kernel(int level) const { return level == FilterPlan::k_irradiance ? ZonalKernel::cosine() : options_.specular[level].kernel; }
+    ZonalKernel kernel(int level) const {
+        return level == FilterPlan::k_irradiance ? ZonalKernel::cosine() : options_.specular[level].kernel;
+    }
 
     void synthesise(const FilterPlan::Group& group, std::span<const int> levels) {
         std::vector<ZonalKernel> kernels;
@@ -84,7 +96,8 @@ class Synthesis {
             residual |= leaves_residual(kernels.back());
         }
         std::vector<std::vector<double>> factors(levels.size());
-        parallel_for(int(levels.size()), options_.threads, [&](int i) { factors[i] = kernels[i].coefficients(group.band_limit); });
+        parallel_for(int(levels.size()), options_.threads,
+                     [&](int i) { factors[i] = kernels[i].coefficients(group.band_limit); });
         const bool split = group.narrow && narrow_;
         const auto grids = sh_synthesis(split ? *narrow_ : spectrum_, factors, group.grid, options_.threads);
         BrightPoints points;
@@ -94,7 +107,13 @@ class Synthesis {
             if (points.count() > 0) tables = std::make_unique<ResidualKernels>(kernels, factors, options_.threads);
         }
         for (std::size_t i = 0; i < levels.size(); ++i) {
-            LookupOptions lookup{double(group.band_limit) / group.grid.rings, options_.world_to_source, options_.threads, nullptr, {}, nullptr, {}};
+            LookupOptions lookup{double(group.band_limit) / group.grid.rings,
+                                 options_.world_to_source,
+                                 options_.threads,
+                                 nullptr,
+                                 {},
+                                 nullptr,
+                                 {}};
             if (tables && leaves_residual(kernels[i])) lookup.bright = &points, lookup.residual = tables->table(int(i));
             BrightSplit::Lights lights;
             const DirectKernelTable direct(kernels[i]);
@@ -105,8 +124,10 @@ class Synthesis {
             const bool irradiance = levels[i] == FilterPlan::k_irradiance;
             const int size = irradiance ? options_.irradiance_size : options_.specular[levels[i]].size;
             FilteredMap& map = irradiance ? result_.irradiance_over_pi : result_.specular[levels[i]];
-            if (options_.layout == Layout::cube) map.cube = grid_to_cube(grids[i], size, lookup, result_.clamped);
-            else map.latlong = grid_to_latlong(grids[i], size, lookup, result_.clamped);
+            if (options_.layout == Layout::cube)
+                map.cube = grid_to_cube(grids[i], size, lookup, result_.clamped);
+            else
+                map.latlong = grid_to_latlong(grids[i], size, lookup, result_.clamped);
         }
     }
 
@@ -120,11 +141,13 @@ class Synthesis {
 };
 
 /// Everything that follows from the spectrum.
-Result<void> finish(const Spectrum& spectrum, const Spectrum* narrow, const BrightSplit* split, Synthesis::Bright bright, const FilterPlan& plan,
-                    const FilterOptions& options, FilterResult& result) {
+Result<void> finish(const Spectrum& spectrum, const Spectrum* narrow, const BrightSplit* split,
+                    Synthesis::Bright bright, const FilterPlan& plan, const FilterOptions& options,
+                    FilterResult& result) {
     result.band_limit = plan.band_limit;
     result.mean = mean_radiance(spectrum);
-    if (auto done = Synthesis(spectrum, narrow, split, std::move(bright), options, result).run(plan); !done) return done;
+    if (auto done = Synthesis(spectrum, narrow, split, std::move(bright), options, result).run(plan); !done)
+        return done;
     if (options.sh_bands > 0) result.sh = spectrum_to_sh(spectrum, options.sh_bands, options.world_to_source);
     return {};
 }
@@ -185,8 +208,10 @@ Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& optio
         const LevelSpec& level = options.specular[l];
         if (!level.mirror) continue;
         FilteredMap& map = result.specular[l];
-        if (options.layout == Layout::cube) map.cube = area_resample_cube(source, level.size, options.world_to_source, options.threads);
-        else map.latlong = area_resample_cube_to_latlong(source, level.size, options.world_to_source, options.threads);
+        if (options.layout == Layout::cube)
+            map.cube = area_resample_cube(source, level.size, options.world_to_source, options.threads);
+        else
+            map.latlong = area_resample_cube_to_latlong(source, level.size, options.world_to_source, options.threads);
     }
     if (options.progress && !options.progress("read", 1)) return k_cancelled;
     const BorderedCube cube(source);

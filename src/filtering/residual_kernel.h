@@ -1,14 +1,16 @@
 #pragma once
 
+#include "domelight/zonal_kernel.h"
+
+#include "simd/zonal_sum.h"
+
 #include <span>
 #include <vector>
 
-#include "domelight/zonal_kernel.h"
-#include "simd/zonal_sum.h"
-
 namespace domelight {
 
-/// What truncation at a band limit L leaves out of kernels: K(theta) - sum_{l <= L} (2l + 1) / 4 pi k_l P_l(cos theta), as tables over theta.
+/// What truncation at a band limit L leaves out of kernels: K(theta) - sum_{l <= L} (2l + 1) / 4 pi k_l P_l(cos theta),
+/// as tables over theta.
 class ResidualKernels {
   public:
     /// factors[i]: coefficients k_0..k_L of kernels[i].

@@ -1,17 +1,24 @@
 #include "filtering/ring_analysis.h"
 
-#include <algorithm>
-
 #include "domelight/parallel.h"
+
 #include "simd/row_kernels.h"
+
+#include <algorithm>
 
 namespace domelight {
 
 RingAnalysis::RingAnalysis(int width, int band_limit, std::vector<std::complex<double>> order_factors)
-    : width_(width), band_limit_(band_limit), grid_(ring_grid_for(band_limit)), fft_(width), order_factors_(std::move(order_factors)),
-      stride_(batch_count() * k_batch), rings_(std::size_t(band_limit + 1) * 6 * stride_, false) {}
+    : width_(width),
+      band_limit_(band_limit),
+      grid_(ring_grid_for(band_limit)),
+      fft_(width),
+      order_factors_(std::move(order_factors)),
+      stride_(batch_count() * k_batch),
+      rings_(std::size_t(band_limit + 1) * 6 * stride_, false) {}
 
-/// Two real rows a lane, as real and imaginary part: X = A + iB gives A_m = (X_m + conj X_-m) / 2, B_m = (X_m - conj X_-m) / 2i.
+/// Two real rows a lane, as real and imaginary part: X = A + iB gives A_m = (X_m + conj X_-m) / 2, B_m = (X_m - conj
+/// X_-m) / 2i.
 void RingAnalysis::transform(const float* rows, std::ptrdiff_t stride, int texel, int batch, int channel) {
     AlignedArray<float> data(std::size_t(width_) * k_batch, false);
     simd::gather_fft_rows(rows + channel, stride, texel, width_, data.data());
@@ -24,7 +31,8 @@ void RingAnalysis::transform(const float* rows, std::ptrdiff_t stride, int texel
         float* im = re + stride_;
         const float c = float(0.5 * order_factors_[m].real()), s = float(0.5 * order_factors_[m].imag());
         for (int i = 0; i < simd::k_fft_lanes; ++i) {
-            const float pr = plus[i], pi = plus[i + simd::k_fft_lanes], mr = minus[i], mi = minus[i + simd::k_fft_lanes];
+            const float pr = plus[i], pi = plus[i + simd::k_fft_lanes], mr = minus[i],
+                        mi = minus[i + simd::k_fft_lanes];
             const float ar = pr + mr, ai = pi - mi, br = pi + mi, bi = mr - pr;
             re[i] = ar * c - ai * s;
             im[i] = ar * s + ai * c;
@@ -60,7 +68,8 @@ Spectrum RingAnalysis::finish(int threads) {
                     ring[k] += turned * ring[-1 - k];
                     ring[rings - 1 - k] += turned * ring[rings + k];
                 }
-                float *even = even_odd.data() + std::size_t(c) * north.padded, *odd = even + 6 * std::size_t(north.padded);
+                float *even = even_odd.data() + std::size_t(c) * north.padded,
+                      *odd = even + 6 * std::size_t(north.padded);
                 for (int k = 0; k < north.count; ++k) {
                     even[k] = ring[k] + ring[rings - 1 - k];
                     odd[k] = ring[k] - ring[rings - 1 - k];
@@ -70,10 +79,11 @@ Spectrum RingAnalysis::finish(int threads) {
                 float* block = spectrum.block(m, parity);
                 const float* data = even_odd.data() + std::size_t(parity) * 6 * north.padded;
                 walk.walk(m, parity, [&](int first, int count, int first_ring, const float* p) {
-                    simd::project_rows(p + first_ring, north.padded, count, data + first_ring, north.padded, north.padded - first_ring,
-                                       block + 6 * first);
+                    simd::project_rows(p + first_ring, north.padded, count, data + first_ring, north.padded,
+                                       north.padded - first_ring, block + 6 * first);
                 });
-                if (const int count = spectrum.block_count(m, parity); count > 0 && m + parity + 2 * (count - 1) > band_limit_)
+                if (const int count = spectrum.block_count(m, parity);
+                    count > 0 && m + parity + 2 * (count - 1) > band_limit_)
                     std::fill_n(block + 6 * (count - 1), 6, 0.f);
             }
         }

@@ -1,10 +1,11 @@
 #include "filtering/ring_grid.h"
 
+#include "domelight/vec.h"
+
+#include "simd/legendre_kernels.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "domelight/vec.h"
-#include "simd/legendre_kernels.h"
 
 namespace domelight {
 
@@ -21,8 +22,12 @@ RingGrid ring_grid_for(int band_limit) {
 }
 
 NorthernRings::NorthernRings(int rings)
-    : count(rings / 2), padded((count + simd::k_ring_group - 1) / simd::k_ring_group * simd::k_ring_group), cos_theta(padded),
-      sin_theta(padded), cos2_theta(padded), log_sin_theta(padded) {
+    : count(rings / 2),
+      padded((count + simd::k_ring_group - 1) / simd::k_ring_group * simd::k_ring_group),
+      cos_theta(padded),
+      sin_theta(padded),
+      cos2_theta(padded),
+      log_sin_theta(padded) {
     for (int k = 0; k < padded; ++k) {
         const double theta = k < count ? k_pi * (k + 0.5) / rings : k_pi / 2;
         cos_theta[k] = k < count ? std::cos(theta) : 0;

@@ -1,11 +1,12 @@
 #include "filtering/sh_analysis.h"
 
-#include <algorithm>
-#include <cassert>
-
 #include "domelight/parallel.h"
 #include "domelight/vec.h"
+
 #include "simd/row_kernels.h"
+
+#include <algorithm>
+#include <cassert>
 
 namespace domelight {
 namespace {
@@ -29,7 +30,10 @@ std::vector<std::complex<double>> tent_factors(int width, int band_limit) {
 }  // namespace
 
 ShAnalysis::ShAnalysis(int width, int height, int band_limit, int threads)
-    : width_(width), height_(height), threads_(threads), rings_(width, band_limit, tent_factors(width, band_limit)),
+    : width_(width),
+      height_(height),
+      threads_(threads),
+      rings_(width, band_limit, tent_factors(width, band_limit)),
       reduction_(height, rings_.grid().rings, double(band_limit) / rings_.grid().rings, k_decay) {}
 
 void ShAnalysis::add_rows(ImageView<const float> rows) {
@@ -53,13 +57,14 @@ void ShAnalysis::add_rows(ImageView<const float> rows) {
     const int columns = 3 * width_;
     parallel_ranges(columns, tile, threads_, [&](int begin, int stop) {
         for (float* batch : fresh)
-            for (int row = 0; row < k_batch; ++row) std::fill(batch + row * columns + begin, batch + row * columns + stop, 0.f);
+            for (int row = 0; row < k_batch; ++row)
+                std::fill(batch + row * columns + begin, batch + row * columns + stop, 0.f);
         for (int k : touched) {
             const auto& row = reduction_.row(k);
             const int from = std::max(row.first, first), to = std::min(row.end(), end);
             float* sum = open_.find(k / k_batch)->second.data() + std::size_t(k % k_batch) * std::size_t(columns);
-            simd::add_weighted_rows(rows.row(from - first) + begin, rows.stride, row.weights.data() + (from - row.first), to - from, sum + begin,
-                                    stop - begin);
+            simd::add_weighted_rows(rows.row(from - first) + begin, rows.stride,
+                                    row.weights.data() + (from - row.first), to - from, sum + begin, stop - begin);
         }
     });
     next_row_ = end;
@@ -71,7 +76,8 @@ void ShAnalysis::transform_finished(int next_row) {
     int end = next_batch_;
     for (; end < rings_.batch_count(); ++end) {
         bool finished = true;
-        for (int k = end * k_batch; k < std::min((end + 1) * k_batch, reduction_.count()); ++k) finished &= reduction_.row(k).end() <= next_row;
+        for (int k = end * k_batch; k < std::min((end + 1) * k_batch, reduction_.count()); ++k)
+            finished &= reduction_.row(k).end() <= next_row;
         if (!finished) break;
     }
     const int first = next_batch_;
@@ -80,7 +86,8 @@ void ShAnalysis::transform_finished(int next_row) {
     parallel_for(3 * (end - first), threads_, [&](int task) {
         const int index = first + task / 3;
         const auto batch = open_.find(index);
-        if (batch != open_.end()) rings_.transform(batch->second.data(), 3 * std::ptrdiff_t(width_), 3, index, task % 3);
+        if (batch != open_.end())
+            rings_.transform(batch->second.data(), 3 * std::ptrdiff_t(width_), 3, index, task % 3);
     });
     for (int index = first; index < end; ++index)
         if (const auto batch = open_.find(index); batch != open_.end()) {

@@ -1,17 +1,18 @@
 #pragma once
 
-#include <map>
-#include <span>
-
 #include "domelight/image.h"
+
 #include "filtering/latitude_reduction.h"
 #include "filtering/ring_analysis.h"
 
+#include <map>
+#include <span>
+
 namespace domelight {
 
-/// Spherical-harmonic coefficients of a lat-long image's bilinear reconstruction, from rows handed in from the top down. Along a row the
-/// reconstruction's Fourier coefficients are the texels' times sinc^2(m / W), for every m (beyond W / 2 too: the alias orders that the tent lets
-/// through); across rows LatitudeReduction integrates it.
+/// Spherical-harmonic coefficients of a lat-long image's bilinear reconstruction, from rows handed in from the top
+/// down. Along a row the reconstruction's Fourier coefficients are the texels' times sinc^2(m / W), for every m (beyond
+/// W / 2 too: the alias orders that the tent lets through); across rows LatitudeReduction integrates it.
 ///
 /// Holds (band limit) x (rings) coefficients and the few rows in flight, never the image.
 class ShAnalysis {

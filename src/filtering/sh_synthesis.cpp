@@ -1,14 +1,17 @@
 #include "filtering/sh_synthesis.h"
 
 #include "domelight/parallel.h"
+
 #include "simd/batch_fft.h"
 
 namespace domelight {
 namespace {
 
-/// Fourier coefficients of the rings of one function: [m][north | south][channel, re | im][ring], rings counted from the poles.
+/// Fourier coefficients of the rings of one function: [m][north | south][channel, re | im][ring], rings counted from
+/// the poles.
 struct RingSpectra {
-    RingSpectra(int band_limit, const NorthernRings& north) : stride(north.padded), values(std::size_t(band_limit + 1) * 12 * north.padded, false) {}
+    RingSpectra(int band_limit, const NorthernRings& north)
+        : stride(north.padded), values(std::size_t(band_limit + 1) * 12 * north.padded, false) {}
     float* order(int m) { return values.data() + std::size_t(m) * 12 * stride; }
     const float* order(int m) const { return values.data() + std::size_t(m) * 12 * stride; }
     std::ptrdiff_t stride;
@@ -16,8 +19,8 @@ struct RingSpectra {
 };
 
 /// sum_l k_l a_lm P_lm on the northern rings by parity; the southern ones have the odd part's sign turned.
-void sum_degrees(const Spectrum& spectrum, std::span<const std::vector<double>> factors, const NorthernRings& north, LegendreWalk& walk, int m,
-                 std::vector<RingSpectra>& out) {
+void sum_degrees(const Spectrum& spectrum, std::span<const std::vector<double>> factors, const NorthernRings& north,
+                 LegendreWalk& walk, int m, std::vector<RingSpectra>& out) {
     const int band_limit = int(factors[0].size()) - 1;
     const std::size_t half = 6 * std::size_t(north.padded);
     for (auto& spectra : out) std::fill_n(spectra.order(m), 2 * half, 0.f);
@@ -28,11 +31,13 @@ void sum_degrees(const Spectrum& spectrum, std::span<const std::vector<double>> 
         scaled.assign(factors.size() * 6 * count, 0.f);
         for (std::size_t f = 0; f < factors.size(); ++f)
             for (int i = 0; i < count && m + parity + 2 * i <= band_limit; ++i)
-                for (int c = 0; c < 6; ++c) scaled[(f * count + i) * 6 + c] = float(factors[f][m + parity + 2 * i]) * a[6 * i + c];
+                for (int c = 0; c < 6; ++c)
+                    scaled[(f * count + i) * 6 + c] = float(factors[f][m + parity + 2 * i]) * a[6 * i + c];
         walk.walk(m, parity, [&](int first, int n, int first_ring, const float* p) {
             for (std::size_t f = 0; f < factors.size(); ++f)
-                simd::expand_rows(p + first_ring, north.padded, n, scaled.data() + (f * count + first) * 6, north.padded - first_ring,
-                                  out[f].order(m) + parity * half + first_ring, north.padded);
+                simd::expand_rows(p + first_ring, north.padded, n, scaled.data() + (f * count + first) * 6,
+                                  north.padded - first_ring, out[f].order(m) + parity * half + first_ring,
+                                  north.padded);
         });
     }
     for (auto& spectra : out) {
@@ -45,10 +50,10 @@ void sum_degrees(const Spectrum& spectrum, std::span<const std::vector<double>> 
     }
 }
 
-/// Rings first .. first + 15 of the north and their mirrors: one channel's inverse transform. The north's real values travel as the real part, the
-/// south's as the imaginary one: Z_m = N_m + i S_m, Z_-m = conj N_m + i conj S_m.
-void transform_rings(const RingSpectra& spectra, int band_limit, const simd::BatchFft& fft, int first, int channel, int north_count,
-                     AlignedArray<float>& data, SphereGrid& grid) {
+/// Rings first .. first + 15 of the north and their mirrors: one channel's inverse transform. The north's real values
+/// travel as the real part, the south's as the imaginary one: Z_m = N_m + i S_m, Z_-m = conj N_m + i conj S_m.
+void transform_rings(const RingSpectra& spectra, int band_limit, const simd::BatchFft& fft, int first, int channel,
+                     int north_count, AlignedArray<float>& data, SphereGrid& grid) {
     constexpr int lanes = simd::k_fft_lanes;
     const int width = fft.size();
     data.fill_zero();
@@ -80,7 +85,8 @@ void transform_rings(const RingSpectra& spectra, int band_limit, const simd::Bat
 
 }  // namespace
 
-std::vector<SphereGrid> sh_synthesis(const Spectrum& spectrum, std::span<const std::vector<double>> factors, RingGrid grid, int threads) {
+std::vector<SphereGrid> sh_synthesis(const Spectrum& spectrum, std::span<const std::vector<double>> factors,
+                                     RingGrid grid, int threads) {
     const int band_limit = int(factors[0].size()) - 1;
     const NorthernRings north(grid.rings);
     std::vector<RingSpectra> spectra;
@@ -98,7 +104,8 @@ std::vector<SphereGrid> sh_synthesis(const Spectrum& spectrum, std::span<const s
     parallel_for(int(factors.size()) * groups, threads, [&](int task) {
         const int f = task / groups, first = task % groups * simd::k_fft_lanes;
         AlignedArray<float> data(std::size_t(grid.width) * 2 * simd::k_fft_lanes, false);
-        for (int channel = 0; channel < 3; ++channel) transform_rings(spectra[f], band_limit, fft, first, channel, north.count, data, grids[f]);
+        for (int channel = 0; channel < 3; ++channel)
+            transform_rings(spectra[f], band_limit, fft, first, channel, north.count, data, grids[f]);
     });
     for (SphereGrid& g : grids) g.wrap();
     return grids;

@@ -1,18 +1,19 @@
 #pragma once
 
-#include <algorithm>
-#include <complex>
-
 #include "core/aligned.h"
 #include "filtering/legendre_walk.h"
 
+#include <algorithm>
+#include <complex>
+
 namespace domelight {
 
-/// Spherical-harmonic coefficients a_lm, m >= 0, of an RGB function on the sphere up to a band limit, in the source's frame: polar axis +Y,
-/// azimuth from +X towards +Z, orthonormal Y_lm = P_lm(cos theta) e^{i m phi} without the Condon-Shortley sign. The function is real:
-/// a_{l,-m} = conj(a_lm).
+/// Spherical-harmonic coefficients a_lm, m >= 0, of an RGB function on the sphere up to a band limit, in the source's
+/// frame: polar axis +Y, azimuth from +X towards +Z, orthonormal Y_lm = P_lm(cos theta) e^{i m phi} without the
+/// Condon-Shortley sign. The function is real: a_{l,-m} = conj(a_lm).
 ///
-/// Stored by m, then parity of l - m, then degree: six floats (re, im of R, G, B) each, in pairs of degrees as the kernels take them.
+/// Stored by m, then parity of l - m, then degree: six floats (re, im of R, G, B) each, in pairs of degrees as the
+/// kernels take them.
 class Spectrum {
   public:
     Spectrum() = default;

@@ -1,15 +1,18 @@
 #include "filtering/spectrum_evaluate.h"
 
+#include "domelight/spherical_harmonics.h"
+
+#include "math/gauss_legendre.h"
+
 #include <cmath>
 #include <complex>
 
-#include "domelight/spherical_harmonics.h"
-#include "math/gauss_legendre.h"
-
 namespace domelight {
 
-Vec3d evaluate_spectrum(const Spectrum& spectrum, const Vec3d& direction, int band_limit, const std::vector<double>& factors) {
-    const double sine = std::hypot(direction.x, direction.z), norm = std::hypot(sine, direction.y), x = direction.y / norm, s = sine / norm;
+Vec3d evaluate_spectrum(const Spectrum& spectrum, const Vec3d& direction, int band_limit,
+                        const std::vector<double>& factors) {
+    const double sine = std::hypot(direction.x, direction.z), norm = std::hypot(sine, direction.y),
+                 x = direction.y / norm, s = sine / norm;
     const double phi = std::atan2(direction.z, direction.x);
     double sum[3] = {};
     double p_mm = std::sqrt(1 / (4 * k_pi));
@@ -21,7 +24,8 @@ Vec3d evaluate_spectrum(const Spectrum& spectrum, const Vec3d& direction, int ba
         for (int l = m; l <= band_limit; ++l) {
             const double k = factors.empty() ? 1 : factors[l];
             for (int c = 0; c < 3; ++c) sum[c] += k * p * (spectrum.coefficient(l, m, c) * turn).real();
-            const double above = l + 1.0, e_above = std::sqrt((above * above - double(m) * m) / (4 * above * above - 1));
+            const double above = l + 1.0,
+                         e_above = std::sqrt((above * above - double(m) * m) / (4 * above * above - 1));
             const double next = (x * p - e * p_prev) / e_above;
             p_prev = p;
             p = next;
@@ -32,8 +36,9 @@ Vec3d evaluate_spectrum(const Spectrum& spectrum, const Vec3d& direction, int ba
 }
 
 std::vector<Vec3d> spectrum_to_sh(const Spectrum& spectrum, int bands, const Mat3& world_to_source) {
-    // A turn mixes the orders of a degree but not the degrees. So: the truncated function, integrated against the world's basis by a rule that is
-    // exact for products of two such functions (Gauss-Legendre in z, equal steps in azimuth).
+    // A turn mixes the orders of a degree but not the degrees. So: the truncated function, integrated against the
+    // world's basis by a rule that is exact for products of two such functions (Gauss-Legendre in z, equal steps in
+    // azimuth).
     std::vector<Vec3d> out(bands * bands);
     std::vector<double> basis(bands * bands);
     const auto& rule = gauss_legendre(bands);
@@ -42,7 +47,8 @@ std::vector<Vec3d> spectrum_to_sh(const Spectrum& spectrum, int bands, const Mat
         for (int j = 0; j < azimuths; ++j) {
             const double z = rule.x[i], r = std::sqrt(1 - z * z), phi = 2 * k_pi * (j + 0.5) / azimuths;
             const Vec3d d{r * std::cos(phi), r * std::sin(phi), z};
-            const Vec3d value = evaluate_spectrum(spectrum, world_to_source * d, bands - 1) * (rule.w[i] * 2 * k_pi / azimuths);
+            const Vec3d value =
+                evaluate_spectrum(spectrum, world_to_source * d, bands - 1) * (rule.w[i] * 2 * k_pi / azimuths);
             sh_basis(d, bands, basis);
             for (int k = 0; k < bands * bands; ++k) out[k] = out[k] + value * basis[k];
         }

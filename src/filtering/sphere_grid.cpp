@@ -82,12 +82,14 @@ class RowLookup {
             std::vector<float> unit(3 * std::size_t(n));
             float *x = unit.data(), *y = x + n, *z = y + n;
             for (int i = 0; i < n; ++i) {
-                const double dx = r.x()[i], dy = r.y()[i], dz = r.z()[i], scale = 1 / std::sqrt(dx * dx + dy * dy + dz * dz);
+                const double dx = r.x()[i], dy = r.y()[i], dz = r.z()[i],
+                             scale = 1 / std::sqrt(dx * dx + dy * dy + dz * dz);
                 x[i] = float(dx * scale), y[i] = float(dy * scale), z[i] = float(dz * scale);
             }
             if (options_.bright) simd::add_zonal_sum(options_.bright->view(), options_.residual, x, y, z, n, rgb);
             if (const auto* lights = options_.lights)
-                simd::add_direct_lights(lights->nodes.data(), int(lights->nodes.size()), lights->points.view(), options_.kernel, x, y, z, n, rgb);
+                simd::add_direct_lights(lights->nodes.data(), int(lights->nodes.size()), lights->points.view(),
+                                        options_.kernel, x, y, z, n, rgb);
         }
         return clamp_texels(rgb, r.count);
     }
@@ -142,7 +144,8 @@ Cubemap grid_to_cube(const SphereGrid& grid, int size, const LookupOptions& opti
         for (int x = 0; x < size; ++x) row[x] = cube_direction(face, {(x + 0.5) / size, (y + 0.5) / size});
         return row;
     };
-    // Where the source's pole is the world's, the side faces are turns of one another: by +90 degrees from one to the next, unless it is mirrored.
+    // Where the source's pole is the world's, the side faces are turns of one another: by +90 degrees from one to the
+    // next, unless it is mirrored.
     constexpr int sides[4] = {0, 4, 1, 5}, poles[2] = {2, 3};
     const auto& m = options.world_to_source.row;
     const bool turns = m[1] == Vec3d{0, 1, 0} && cross(m[2], m[0]).y > 0 && grid.grid().width % 4 == 0;

@@ -1,17 +1,19 @@
 #pragma once
 
-#include <cstdint>
-
-#include "core/aligned.h"
 #include "domelight/image.h"
 #include "domelight/vec.h"
+
+#include "core/aligned.h"
 #include "filtering/bright_split.h"
 #include "filtering/ring_grid.h"
 #include "simd/grid_lookup.h"
 
+#include <cstdint>
+
 namespace domelight {
 
-/// A band-limited RGB function on the rings of a grid, with the surroundings (wrapped columns, rings beyond the poles) that interpolation reads.
+/// A band-limited RGB function on the rings of a grid, with the surroundings (wrapped columns, rings beyond the poles)
+/// that interpolation reads.
 class SphereGrid {
   public:
     static constexpr int k_pad = 4;
@@ -44,8 +46,8 @@ struct LookupOptions {
     simd::DirectKernel kernel{};
 };
 
-/// The grid's function at the texel centres of a cube or lat-long image. Negative values, which only truncation makes, become 0; the number of
-/// texels that had one is added to `clamped`.
+/// The grid's function at the texel centres of a cube or lat-long image. Negative values, which only truncation makes,
+/// become 0; the number of texels that had one is added to `clamped`.
 Cubemap grid_to_cube(const SphereGrid& grid, int size, const LookupOptions& options, std::int64_t& clamped);
 ImageF grid_to_latlong(const SphereGrid& grid, int height, const LookupOptions& options, std::int64_t& clamped);
 

@@ -1,8 +1,8 @@
 #include "filtering/tent_nodes.h"
 
-#include <cmath>
-
 #include "math/gauss_legendre.h"
+
+#include <cmath>
 
 namespace domelight {
 
@@ -16,9 +16,12 @@ void add_tent_nodes(BrightPoints& points, int width, int height, int x, int y, c
             for (int i = 0; i < nodes; ++i)
                 for (int j = 0; j < nodes; ++j) {
                     const double a = 0.5 * (1 + rule.x[i]), b = 0.5 * (1 + rule.x[j]);
-                    const double theta = step_theta * (y + 0.5) + down * a * length, phi = step_phi * (x + 0.5) - k_pi + right * b * step_phi;
-                    const double weight = (cap ? 1 : 1 - a) * (1 - b) * std::sin(theta) * 0.25 * rule.w[i] * rule.w[j] * length * step_phi;
-                    points.add({std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)}, weight, rgb);
+                    const double theta = step_theta * (y + 0.5) + down * a * length,
+                                 phi = step_phi * (x + 0.5) - k_pi + right * b * step_phi;
+                    const double weight = (cap ? 1 : 1 - a) * (1 - b) * std::sin(theta) * 0.25 * rule.w[i] * rule.w[j] *
+                                          length * step_phi;
+                    points.add({std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)},
+                               weight, rgb);
                 }
         }
 }

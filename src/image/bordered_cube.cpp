@@ -1,14 +1,16 @@
 #include "image/bordered_cube.h"
 
-#include <algorithm>
-
 #include "domelight/projection.h"
+
+#include <algorithm>
 
 namespace domelight {
 
-BorderedCube::BorderedCube(const Cubemap& source) : size_(source.size()), texels_(std::size_t(18) * (size_ + 2) * (size_ + 2)) {
+BorderedCube::BorderedCube(const Cubemap& source)
+    : size_(source.size()), texels_(std::size_t(18) * (size_ + 2) * (size_ + 2)) {
     const int n = size_;
-    // The texel across the edge from texel (x, y), one step outside: a step's thousandth outside the edge is already on the neighbour.
+    // The texel across the edge from texel (x, y), one step outside: a step's thousandth outside the edge is already on
+    // the neighbour.
     const auto across = [&](int f, int x, int y) {
         const auto coordinate = [&](int i) { return std::clamp((i + 0.5) / n, -1e-3 / n, 1 + 1e-3 / n); };
         const CubePoint p = cube_point(cube_direction(f, {coordinate(x), coordinate(y)}));
@@ -26,7 +28,9 @@ BorderedCube::BorderedCube(const Cubemap& source) : size_(source.size()), texels
             for (const int x : {-1, n}) {
                 const int inside_x = std::clamp(x, 0, n - 1), inside_y = std::clamp(y, 0, n - 1);
                 for (int c = 0; c < 3; ++c)
-                    texel(f, x, y)[c] = (texel(f, inside_x, inside_y)[c] + texel(f, x, inside_y)[c] + texel(f, inside_x, y)[c]) * (1.f / 3);
+                    texel(f, x, y)[c] =
+                        (texel(f, inside_x, inside_y)[c] + texel(f, x, inside_y)[c] + texel(f, inside_x, y)[c]) *
+                        (1.f / 3);
             }
     }
 }

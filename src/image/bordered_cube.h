@@ -1,14 +1,15 @@
 #pragma once
 
+#include "domelight/image.h"
+
 #include <utility>
 #include <vector>
 
-#include "domelight/image.h"
-
 namespace domelight {
 
-/// A cubemap's RGB texels with a border of one texel around each face, taken from across the edges; a corner of the border is the mean of the three
-/// texels that meet there. Bilinear interpolation of a bordered face, up to the face's edge, is the cube's reconstruction: it goes on across edges.
+/// A cubemap's RGB texels with a border of one texel around each face, taken from across the edges; a corner of the
+/// border is the mean of the three texels that meet there. Bilinear interpolation of a bordered face, up to the face's
+/// edge, is the cube's reconstruction: it goes on across edges.
 class BorderedCube {
   public:
     explicit BorderedCube(const Cubemap& source);
@@ -20,7 +21,9 @@ class BorderedCube {
     }
 
   private:
-    float* texel(int face, int column, int row) { return const_cast<float*>(std::as_const(*this).texel(face, column, row)); }
+    float* texel(int face, int column, int row) {
+        return const_cast<float*>(std::as_const(*this).texel(face, column, row));
+    }
 
     int size_;
     std::vector<float> texels_;

@@ -1,15 +1,16 @@
-// Writes OpenEXR images of several layers: channels named LAYER.R and so on, those of the first layer without a name before them.
+// Writes OpenEXR images of several layers: channels named LAYER.R and so on, those of the first layer without a name
+// before them.
+#include "domelight/image_io.h"
+
+#include "io/exr_output_stream.h"
+
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
-
 #include <fmt/core.h>
-
-#include "domelight/image_io.h"
-#include "io/exr_output_stream.h"
 
 namespace domelight {
 namespace {
@@ -32,7 +33,8 @@ void write_layers(ExrOutputStream& stream, std::span<const ExrLayer> layers, con
             const std::string name = channel_name(layer, c);
             header.channels().insert(name, Imf::Channel(Imf::FLOAT));
             char* base = reinterpret_cast<char*>(const_cast<float*>(layer.pixels.data + c));
-            frame.insert(name, Imf::Slice(Imf::FLOAT, base, 4 * std::size_t(layer.pixels.channels), 4 * std::size_t(layer.pixels.stride)));
+            frame.insert(name, Imf::Slice(Imf::FLOAT, base, 4 * std::size_t(layer.pixels.channels),
+                                          4 * std::size_t(layer.pixels.stride)));
         }
     Imf::OutputFile file(stream, header, 0);
     file.setFrameBuffer(frame);
@@ -42,9 +44,11 @@ void write_layers(ExrOutputStream& stream, std::span<const ExrLayer> layers, con
 
 }  // namespace
 
-Result<void> write_exr_layers(const std::filesystem::path& file, std::span<const ExrLayer> layers, const ExrWriteOptions& options) {
+Result<void> write_exr_layers(const std::filesystem::path& file, std::span<const ExrLayer> layers,
+                              const ExrWriteOptions& options) {
     for (const ExrLayer& layer : layers)
-        if (layer.pixels.width != layers[0].pixels.width || layer.pixels.height != layers[0].pixels.height || layer.pixels.channels > 4)
+        if (layer.pixels.width != layers[0].pixels.width || layer.pixels.height != layers[0].pixels.height ||
+            layer.pixels.channels > 4)
             return Error{fmt::format("layer \"{}\" has another size than the first", layer.name), file.string(), ""};
     if (layers.empty()) return Error{"there is no layer to write", file.string(), ""};
     return write_file_atomically(file, [&](const std::filesystem::path& path) -> Result<void> {

@@ -5,11 +5,13 @@
 
 namespace domelight {
 
-/// Weights that interpolate a band-limited function between equally spaced samples, as polynomials of the position between two of them.
+/// Weights that interpolate a band-limited function between equally spaced samples, as polynomials of the position
+/// between two of them.
 ///
-/// f(i + t) ~ sum_k w_k(t) f(i + k - (taps / 2 - 1)), k = 0..taps-1, t in [0, 1]. The weights are the least-squares optimum for a signal whose
-/// amplitude falls as x K_1(x), x = decay * omega / (pi band): the spectrum of a GGX-filtered environment, so that the strong low frequencies
-/// are exact to 1e-6 and the last ones, which no longer matter, pay for it. They sum to exactly 1: a constant stays constant.
+/// f(i + t) ~ sum_k w_k(t) f(i + k - (taps / 2 - 1)), k = 0..taps-1, t in [0, 1]. The weights are the least-squares
+/// optimum for a signal whose amplitude falls as x K_1(x), x = decay * omega / (pi band): the spectrum of a
+/// GGX-filtered environment, so that the strong low frequencies are exact to 1e-6 and the last ones, which no longer
+/// matter, pay for it. They sum to exactly 1: a constant stays constant.
 class InterpolationTaps {
   public:
     /// taps    even, 2..16

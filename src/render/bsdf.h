@@ -1,5 +1,6 @@
 #pragma once
-// What a surface does with light at one point: Lambert below, GGX or Phong above, as glTF's metallic-roughness model mixes them.
+// What a surface does with light at one point: Lambert below, GGX or Phong above, as glTF's metallic-roughness model
+// mixes them.
 
 #include "domelight/brdf.h"
 
@@ -9,13 +10,13 @@ namespace domelight {
 struct Bsdf {
     enum class Kind : std::uint8_t { lambert, metallic_roughness, phong };
     Kind kind = Kind::lambert;
-    Vec3f diffuse;            ///< albedo of the lower layer
-    Vec3f f0, f90;            ///< of the microfacets; phong: specular is f0
+    Vec3f diffuse;                        ///< albedo of the lower layer
+    Vec3f f0, f90;                        ///< of the microfacets; phong: specular is f0
     Vec3f dielectric_f0, dielectric_f90;  ///< of the layer over `diffuse`
-    float alpha = 1;          ///< GGX
-    float exponent = 1;       ///< Phong
-    float compensation = 0;   ///< multiple scattering: (1 - E) / E at the viewer's angle, 0 without
-    float specular_share = 0; ///< of the samples, by the specular lobe
+    float alpha = 1;                      ///< GGX
+    float exponent = 1;                   ///< Phong
+    float compensation = 0;               ///< multiple scattering: (1 - E) / E at the viewer's angle, 0 without
+    float specular_share = 0;             ///< of the samples, by the specular lobe
 
     struct Value {
         Vec3f diffuse, specular;
@@ -27,7 +28,9 @@ struct Bsdf {
         if (!detail::above(V, L)) return {};
         Value value;
         switch (kind) {
-            case Kind::lambert: value.diffuse = diffuse * float(1 / k_pi); break;
+            case Kind::lambert:
+                value.diffuse = diffuse * float(1 / k_pi);
+                break;
             case Kind::metallic_roughness: {
                 const Vec3f H = V + L;
                 const float VdotH = 0.5f * std::sqrt(dot(H, H)), schlick = schlick_weight(VdotH);
@@ -51,8 +54,8 @@ struct Bsdf {
     float pdf_solid_angle(const Vec3f& V, const Vec3f& L) const {
         float pdf = specular_share < 1 ? (1 - specular_share) * LambertBrdf{}.pdf_solid_angle(V, L) : 0;
         if (specular_share > 0)
-            pdf += specular_share *
-                   (kind == Kind::phong ? PhongBrdf{exponent}.pdf_solid_angle(V, L) : GgxBrdf{alpha}.pdf_solid_angle(V, L));
+            pdf += specular_share * (kind == Kind::phong ? PhongBrdf{exponent}.pdf_solid_angle(V, L)
+                                                         : GgxBrdf{alpha}.pdf_solid_angle(V, L));
         return pdf;
     }
 

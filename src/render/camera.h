@@ -2,6 +2,7 @@
 
 #include "domelight/render.h"
 #include "domelight/unit_point.h"
+
 #include "render/ray_scene.h"
 
 namespace domelight {

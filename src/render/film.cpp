@@ -28,12 +28,14 @@ Vec3d PixelSums::variance_of_mean() const {
 
 Result<void> check_size(int width, int height) {
     if (width >= 1 && height >= 1 && width <= 16384 && height <= 16384) return {};
-    return Error{fmt::format("{} x {} is no size of a picture", width, height), "", "Accepted: 1 x 1 to 16384 x 16384."};
+    return Error{fmt::format("{} x {} is no size of a picture", width, height), "",
+                 "Accepted: 1 x 1 to 16384 x 16384."};
 }
 
 RenderResult develop(const Film& film, int width, int height) {
     RenderResult out;
-    for (ImageF* image : {&out.radiance, &out.direct, &out.indirect, &out.diffuse, &out.specular, &out.albedo, &out.normal, &out.variance})
+    for (ImageF* image : {&out.radiance, &out.direct, &out.indirect, &out.diffuse, &out.specular, &out.albedo,
+                          &out.normal, &out.variance})
         *image = ImageF(width, height, 3);
     for (ImageF* image : {&out.opacity, &out.depth, &out.object, &out.samples}) *image = ImageF(width, height, 1);
     double noise = 0;

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "domelight/render.h"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
-
-#include "domelight/render.h"
 
 namespace domelight {
 
@@ -27,7 +27,11 @@ struct PixelSums {
 /// The picture while samples are added to it, tile by tile.
 class Film {
   public:
-    Film(int width, int height) : width_(width), height_(height), across_((width + k_tile - 1) / k_tile), down_((height + k_tile - 1) / k_tile) {
+    Film(int width, int height)
+        : width_(width),
+          height_(height),
+          across_((width + k_tile - 1) / k_tile),
+          down_((height + k_tile - 1) / k_tile) {
         tiles_.resize(std::size_t(across_) * down_);
         for (int t = 0; t < int(tiles_.size()); ++t) tiles_[t].resize(std::size_t(columns(t)) * rows(t));
     }
@@ -41,11 +45,13 @@ class Film {
         const int t = y / k_tile * across_ + x / k_tile;
         return tiles_[t][std::size_t(y % k_tile) * columns(t) + x % k_tile];
     }
-    /// Standard error where it counts: the largest of a pixel's and its neighbours', for a pixel's own guess may be lucky.
+    /// Standard error where it counts: the largest of a pixel's and its neighbours', for a pixel's own guess may be
+    /// lucky.
     double noise_about(int x, int y) const {
         double most = 0;
         for (int j = std::max(0, y - 1); j <= std::min(height_ - 1, y + 1); ++j)
-            for (int i = std::max(0, x - 1); i <= std::min(width_ - 1, x + 1); ++i) most = std::max(most, at(i, j).noise());
+            for (int i = std::max(0, x - 1); i <= std::min(width_ - 1, x + 1); ++i)
+                most = std::max(most, at(i, j).noise());
         return most;
     }
 

@@ -1,16 +1,17 @@
+#include "domelight/brdf_table.h"
+#include "domelight/prefilter.h"
+#include "domelight/projection.h"
+#include "domelight/shading.h"
+#include "domelight/texture.h"
+
+#include "image/bordered_cube.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-
-#include "domelight/brdf_table.h"
-#include "domelight/prefilter.h"
-#include "domelight/projection.h"
-#include "domelight/shading.h"
-#include "domelight/texture.h"
-#include "image/bordered_cube.h"
 
 namespace domelight {
 
@@ -47,7 +48,9 @@ Vec3f look_up(const BorderedCube& cube, const Vec3f& direction) {
 
 Result<nlohmann::json> read_json(const std::filesystem::path& file) {
     std::ifstream in(file);
-    if (!in) return Error{"cannot be read", file.string(), "The folder must be one that `domelight bake` wrote for the generic target."};
+    if (!in)
+        return Error{"cannot be read", file.string(),
+                     "The folder must be one that `domelight bake` wrote for the generic target."};
     auto json = nlohmann::json::parse(in, nullptr, false);
     if (json.is_discarded()) return Error{"is no JSON", file.string(), ""};
     return json;
@@ -86,13 +89,16 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
     const std::string name = (folder / "manifest.json").string();
     const auto levels = manifest->value("specular", nlohmann::json::object()).value("levels", nlohmann::json::array());
     if (levels.size() != specular->size())
-        return Error{fmt::format("tells of {} specular levels, specular.ktx2 has {}", levels.size(), specular->size()), name, ""};
+        return Error{fmt::format("tells of {} specular levels, specular.ktx2 has {}", levels.size(), specular->size()),
+                     name, ""};
     for (const auto& level : levels) impl.roughness.push_back(level.is_object() ? level.value("roughness", 0.f) : 0);
-    if (!std::ranges::is_sorted(impl.roughness)) return Error{"has roughness values that do not rise from level to level", name, ""};
+    if (!std::ranges::is_sorted(impl.roughness))
+        return Error{"has roughness values that do not rise from level to level", name, ""};
     for (const Cubemap& c : *specular) impl.specular.emplace_back(c);
 
     // The generic target stores irradiance E, others E / pi.
-    const bool over_pi = manifest->value("irradiance", nlohmann::json::object()).value("quantity", "irradiance") == "irradiance_over_pi";
+    const bool over_pi =
+        manifest->value("irradiance", nlohmann::json::object()).value("quantity", "irradiance") == "irradiance_over_pi";
     Cubemap e = irradiance->front();
     if (!over_pi)
         for (float& p : e.pixels()) p /= float(k_pi);
@@ -104,7 +110,8 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
     const auto coefficients = sh->value("radiance", nlohmann::json::array());
     std::vector<Vec3d> radiance;
     for (const auto& c : coefficients)
-        if (c.is_array() && c.size() == 3 && c[0].is_number()) radiance.push_back({c[0].get<double>(), c[1].get<double>(), c[2].get<double>()});
+        if (c.is_array() && c.size() == 3 && c[0].is_number())
+            radiance.push_back({c[0].get<double>(), c[1].get<double>(), c[2].get<double>()});
     if (radiance.empty()) return Error{"has no coefficients", (folder / "sh.json").string(), ""};
     if (radiance.size() > 9) radiance.resize(9);
     impl.sh_irradiance = sh_irradiance_over_pi(radiance);
@@ -114,7 +121,8 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
 Result<LightMaps> LightMaps::bake(ImageView<const float> latlong, const Mat3& world_to_source, int threads) {
     FilterOptions options;
     constexpr int levels = 7, size = 512;
-    for (int l = 0; l < levels; ++l) options.specular.push_back({size >> l, l == 0, ZonalKernel::ggx(double(l) / (levels - 1))});
+    for (int l = 0; l < levels; ++l)
+        options.specular.push_back({size >> l, l == 0, ZonalKernel::ggx(double(l) / (levels - 1))});
     options.irradiance_size = 64;
     options.sh_bands = 3;
     options.world_to_source = world_to_source;
@@ -160,7 +168,8 @@ LightMaps::ScaleBias LightMaps::brdf(float NdotV, float roughness) const {
     const int i = int(x), j = int(y), i1 = std::min(i + 1, t.width() - 1), j1 = std::min(j + 1, t.height() - 1);
     const float a = x - float(i), b = y - float(j);
     const auto channel = [&](int c) {
-        const float upper = t.at(i, j)[c] + a * (t.at(i1, j)[c] - t.at(i, j)[c]), lower = t.at(i, j1)[c] + a * (t.at(i1, j1)[c] - t.at(i, j1)[c]);
+        const float upper = t.at(i, j)[c] + a * (t.at(i1, j)[c] - t.at(i, j)[c]),
+                    lower = t.at(i, j1)[c] + a * (t.at(i1, j1)[c] - t.at(i, j1)[c]);
         return upper + b * (lower - upper);
     };
     return {channel(0), channel(1)};

@@ -1,6 +1,13 @@
-// Path tracing with next-event estimation: at each surface one light direction from the environment and one from the BRDF, weighted by the balance
-// heuristic (Veach 1997, 9.2.2); the BRDF's ray goes on where light may bounce. Samples of a tile go through each step together, so that the
-// environment is drawn from in batches.
+// Path tracing with next-event estimation: at each surface one light direction from the environment and one from the
+// BRDF, weighted by the balance heuristic (Veach 1997, 9.2.2); the BRDF's ray goes on where light may bounce. Samples
+// of a tile go through each step together, so that the environment is drawn from in batches.
+
+#include "domelight/parallel.h"
+#include "domelight/sequences.h"
+
+#include "render/camera.h"
+#include "render/film.h"
+#include "render/surface.h"
 
 #include <algorithm>
 #include <atomic>
@@ -8,18 +15,12 @@
 #include <cmath>
 #include <mutex>
 
-#include "domelight/parallel.h"
-#include "domelight/sequences.h"
-#include "render/camera.h"
-#include "render/film.h"
-#include "render/surface.h"
-
 namespace domelight {
 namespace {
 
-constexpr int k_batch = 1024;       ///< samples that go through the steps together
-constexpr int k_most_passages = 64; ///< transparent surfaces a ray passes at most
-constexpr int k_roulette_from = 3;  ///< bounces before paths may end by chance
+constexpr int k_batch = 1024;        ///< samples that go through the steps together
+constexpr int k_most_passages = 64;  ///< transparent surfaces a ray passes at most
+constexpr int k_roulette_from = 3;   ///< bounces before paths may end by chance
 
 Vec3f product(const Vec3f& a, const Vec3f& b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};
@@ -35,10 +36,10 @@ struct Path {
     std::uint64_t key = 0;    ///< of the pixel
     Ray ray;
     Vec3f throughput{1, 1, 1};
-    float pdf_brdf = 0;       ///< with which the ray was drawn; 0: by the camera
+    float pdf_brdf = 0;  ///< with which the ray was drawn; 0: by the camera
     Hit hit;
     SurfacePoint surface;
-    Vec3f V;                  ///< local
+    Vec3f V;  ///< local
     /// Of what arrives along the path: the share of the first surface's diffuse lobe.
     Vec3f diffuse_share;
 
@@ -70,9 +71,15 @@ struct Path {
 
 /// The pairs of dimensions of a path.
 constexpr int k_pixel_pair = 0, k_pairs_a_bounce = 3;
-constexpr int light_pair(int bounce) { return 1 + k_pairs_a_bounce * bounce; }
-constexpr int brdf_pair(int bounce) { return 2 + k_pairs_a_bounce * bounce; }
-constexpr int chance_pair(int bounce) { return 3 + k_pairs_a_bounce * bounce; }
+constexpr int light_pair(int bounce) {
+    return 1 + k_pairs_a_bounce * bounce;
+}
+constexpr int brdf_pair(int bounce) {
+    return 2 + k_pairs_a_bounce * bounce;
+}
+constexpr int chance_pair(int bounce) {
+    return 3 + k_pairs_a_bounce * bounce;
+}
 
 /// Light samples of a batch.
 struct LightBatch {
@@ -91,7 +98,11 @@ struct LightBatch {
 class Tracer {
   public:
     Tracer(const RayScene& scene, const EnvironmentSampler& sampler, const RenderOptions& options)
-        : rays_(scene.impl()), scene_(scene.scene()), sampler_(sampler), options_(options), camera_(options.camera, options.width, options.height),
+        : rays_(scene.impl()),
+          scene_(scene.scene()),
+          sampler_(sampler),
+          options_(options),
+          camera_(options.camera, options.width, options.height),
           passages_(has_passages(scene_)) {}
 
     /// Adds to the sums of a tile, `count[i]` samples to pixel i of it. Returns the rays traced.
@@ -136,14 +147,19 @@ class Tracer {
             const float opacity = opacity_at(scene_, p.hit);
             if (opacity >= 1) return true;
             // By chance, with numbers of their own for each surface passed.
-            if (opacity > 0 && unit_float(sobol_owen(derive_key(derive_key(p.key, std::uint64_t(chance_pair(bounce))), std::uint64_t(passage)), p.index).x) < opacity) return true;
+            if (opacity > 0 && unit_float(sobol_owen(derive_key(derive_key(p.key, std::uint64_t(chance_pair(bounce))),
+                                                                std::uint64_t(passage)),
+                                                     p.index)
+                                              .x) < opacity)
+                return true;
             p.ray.near = std::nextafter(p.hit.distance + 4e-6f * (1 + p.hit.distance), 1e30f);
         }
         return false;
     }
 
     /// How much of the light from a direction arrives.
-    float visibility(const SurfacePoint& s, const Vec3f& direction, std::int64_t& rays, float distance = std::numeric_limits<float>::infinity()) const {
+    float visibility(const SurfacePoint& s, const Vec3f& direction, std::int64_t& rays,
+                     float distance = std::numeric_limits<float>::infinity()) const {
         if (!options_.occlusion) return 1;
         const float side = dot(direction, s.geometric_normal);
         if (side <= 0) return 0;
@@ -230,12 +246,14 @@ class Tracer {
         }
         if (options_.strategy == LightStrategy::environment) return;
         const LightSample light = sampler_.look_up(p.ray.direction);
-        const float weight = options_.strategy == LightStrategy::brdf ? 1 : p.pdf_brdf / (p.pdf_brdf + light.pdf_solid_angle);
+        const float weight =
+            options_.strategy == LightStrategy::brdf ? 1 : p.pdf_brdf / (p.pdf_brdf + light.pdf_solid_angle);
         p.add(product(p.throughput, light.radiance) * weight, bounce - 1);
     }
 
     /// A direction drawn from the environment.
-    void light_up(Path& p, const Frame<float>& frame, const Vec3f& direction, const Vec3f& radiance, float pdf, int bounce, std::int64_t& rays) const {
+    void light_up(Path& p, const Frame<float>& frame, const Vec3f& direction, const Vec3f& radiance, float pdf,
+                  int bounce, std::int64_t& rays) const {
         const Vec3f L = frame.to_local(direction);
         if (!(L.z > 0) || largest(radiance) <= 0) return;
         const Bsdf::Value f = p.surface.bsdf.evaluate(p.V, L);
@@ -248,7 +266,8 @@ class Tracer {
     }
 
     /// A light of the scene's own.
-    void light_up(Path& p, const Frame<float>& frame, const PunctualLight& light, int bounce, std::int64_t& rays) const {
+    void light_up(Path& p, const Frame<float>& frame, const PunctualLight& light, int bounce,
+                  std::int64_t& rays) const {
         Vec3f direction = -light.direction;
         float distance = std::numeric_limits<float>::infinity(), strength = 1;
         if (light.kind != PunctualLight::Kind::directional) {
@@ -262,7 +281,8 @@ class Tracer {
             strength = fall / squared;
             if (light.kind == PunctualLight::Kind::spot) {
                 const float cosine = -dot(direction, light.direction);
-                const float edge = std::clamp((cosine - light.cos_outer) / std::max(0.001f, light.cos_inner - light.cos_outer), 0.f, 1.f);
+                const float edge = std::clamp(
+                    (cosine - light.cos_outer) / std::max(0.001f, light.cos_inner - light.cos_outer), 0.f, 1.f);
                 strength *= edge * edge;
             }
         }
@@ -270,7 +290,10 @@ class Tracer {
         if (!(L.z > 0) || strength <= 0) return;
         const Bsdf::Value f = p.surface.bsdf.evaluate(p.V, L);
         if (largest(f.sum()) <= 0) return;
-        p.add(f, product(p.throughput, light.intensity) * (strength * L.z * visibility(p.surface, direction, rays, distance)), bounce);
+        p.add(f,
+              product(p.throughput, light.intensity) *
+                  (strength * L.z * visibility(p.surface, direction, rays, distance)),
+              bounce);
     }
 
     /// Sends the path on by the BRDF. Whether there is more to come of it.
@@ -354,7 +377,8 @@ EnvironmentSamplerOptions reference_sampler_options(LightStrategy strategy, int 
     return options;
 }
 
-Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSampler& sampler, const RenderOptions& o) {
+Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSampler& sampler,
+                                      const RenderOptions& o) {
     if (auto fine = check_size(o.width, o.height); !fine) return fine.error();
     if (o.strategy == LightStrategy::environment && sampler.compensation() > 0)
         return Error{"a sampler with MIS compensation leaves out light that this strategy has no other way to find", "",
@@ -374,7 +398,8 @@ Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSa
             if (cancelled) return;
             const int columns = film.columns(t);
             std::vector<int> count(film.tile(t).size());
-            for (int i = 0; i < int(count.size()); ++i) count[i] = wanted(film.x0(t) + i % columns, film.y0(t) + i / columns);
+            for (int i = 0; i < int(count.size()); ++i)
+                count[i] = wanted(film.x0(t) + i % columns, film.y0(t) + i / columns);
             rays += tracer.trace(film.x0(t), film.y0(t), columns, count, film.tile(t));
             const int done = ++tiles_done;
             if (o.progress) {
@@ -394,7 +419,8 @@ Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSa
                 add = std::min({add, o.most_samples - total, std::max(1, int(left / spent * total))});
                 if (left < spent / total) break;
             }
-            round([&](int, int) { return add; }, std::min(1.0, spent / o.seconds), std::min(1.0, 2 * spent / o.seconds));
+            round([&](int, int) { return add; }, std::min(1.0, spent / o.seconds),
+                  std::min(1.0, 2 * spent / o.seconds));
             total += add;
         }
     } else {
@@ -407,12 +433,14 @@ Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSa
                 for (int y = begin; y < end; ++y)
                     for (int x = 0; x < o.width; ++x) {
                         const int count = film.at(x, y).count;
-                        if (count < o.most_samples && film.noise_about(x, y) > o.noise) *wanted.at(x, y) = float(std::min(count, o.most_samples - count));
+                        if (count < o.most_samples && film.noise_about(x, y) > o.noise)
+                            *wanted.at(x, y) = float(std::min(count, o.most_samples - count));
                     }
             });
             for (const float w : wanted.pixels()) any |= w > 0;
             if (!any) break;
-            round([&](int x, int y) { return int(*wanted.at(x, y)); }, 0.3 + 0.7 * k / (k + 1.0), 0.3 + 0.7 * (k + 1.0) / (k + 2.0));
+            round([&](int x, int y) { return int(*wanted.at(x, y)); }, 0.3 + 0.7 * k / (k + 1.0),
+                  0.3 + 0.7 * (k + 1.0) / (k + 2.0));
         }
     }
     if (cancelled) return Error{"cancelled", "", ""};

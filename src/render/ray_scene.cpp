@@ -90,8 +90,8 @@ Result<RayScene> RayScene::build(Scene scene, int) {
             geometry = rtcNewGeometry(impl.device, RTC_GEOMETRY_TYPE_INSTANCE);
             rtcSetGeometryInstancedScene(geometry, object);
             const Affine& m = instance.to_world;
-            const float columns[12] = {m.x.x, m.x.y, m.x.z, m.y.x, m.y.y, m.y.z, m.z.x, m.z.y, m.z.z,
-                                       m.translation.x, m.translation.y, m.translation.z};
+            const float columns[12] = {m.x.x, m.x.y, m.x.z, m.y.x,           m.y.y,           m.y.z,
+                                       m.z.x, m.z.y, m.z.z, m.translation.x, m.translation.y, m.translation.z};
             rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
             rtcCommitGeometry(geometry);
         }
@@ -104,8 +104,9 @@ Result<RayScene> RayScene::build(Scene scene, int) {
     rtcSetDeviceMemoryMonitorFunction(impl.device, nullptr, nullptr);
     impl.bytes = std::size_t(std::max<std::int64_t>(0, bytes));
     if (const RTCError error = rtcGetDeviceError(impl.device); error != RTC_ERROR_NONE)
-        return Error{error == RTC_ERROR_OUT_OF_MEMORY ? std::string("out of memory for the scene's acceleration structure")
-                                                      : fmt::format("Embree reports error {}", int(error)),
+        return Error{error == RTC_ERROR_OUT_OF_MEMORY
+                         ? std::string("out of memory for the scene's acceleration structure")
+                         : fmt::format("Embree reports error {}", int(error)),
                      "", ""};
     return out;
 }

@@ -1,9 +1,9 @@
 #pragma once
 // Embree, behind a few functions.
 
-#include <embree3/rtcore.h>
-
 #include "domelight/render.h"
+
+#include <embree3/rtcore.h>
 
 namespace domelight {
 
@@ -12,7 +12,7 @@ struct Hit {
     float distance = 0;
     int instance = -1;  ///< -1: none
     int triangle = 0;
-    float u = 0, v = 0;  ///< barycentric: (1 - u - v) a + u b + v c
+    float u = 0, v = 0;      ///< barycentric: (1 - u - v) a + u b + v c
     Vec3f geometric_normal;  ///< in the world, not of unit length, to the front
 };
 
@@ -31,7 +31,7 @@ struct RayScene::Impl {
     struct Geometry {
         int instance;
     };
-    std::vector<int> instance_of;     ///< of a geometry of `world`
+    std::vector<int> instance_of;  ///< of a geometry of `world`
     std::vector<Affine> to_local_normal;
     std::size_t bytes = 0;
 

@@ -1,27 +1,34 @@
 // A scene drawn with a real-time engine's shading: the first surface of each camera sample, and no rays beyond it.
 
-#include <atomic>
-#include <chrono>
-#include <mutex>
-
 #include "domelight/parallel.h"
 #include "domelight/sequences.h"
+
 #include "render/camera.h"
 #include "render/film.h"
 #include "render/shading_models.h"
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
 
 namespace domelight {
 namespace {
 
 class ShadedTracer {
   public:
-    ShadedTracer(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment, const ShadingOptions& shading,
-                 const RenderOptions& options)
-        : rays_(scene.impl()), scene_(scene.scene()), maps_(maps), environment_(environment), shading_(shading), options_(options),
+    ShadedTracer(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment,
+                 const ShadingOptions& shading, const RenderOptions& options)
+        : rays_(scene.impl()),
+          scene_(scene.scene()),
+          maps_(maps),
+          environment_(environment),
+          shading_(shading),
+          options_(options),
           camera_(options.camera, options.width, options.height) {}
 
     void sample(int x, int y, std::uint32_t index, PixelSums& sums) const {
-        const std::uint64_t key = derive_key(options_.seed, std::uint64_t(y) * std::uint64_t(options_.width) + std::uint64_t(x));
+        const std::uint64_t key =
+            derive_key(options_.seed, std::uint64_t(y) * std::uint64_t(options_.width) + std::uint64_t(x));
         Ray ray = camera_.through(x, y, sobol_owen(derive_key(key, 0), index));
         Vec3f light, diffuse, specular;
         float rest = 1;  // what the surfaces so far let through
@@ -30,7 +37,8 @@ class ShadedTracer {
         for (int layer = 0; layer < most_layers && rest > 0; ++layer) {
             const Hit hit = rays_.intersect(ray, true);
             if (hit.instance < 0) {
-                if (options_.background == Background::environment) light = light + environment_.radiance(ray.direction) * rest;
+                if (options_.background == Background::environment)
+                    light = light + environment_.radiance(ray.direction) * rest;
                 break;
             }
             const SurfacePoint s = surface_at(scene_, hit, ray.origin, ray.direction, false);
@@ -65,12 +73,17 @@ class ShadedTracer {
     ShadedLight shade(const SurfacePoint& s, const Hit& hit, const Vec3f& V) const {
         const float occlusion = shading_.occlusion ? occlusion_at(scene_, hit) : 1;
         switch (shading_.model) {
-            case ShadingModel::split_sum: return shade_split_sum(s, V, occlusion, maps_, shading_);
-            case ShadingModel::phong: return shade_phong(s, V, occlusion, maps_, shading_);
-            case ShadingModel::mirror: return shade_mirror(s, V, environment_);
-            case ShadingModel::refract: break;
+            case ShadingModel::split_sum:
+                return shade_split_sum(s, V, occlusion, maps_, shading_);
+            case ShadingModel::phong:
+                return shade_phong(s, V, occlusion, maps_, shading_);
+            case ShadingModel::mirror:
+                return shade_mirror(s, V, environment_);
+            case ShadingModel::refract:
+                break;
         }
-        return shade_refract(s, V, scene_.materials[scene_.meshes[scene_.instances[hit.instance].mesh].material].ior, environment_);
+        return shade_refract(s, V, scene_.materials[scene_.meshes[scene_.instances[hit.instance].mesh].material].ior,
+                             environment_);
     }
 
     const RayScene::Impl& rays_;
@@ -86,16 +99,20 @@ class ShadedTracer {
 
 std::string shading_model_name(ShadingModel model) {
     switch (model) {
-        case ShadingModel::split_sum: return "split-sum";
-        case ShadingModel::phong: return "phong";
-        case ShadingModel::mirror: return "mirror";
-        case ShadingModel::refract: break;
+        case ShadingModel::split_sum:
+            return "split-sum";
+        case ShadingModel::phong:
+            return "phong";
+        case ShadingModel::mirror:
+            return "mirror";
+        case ShadingModel::refract:
+            break;
     }
     return "refract";
 }
 
-Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment, const ShadingOptions& shading,
-                                   const RenderOptions& o) {
+Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment,
+                                   const ShadingOptions& shading, const RenderOptions& o) {
     if (auto fine = check_size(o.width, o.height); !fine) return fine.error();
     const auto start = std::chrono::steady_clock::now();
     const ShadedTracer tracer(scene, maps, environment, shading, o);
@@ -107,7 +124,8 @@ Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps,
         if (cancelled) return;
         for (int i = 0; i < int(film.tile(t).size()); ++i)
             for (int k = 0; k < std::max(1, o.samples); ++k)
-                tracer.sample(film.x0(t) + i % film.columns(t), film.y0(t) + i / film.columns(t), std::uint32_t(k), film.tile(t)[i]);
+                tracer.sample(film.x0(t) + i % film.columns(t), film.y0(t) + i / film.columns(t), std::uint32_t(k),
+                              film.tile(t)[i]);
         ++done;
         if (o.progress) {
             const std::lock_guard lock(progress_mutex);

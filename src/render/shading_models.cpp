@@ -28,7 +28,8 @@ Vec3f fresnel(const Bsdf& b, float NdotV) {
 
 }  // namespace
 
-ShadedLight shade_split_sum(const SurfacePoint& s, const Vec3f& V, float occlusion, const LightMaps& maps, const ShadingOptions& o) {
+ShadedLight shade_split_sum(const SurfacePoint& s, const Vec3f& V, float occlusion, const LightMaps& maps,
+                            const ShadingOptions& o) {
     const Bsdf& b = s.bsdf;
     const Vec3f E = irradiance(s.normal, maps, o);
     if (b.kind == Bsdf::Kind::lambert) return {product(b.diffuse, E) * occlusion, {}};
@@ -62,7 +63,8 @@ ShadedLight shade_split_sum(const SurfacePoint& s, const Vec3f& V, float occlusi
     return light;
 }
 
-ShadedLight shade_phong(const SurfacePoint& s, const Vec3f& V, float occlusion, const LightMaps& maps, const ShadingOptions& o) {
+ShadedLight shade_phong(const SurfacePoint& s, const Vec3f& V, float occlusion, const LightMaps& maps,
+                        const ShadingOptions& o) {
     const Bsdf& b = s.bsdf;
     ShadedLight light{product(b.diffuse, irradiance(s.normal, maps, o)) * occlusion, {}};
     // The map is a GGX chain: looked up at the roughness whose exponent it is.

@@ -1,10 +1,11 @@
 #include "render/surface.h"
 
+#include "domelight/brdf_table.h"
+
+#include "render/texture_lookup.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "domelight/brdf_table.h"
-#include "render/texture_lookup.h"
 
 namespace domelight {
 namespace {
@@ -31,11 +32,14 @@ struct Corners {
     Corners(const Mesh& m, const Hit& hit) : mesh(m), w{1 - hit.u - hit.v, hit.u, hit.v} {
         for (int k = 0; k < 3; ++k) i[k] = m.indices[3 * std::size_t(hit.triangle) + k];
     }
-    Vec3f mean(const std::vector<Vec3f>& values) const { return values[i[0]] * w[0] + values[i[1]] * w[1] + values[i[2]] * w[2]; }
+    Vec3f mean(const std::vector<Vec3f>& values) const {
+        return values[i[0]] * w[0] + values[i[1]] * w[1] + values[i[2]] * w[2];
+    }
     Mesh::TexCoord texcoord(int set) const {
         const auto& t = mesh.texcoords[set == 1 ? 1 : 0];
         if (t.empty()) return {};
-        return {t[i[0]].u * w[0] + t[i[1]].u * w[1] + t[i[2]].u * w[2], t[i[0]].v * w[0] + t[i[1]].v * w[1] + t[i[2]].v * w[2]};
+        return {t[i[0]].u * w[0] + t[i[1]].u * w[1] + t[i[2]].u * w[2],
+                t[i[0]].v * w[0] + t[i[1]].v * w[1] + t[i[2]].v * w[2]};
     }
 };
 
@@ -59,17 +63,23 @@ Rgba base_color(const Scene& scene, const Material& m, const Corners& c) {
 
 float opacity_of(const Material& m, float alpha) {
     switch (m.alpha_mode) {
-        case Material::AlphaMode::opaque: return 1;
-        case Material::AlphaMode::mask: return alpha >= m.alpha_cutoff ? 1 : 0;
-        case Material::AlphaMode::blend: break;
+        case Material::AlphaMode::opaque:
+            return 1;
+        case Material::AlphaMode::mask:
+            return alpha >= m.alpha_cutoff ? 1 : 0;
+        case Material::AlphaMode::blend:
+            break;
     }
     return std::clamp(alpha, 0.f, 1.f);
 }
 
-/// The interpolated normal, bent by the normal map. The tangents are the mesh's, or follow from the texture coordinates.
-Vec3f mapped_normal(const Scene& scene, const Material& m, const Corners& c, const Affine& to_world, const Vec3f& normal) {
+/// The interpolated normal, bent by the normal map. The tangents are the mesh's, or follow from the texture
+/// coordinates.
+Vec3f mapped_normal(const Scene& scene, const Material& m, const Corners& c, const Affine& to_world,
+                    const Vec3f& normal) {
     const Rgba texel = look_up(scene, m.normal_texture, c, false);
-    const Vec3f bend{(2 * texel.rgb.x - 1) * m.normal_scale, (2 * texel.rgb.y - 1) * m.normal_scale, 2 * texel.rgb.z - 1};
+    const Vec3f bend{(2 * texel.rgb.x - 1) * m.normal_scale, (2 * texel.rgb.y - 1) * m.normal_scale,
+                     2 * texel.rgb.z - 1};
     Vec3f tangent, bitangent;
     if (!c.mesh.tangents.empty()) {
         const auto& t = c.mesh.tangents;
@@ -80,15 +90,16 @@ Vec3f mapped_normal(const Scene& scene, const Material& m, const Corners& c, con
         if (uv.empty()) return normal;
         const Vec3f e1 = to_world.vector(c.mesh.positions[c.i[1]] - c.mesh.positions[c.i[0]]),
                     e2 = to_world.vector(c.mesh.positions[c.i[2]] - c.mesh.positions[c.i[0]]);
-        const float u1 = uv[c.i[1]].u - uv[c.i[0]].u, v1 = uv[c.i[1]].v - uv[c.i[0]].v, u2 = uv[c.i[2]].u - uv[c.i[0]].u,
-                    v2 = uv[c.i[2]].v - uv[c.i[0]].v, determinant = u1 * v2 - u2 * v1;
+        const float u1 = uv[c.i[1]].u - uv[c.i[0]].u, v1 = uv[c.i[1]].v - uv[c.i[0]].v,
+                    u2 = uv[c.i[2]].u - uv[c.i[0]].u, v2 = uv[c.i[2]].v - uv[c.i[0]].v, determinant = u1 * v2 - u2 * v1;
         if (determinant == 0) return normal;
         const float sign = determinant < 0 ? -1.f : 1.f;
         tangent = (e1 * v2 - e2 * v1) * sign;
         // glTF's textures have v down: green points up, against v.
         bitangent = (e1 * u2 - e2 * u1) * sign;
     }
-    const Vec3f t = unit_or(tangent - normal * dot(normal, tangent), {}), b = unit_or(bitangent - normal * dot(normal, bitangent), {});
+    const Vec3f t = unit_or(tangent - normal * dot(normal, tangent), {}),
+                b = unit_or(bitangent - normal * dot(normal, bitangent), {});
     return unit_or(t * bend.x + b * bend.y + normal * bend.z, normal);
 }
 
@@ -101,7 +112,8 @@ float single_scattering_albedo(float NdotV, float roughness) {
     const int x0 = std::clamp(int(x), 0, n - 2), y0 = std::clamp(int(y), 0, n - 2);
     const auto at = [&](int i, int j) { return table.at(i, j)[0] + table.at(i, j)[1]; };
     const float a = x - float(x0), b = y - float(y0);
-    const float upper = at(x0, y0) + a * (at(x0 + 1, y0) - at(x0, y0)), lower = at(x0, y0 + 1) + a * (at(x0 + 1, y0 + 1) - at(x0, y0 + 1));
+    const float upper = at(x0, y0) + a * (at(x0 + 1, y0) - at(x0, y0)),
+                lower = at(x0, y0 + 1) + a * (at(x0 + 1, y0 + 1) - at(x0, y0 + 1));
     return upper + b * (lower - upper);
 }
 
@@ -110,7 +122,8 @@ float phong_exponent(float alpha) {
     return std::max(0.f, 2 / std::max(alpha * alpha, 1e-7f) - 2);
 }
 
-Bsdf make_bsdf(const Scene& scene, const Material& m, const Corners& c, const Vec3f& base, float NdotV, bool multiple_scattering) {
+Bsdf make_bsdf(const Scene& scene, const Material& m, const Corners& c, const Vec3f& base, float NdotV,
+               bool multiple_scattering) {
     Bsdf bsdf;
     if (m.lambert) {
         bsdf.diffuse = base;
@@ -136,14 +149,16 @@ Bsdf make_bsdf(const Scene& scene, const Material& m, const Corners& c, const Ve
         bsdf.compensation = albedo > 0 ? 1 / albedo - 1 : 0;
     }
     // Samples go where the light comes back from, roughly: the specular lobe by its reflectance at this angle.
-    const float schlick = schlick_weight(NdotV), gloss = luminance(bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlick), matt = luminance(bsdf.diffuse);
+    const float schlick = schlick_weight(NdotV), gloss = luminance(bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlick),
+                matt = luminance(bsdf.diffuse);
     bsdf.specular_share = matt <= 0 ? 1 : gloss <= 0 ? 0 : std::clamp(gloss / (gloss + matt), 0.2f, 0.9f);
     return bsdf;
 }
 
 }  // namespace
 
-SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& origin, const Vec3f& direction, bool multiple_scattering) {
+SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& origin, const Vec3f& direction,
+                        bool multiple_scattering) {
     const Instance& instance = scene.instances[hit.instance];
     const Mesh& mesh = scene.meshes[instance.mesh];
     const Material& m = scene.materials[mesh.material];
@@ -158,11 +173,13 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& origin,
     const float side = out.front ? 1.f : -1.f;
     out.geometric_normal = unit_or(hit.geometric_normal, -direction) * side;
     Vec3f normal = mesh.normals.empty() ? out.geometric_normal
-                                        : unit_or(instance.to_world.normal(c.mean(mesh.normals)) * (instance.to_world.determinant() < 0 ? -side : side),
+                                        : unit_or(instance.to_world.normal(c.mean(mesh.normals)) *
+                                                      (instance.to_world.determinant() < 0 ? -side : side),
                                                   out.geometric_normal);
     if (m.normal_texture) normal = mapped_normal(scene, m, c, instance.to_world, normal);
     // A normal that looks away from the viewer would make the surface black: bent back to just face him.
-    if (const float facing = -dot(normal, direction); facing < 1e-3f) normal = unit_or(normal - direction * (1e-3f - facing), out.geometric_normal);
+    if (const float facing = -dot(normal, direction); facing < 1e-3f)
+        normal = unit_or(normal - direction * (1e-3f - facing), out.geometric_normal);
     out.normal = normal;
 
     const Rgba base = base_color(scene, m, c);
@@ -170,8 +187,10 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& origin,
     out.emission = product(m.emission, look_up(scene, m.emission_texture, c, true).rgb);
     out.albedo = base.rgb;
     out.unlit = m.unlit;
-    if (m.unlit) out.emission = base.rgb;
-    else out.bsdf = make_bsdf(scene, m, c, base.rgb, -dot(normal, direction), multiple_scattering);
+    if (m.unlit)
+        out.emission = base.rgb;
+    else
+        out.bsdf = make_bsdf(scene, m, c, base.rgb, -dot(normal, direction), multiple_scattering);
     return out;
 }
 
@@ -190,7 +209,8 @@ float occlusion_at(const Scene& scene, const Hit& hit) {
 }
 
 bool has_passages(const Scene& scene) {
-    return std::ranges::any_of(scene.materials, [](const Material& m) { return m.alpha_mode != Material::AlphaMode::opaque; });
+    return std::ranges::any_of(scene.materials,
+                               [](const Material& m) { return m.alpha_mode != Material::AlphaMode::opaque; });
 }
 
 }  // namespace domelight

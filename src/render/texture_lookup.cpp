@@ -39,8 +39,8 @@ Rgba look_up(const Scene& scene, const SceneTexture& t, const Mesh::TexCoord& uv
     if (!(std::abs(u) < 1e6f && std::abs(v) < 1e6f)) u = v = 0;
     const auto& colour = srgb ? k_decoded.srgb : k_decoded.linear;
     const auto texel = [&](int x, int y) {
-        const std::uint8_t* p =
-            image.rgba.data() + 4 * (std::size_t(wrap(y, image.height, t.wrap_v)) * image.width + wrap(x, image.width, t.wrap_u));
+        const std::uint8_t* p = image.rgba.data() + 4 * (std::size_t(wrap(y, image.height, t.wrap_v)) * image.width +
+                                                         wrap(x, image.width, t.wrap_u));
         return Rgba{{colour[p[0]], colour[p[1]], colour[p[2]]}, k_decoded.linear[p[3]]};
     };
     const float x = u * float(image.width), y = v * float(image.height);
@@ -48,7 +48,9 @@ Rgba look_up(const Scene& scene, const SceneTexture& t, const Mesh::TexCoord& uv
     const float fx = std::floor(x - 0.5f), fy = std::floor(y - 0.5f), a = x - 0.5f - fx, b = y - 0.5f - fy;
     const int ix = int(fx), iy = int(fy);
     const Rgba p = texel(ix, iy), q = texel(ix + 1, iy), r = texel(ix, iy + 1), w = texel(ix + 1, iy + 1);
-    const auto mix = [](const Rgba& m, const Rgba& n, float k) { return Rgba{m.rgb + (n.rgb - m.rgb) * k, m.a + (n.a - m.a) * k}; };
+    const auto mix = [](const Rgba& m, const Rgba& n, float k) {
+        return Rgba{m.rgb + (n.rgb - m.rgb) * k, m.a + (n.a - m.a) * k};
+    };
     return mix(mix(p, q, a), mix(r, w, a), b);
 }
 

@@ -1,17 +1,18 @@
 #include "domelight/environment_sampler.h"
 
+#include "domelight/area_resample.h"
+#include "domelight/parallel.h"
+#include "domelight/projection.h"
+
+#include "distribution/texel_float.h"
+#include "simd/light_samples.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
-
-#include "distribution/texel_float.h"
-#include "domelight/area_resample.h"
-#include "domelight/parallel.h"
-#include "domelight/projection.h"
-#include "simd/light_samples.h"
 
 namespace domelight {
 namespace {
@@ -30,12 +31,13 @@ Grayscale grayscale(LightWeight weight) {
     return {0.2126f, 0.7152f, 0.0722f};
 }
 
-/// The weight of texels: max(luminance - delta, 0) sin theta, or the plain grayscale. A row's solid angles are (2 pi / W) 2 sin(pi / 2H) sin theta,
-/// so sin theta at its centre is exact for texels.
+/// The weight of texels: max(luminance - delta, 0) sin theta, or the plain grayscale. A row's solid angles are (2 pi /
+/// W) 2 sin(pi / 2H) sin theta, so sin theta at its centre is exact for texels.
 Weights weights_of(ImageView<const float> image, LightWeight weight, double delta) {
     return {image.width, image.height, [=](int y, std::span<float> room) -> std::span<const float> {
                 const Grayscale gray = grayscale(weight);
-                const float sine = weight == LightWeight::grayscale ? 1.f : float(std::sin(k_pi * (y + 0.5) / image.height));
+                const float sine =
+                    weight == LightWeight::grayscale ? 1.f : float(std::sin(k_pi * (y + 0.5) / image.height));
                 const float* p = image.row(y);
                 for (int x = 0; x < image.width; ++x) room[x] = std::max(gray(p + 3 * x) - float(delta), 0.f) * sine;
                 return room;
@@ -69,7 +71,8 @@ Luminance survey(ImageView<const float> image, LightWeight weight, int threads) 
 
 Result<void> check(ImageView<const float> image, int threads) {
     if (image.width < 1 || image.height < 1) return Error{"the environment has no texels", "", ""};
-    if (image.channels != 3) return Error{fmt::format("the environment has {} channels instead of 3", image.channels), "", ""};
+    if (image.channels != 3)
+        return Error{fmt::format("the environment has {} channels instead of 3", image.channels), "", ""};
     std::vector<int> bad(image.height, -1);
     parallel_ranges(image.height, 16, threads, [&](int begin, int end) {
         for (int y = begin; y < end; ++y) {
@@ -83,7 +86,8 @@ Result<void> check(ImageView<const float> image, int threads) {
     });
     for (int y = 0; y < image.height; ++y)
         if (bad[y] >= 0)
-            return Error{fmt::format("texel ({}, {}) is ({}, {}, {})", bad[y], y, image.at(bad[y], y)[0], image.at(bad[y], y)[1], image.at(bad[y], y)[2]),
+            return Error{fmt::format("texel ({}, {}) is ({}, {}, {})", bad[y], y, image.at(bad[y], y)[0],
+                                     image.at(bad[y], y)[1], image.at(bad[y], y)[2]),
                          "", "Radiance must be finite and not negative; open_environment repairs files."};
     return {};
 }
@@ -105,7 +109,8 @@ Result<EnvironmentSampler> EnvironmentSampler::build(EnvironmentSampler sampler)
     return sampler;
 }
 
-Result<EnvironmentSampler> EnvironmentSampler::build(ImageView<const float> latlong, const EnvironmentSamplerOptions& options,
+Result<EnvironmentSampler> EnvironmentSampler::build(ImageView<const float> latlong,
+                                                     const EnvironmentSamplerOptions& options,
                                                      const Mat3& world_to_source) {
     if (auto fine = check(latlong, options.threads); !fine) return fine.error();
     EnvironmentSampler sampler;
@@ -115,7 +120,8 @@ Result<EnvironmentSampler> EnvironmentSampler::build(ImageView<const float> latl
     return build(std::move(sampler));
 }
 
-Result<EnvironmentSampler> EnvironmentSampler::build(Environment& environment, const EnvironmentSamplerOptions& options) {
+Result<EnvironmentSampler> EnvironmentSampler::build(Environment& environment,
+                                                     const EnvironmentSamplerOptions& options) {
     EnvironmentSampler sampler;
     sampler.options_ = options;
     if (environment.latlong) {
@@ -124,7 +130,8 @@ Result<EnvironmentSampler> EnvironmentSampler::build(Environment& environment, c
         sampler.owned_ = std::move(*image);
         sampler.world_to_source_ = environment.world_to_source;
     } else {
-        sampler.owned_ = area_resample_cube_to_latlong(environment.cube, 2 * environment.cube.size(), environment.world_to_source, options.threads);
+        sampler.owned_ = area_resample_cube_to_latlong(environment.cube, 2 * environment.cube.size(),
+                                                       environment.world_to_source, options.threads);
     }
     sampler.image_ = sampler.owned_.view();
     if (auto fine = check(sampler.image_, options.threads); !fine) return fine.error();
@@ -138,7 +145,8 @@ Vec3f EnvironmentSampler::texel(float u, float v) const {
         const float* p = image_.at(std::min(int(double(u) * w), w - 1), std::min(int(double(v) * h), h - 1));
         return {p[0], p[1], p[2]};
     }
-    const float x = u * float(w) - 0.5f, y = v * float(h) - 0.5f, fx = std::floor(x), fy = std::floor(y), s = x - fx, t = y - fy;
+    const float x = u * float(w) - 0.5f, y = v * float(h) - 0.5f, fx = std::floor(x), fy = std::floor(y), s = x - fx,
+                t = y - fy;
     const int x0 = fx < 0 ? w - 1 : std::min(int(fx), w - 1), x1 = fx < 0 ? 0 : int(fx) + 1 < w ? int(fx) + 1 : 0;
     const int y0 = std::clamp(int(fy), 0, h - 1), y1 = std::clamp(int(fy) + 1, 0, h - 1);
     const float *a = image_.at(x0, y0), *b = image_.at(x1, y0), *c = image_.at(x0, y1), *d = image_.at(x1, y1);
@@ -151,7 +159,8 @@ Vec3f EnvironmentSampler::texel(float u, float v) const {
 
 /// Per steradian: dω = 2 pi^2 sin(theta) du dv.
 float EnvironmentSampler::density(double pdf_uv, float sin_theta) const {
-    const float p = float(pdf_uv) / (float(2 * k_pi * k_pi) * std::max(sin_theta, k_least_sine)), share = float(options_.uniform_share);
+    const float p = float(pdf_uv) / (float(2 * k_pi * k_pi) * std::max(sin_theta, k_least_sine)),
+                share = float(options_.uniform_share);
     return share > 0 ? p + share * (k_uniform_density - p) : p;
 }
 
@@ -162,14 +171,16 @@ LightSample EnvironmentSampler::at(float u, float v, float pdf_uv) const {
 }
 
 LightSample EnvironmentSampler::uniform(UnitPoint point) const {
-    const double y = 1 - 2 * unit_double(point.x), s = std::sqrt(std::max(0.0, 1 - y * y)), phi = 2 * k_pi * unit_double(point.y);
+    const double y = 1 - 2 * unit_double(point.x), s = std::sqrt(std::max(0.0, 1 - y * y)),
+                 phi = 2 * k_pi * unit_double(point.y);
     const Vec3d source{s * std::cos(phi), y, s * std::sin(phi)};
     return look_up(Vec3f(world_to_source_.transposed() * source));
 }
 
 LightSample EnvironmentSampler::sample(UnitPoint point) const {
     if (const double share = options_.uniform_share; share > 0) {
-        // One number serves both: the lower part of its range chooses the uniform density, and either part is stretched to the whole again.
+        // One number serves both: the lower part of its range chooses the uniform density, and either part is stretched
+        // to the whole again.
         const double x = unit_double(point.x);
         if (x < share || share >= 1) return uniform({unit_fixed(x / share), point.y});
         point.x = unit_fixed((x - share) / (1 - share));
@@ -183,22 +194,28 @@ void EnvironmentSampler::sample(std::span<const UnitPoint> points, const LightSa
     if (options_.uniform_share > 0) {
         for (std::size_t i = 0; i < points.size(); ++i) {
             const LightSample s = sample(points[i]);
-            out.u[i] = s.u, out.v[i] = s.v, out.x[i] = s.direction.x, out.y[i] = s.direction.y, out.z[i] = s.direction.z;
-            out.r[i] = s.radiance.x, out.g[i] = s.radiance.y, out.b[i] = s.radiance.z, out.pdf_solid_angle[i] = s.pdf_solid_angle;
+            out.u[i] = s.u, out.v[i] = s.v, out.x[i] = s.direction.x, out.y[i] = s.direction.y,
+            out.z[i] = s.direction.z;
+            out.r[i] = s.radiance.x, out.g[i] = s.radiance.y, out.b[i] = s.radiance.z,
+            out.pdf_solid_angle[i] = s.pdf_solid_angle;
         }
         return;
     }
     const simd::LightImage image{image_.data, image_.stride, image_.width, image_.height, distribution_->continuous()};
     const Mat3 to_world = world_to_source_.transposed();
     float turn[9];
-    for (int i = 0; i < 3; ++i) turn[3 * i] = float(to_world.row[i].x), turn[3 * i + 1] = float(to_world.row[i].y), turn[3 * i + 2] = float(to_world.row[i].z);
+    for (int i = 0; i < 3; ++i)
+        turn[3 * i] = float(to_world.row[i].x), turn[3 * i + 1] = float(to_world.row[i].y),
+                 turn[3 * i + 2] = float(to_world.row[i].z);
     constexpr std::size_t block = 512;  // what lies between the two steps stays in the nearest cache
     for (std::size_t i = 0; i < points.size(); i += block) {
         const std::size_t n = std::min(block, points.size() - i);
         const auto part = [&](std::span<float> s) { return s.subspan(i, n); };
         distribution_->sample(points.subspan(i, n), part(out.u), part(out.v), part(out.pdf_solid_angle));
-        simd::complete_light_samples(image, turn, int(n), k_least_sine, out.u.data() + i, out.v.data() + i, out.pdf_solid_angle.data() + i,
-                                     {out.x.data() + i, out.y.data() + i, out.z.data() + i}, {out.r.data() + i, out.g.data() + i, out.b.data() + i});
+        simd::complete_light_samples(image, turn, int(n), k_least_sine, out.u.data() + i, out.v.data() + i,
+                                     out.pdf_solid_angle.data() + i,
+                                     {out.x.data() + i, out.y.data() + i, out.z.data() + i},
+                                     {out.r.data() + i, out.g.data() + i, out.b.data() + i});
     }
 }
 
@@ -250,7 +267,9 @@ SamplingTextures sampling_textures(const EnvironmentSampler& sampler) {
         for (int y = begin; y < end; ++y) {
             const auto row = weights.row(y, room);
             for (const float w : row) sums[y] += w;
-            fill(image.width, sums[y], [&](int x) { return double(row[x]); }, [&](int x) { return out.columns.at(x, y); });
+            fill(
+                image.width, sums[y], [&](int x) { return double(row[x]); },
+                [&](int x) { return out.columns.at(x, y); });
         }
     });
     double total = 0;

@@ -1,12 +1,13 @@
 #include "domelight/reflection_estimate.h"
 
-#include <algorithm>
-#include <cassert>
-
 #include "domelight/product_sampling.h"
 #include "domelight/warps.h"
 
-// L_o = int f(V, L) L_i(L) NdotL dL over the hemisphere. A strategy with density p estimates it by the mean of f L_i NdotL / p.
+#include <algorithm>
+#include <cassert>
+
+// L_o = int f(V, L) L_i(L) NdotL dL over the hemisphere. A strategy with density p estimates it by the mean of f L_i
+// NdotL / p.
 
 namespace domelight {
 namespace {
@@ -14,7 +15,8 @@ namespace {
 /// The surface's local frame: normal +Z.
 class Local {
   public:
-    explicit Local(const Surface& surface) : surface_(surface), frame_(surface.normal), V(Vec3f(frame_.to_local(surface.view))) {}
+    explicit Local(const Surface& surface)
+        : surface_(surface), frame_(surface.normal), V(Vec3f(frame_.to_local(surface.view))) {}
     Vec3f to_world(const Vec3f& L) const { return Vec3f(frame_.to_world(Vec3d(L))); }
     Vec3f to_local(const Vec3f& d) const { return Vec3f(frame_.to_local(Vec3d(d))); }
     /// f(V, L) L_i NdotL.
@@ -66,8 +68,8 @@ Estimate riemann(const Local& local, const EnvironmentSampler& sampler, int samp
     return {sum, {}, k * j};
 }
 
-/// One strategy alone: the mean of integrand / density. draw(point) gives a local direction with its density; where that is 0 the sample
-/// counts and adds nothing.
+/// One strategy alone: the mean of integrand / density. draw(point) gives a local direction with its density; where
+/// that is 0 the sample counts and adds nothing.
 template <typename Draw>
 Estimate one_strategy(const Local& local, const EstimateOptions& o, const Draw& draw) {
     Mean mean;
@@ -84,10 +86,13 @@ struct Drawn {
     float pdf;
 };
 
-/// A draw from the BRDF and one from the environment, each weighted by how much likelier its own strategy was to give it (Veach 1997, eq. 9.8
-/// and 9.13): sum of w f L cos / p.
-Estimate both(const Surface& surface, const Local& local, const EnvironmentSampler& sampler, bool power, const EstimateOptions& o) {
-    const auto weight = [power](double mine, double other) { return power ? mine * mine / (mine * mine + other * other) : mine / (mine + other); };
+/// A draw from the BRDF and one from the environment, each weighted by how much likelier its own strategy was to give
+/// it (Veach 1997, eq. 9.8 and 9.13): sum of w f L cos / p.
+Estimate both(const Surface& surface, const Local& local, const EnvironmentSampler& sampler, bool power,
+              const EstimateOptions& o) {
+    const auto weight = [power](double mine, double other) {
+        return power ? mine * mine / (mine * mine + other * other) : mine / (mine + other);
+    };
     const int pairs = std::max(1, o.samples / 2);
     Mean mean;
     for (int i = 0; i < pairs; ++i) {
@@ -95,7 +100,8 @@ Estimate both(const Surface& surface, const Local& local, const EnvironmentSampl
         const BrdfSample b = surface.sample(local.V, unit_point(o.sequence, o.seed, i, pairs, 0));
         if (b.pdf_solid_angle > 0) {
             const LightSample light = sampler.look_up(local.to_world(b.L));
-            sum = sum + local.integrand(b.L, light.radiance) * (weight(b.pdf_solid_angle, light.pdf_solid_angle) / b.pdf_solid_angle);
+            sum = sum + local.integrand(b.L, light.radiance) *
+                            (weight(b.pdf_solid_angle, light.pdf_solid_angle) / b.pdf_solid_angle);
         }
         const LightSample e = sampler.sample(unit_point(o.sequence, o.seed, i, pairs, 1));
         if (const Vec3f L = local.to_local(e.direction); L.z > 0) {
@@ -117,9 +123,12 @@ Estimate product(const Local& local, const EnvironmentSampler& sampler, const Es
     };
     Mean mean;
     for (int i = 0; i < groups; ++i) {
-        for (int k = 0; k < candidates; ++k) points[k] = unit_point(o.sequence, o.seed, i * candidates + k, groups * candidates, 0);
+        for (int k = 0; k < candidates; ++k)
+            points[k] = unit_point(o.sequence, o.seed, i * candidates + k, groups * candidates, 0);
         const LightSample s = sample_product(sampler, target, points, unit_point(o.sequence, o.seed, i, groups, 1));
-        mean.add(s.pdf_solid_angle > 0 ? local.integrand(local.to_local(s.direction), s.radiance) / double(s.pdf_solid_angle) : Vec3d{});
+        mean.add(s.pdf_solid_angle > 0
+                     ? local.integrand(local.to_local(s.direction), s.radiance) / double(s.pdf_solid_angle)
+                     : Vec3d{});
     }
     return mean.estimate(groups * candidates);
 }
@@ -128,26 +137,37 @@ Estimate product(const Local& local, const EnvironmentSampler& sampler, const Es
 
 std::string strategy_name(Strategy strategy) {
     switch (strategy) {
-        case Strategy::riemann: return "riemann";
-        case Strategy::uniform: return "uniform";
-        case Strategy::cosine: return "cosine";
-        case Strategy::brdf: return "brdf";
-        case Strategy::environment: return "environment";
-        case Strategy::mis_balance: return "mis-balance";
-        case Strategy::mis_power: return "mis-power";
-        case Strategy::product: break;
+        case Strategy::riemann:
+            return "riemann";
+        case Strategy::uniform:
+            return "uniform";
+        case Strategy::cosine:
+            return "cosine";
+        case Strategy::brdf:
+            return "brdf";
+        case Strategy::environment:
+            return "environment";
+        case Strategy::mis_balance:
+            return "mis-balance";
+        case Strategy::mis_power:
+            return "mis-power";
+        case Strategy::product:
+            break;
     }
     return "product";
 }
 
-Estimate estimate_reflection(const Surface& surface, const EnvironmentSampler& sampler, Strategy strategy, const EstimateOptions& options) {
+Estimate estimate_reflection(const Surface& surface, const EnvironmentSampler& sampler, Strategy strategy,
+                             const EstimateOptions& options) {
     assert(options.samples >= 1);
     const Local local(surface);
     const auto look = [&](const Vec3f& L, float pdf) { return Drawn{L, sampler.radiance(local.to_world(L)), pdf}; };
     switch (strategy) {
-        case Strategy::riemann: return riemann(local, sampler, options.samples);
+        case Strategy::riemann:
+            return riemann(local, sampler, options.samples);
         case Strategy::uniform:
-            return one_strategy(local, options, [&](UnitPoint u) { return look(uniform_hemisphere(u), float(0.5 / k_pi)); });
+            return one_strategy(local, options,
+                                [&](UnitPoint u) { return look(uniform_hemisphere(u), float(0.5 / k_pi)); });
         case Strategy::cosine:
             return one_strategy(local, options, [&](UnitPoint u) {
                 const Vec3f L = cosine_hemisphere(u);
@@ -163,9 +183,12 @@ Estimate estimate_reflection(const Surface& surface, const EnvironmentSampler& s
                 const LightSample s = sampler.sample(u);
                 return Drawn{local.to_local(s.direction), s.radiance, s.pdf_solid_angle};
             });
-        case Strategy::mis_balance: return both(surface, local, sampler, false, options);
-        case Strategy::mis_power: return both(surface, local, sampler, true, options);
-        case Strategy::product: break;
+        case Strategy::mis_balance:
+            return both(surface, local, sampler, false, options);
+        case Strategy::mis_power:
+            return both(surface, local, sampler, true, options);
+        case Strategy::product:
+            break;
     }
     return product(local, sampler, options);
 }

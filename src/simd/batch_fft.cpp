@@ -2,15 +2,14 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/batch_fft.cpp"
+// clang-format off: the order is Highway's
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-
 #include <hwy/aligned_allocator.h>
-
 #include "simd/batch_fft.h"
-
 #include <cmath>
 #include <numbers>
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {
@@ -23,8 +22,12 @@ struct Complex {
     V re, im;
 };
 
-HWY_INLINE Complex operator+(Complex a, Complex b) { return {hn::Add(a.re, b.re), hn::Add(a.im, b.im)}; }
-HWY_INLINE Complex operator-(Complex a, Complex b) { return {hn::Sub(a.re, b.re), hn::Sub(a.im, b.im)}; }
+HWY_INLINE Complex operator+(Complex a, Complex b) {
+    return {hn::Add(a.re, b.re), hn::Add(a.im, b.im)};
+}
+HWY_INLINE Complex operator-(Complex a, Complex b) {
+    return {hn::Sub(a.re, b.re), hn::Sub(a.im, b.im)};
+}
 /// a * (c + sqrt(-1) s)
 HWY_INLINE Complex turn(Complex a, V c, V s) {
     return {hn::NegMulAdd(a.im, s, hn::Mul(a.re, c)), hn::MulAdd(a.im, c, hn::Mul(a.re, s))};
@@ -35,7 +38,9 @@ HWY_INLINE Complex turn_quarter(Complex a) {
     if constexpr (sign > 0) return {hn::Neg(a.im), a.re};
     return {a.im, hn::Neg(a.re)};
 }
-HWY_INLINE Complex load(const float* element) { return {hn::Load(D(), element), hn::Load(D(), element + k_fft_lanes)}; }
+HWY_INLINE Complex load(const float* element) {
+    return {hn::Load(D(), element), hn::Load(D(), element + k_fft_lanes)};
+}
 HWY_INLINE void store(Complex a, float* element) {
     hn::Store(a.re, D(), element);
     hn::Store(a.im, D(), element + k_fft_lanes);
@@ -73,10 +78,12 @@ template <int sign>
 HWY_INLINE void butterfly5(Complex* x) {
     const D d;
     const V c1 = hn::Set(d, 0.30901699437494742410f), c2 = hn::Set(d, -0.80901699437494742410f);
-    const V s1 = hn::Set(d, float(sign * 0.95105651629515357212)), s2 = hn::Set(d, float(sign * 0.58778525229247312917));
+    const V s1 = hn::Set(d, float(sign * 0.95105651629515357212)),
+            s2 = hn::Set(d, float(sign * 0.58778525229247312917));
     const Complex a = x[1] + x[4], b = x[2] + x[3], e = x[1] - x[4], f = x[2] - x[3];
     const auto combine = [&](V ca, V cb) {
-        return Complex{hn::MulAdd(ca, a.re, hn::MulAdd(cb, b.re, x[0].re)), hn::MulAdd(ca, a.im, hn::MulAdd(cb, b.im, x[0].im))};
+        return Complex{hn::MulAdd(ca, a.re, hn::MulAdd(cb, b.re, x[0].re)),
+                       hn::MulAdd(ca, a.im, hn::MulAdd(cb, b.im, x[0].im))};
     };
     const Complex m1 = combine(c1, c2), m2 = combine(c2, c1);
     const Complex r1 = {hn::Neg(hn::MulAdd(s1, e.im, hn::Mul(s2, f.im))), hn::MulAdd(s1, e.re, hn::Mul(s2, f.re))};
@@ -104,7 +111,8 @@ void butterfly_any(const BatchFft& plan, int r, const float* x, float* y) {
         }
 }
 
-/// One stage on one block: radix r over elements `sub` apart. Forward (decimation in frequency) turns after the butterfly, inverse before.
+/// One stage on one block: radix r over elements `sub` apart. Forward (decimation in frequency) turns after the
+/// butterfly, inverse before.
 template <int sign, int r>
 HWY_INLINE void stage(const BatchFft& plan, float* data, int sub, int twiddle_step) {
     const D d;
@@ -140,7 +148,8 @@ void stage_any(const BatchFft& plan, float* data, int r, int sub, int twiddle_st
         for (int q = 1; q < r; ++q) {
             const float* t = plan.twiddles() + 2 * std::size_t(j) * q * twiddle_step;
             for (int lane = 0; lane < k_fft_lanes; lane += int(hn::Lanes(d)))
-                store(turn(load(v + q * k_element + lane), hn::Set(d, t[0]), hn::Set(d, float(-sign) * t[1])), v + q * k_element + lane);
+                store(turn(load(v + q * k_element + lane), hn::Set(d, t[0]), hn::Set(d, float(-sign) * t[1])),
+                      v + q * k_element + lane);
         }
     };
     for (int j = 0; j < sub; ++j) {
@@ -161,11 +170,20 @@ void transform(const BatchFft& plan, float* data, int n, std::size_t depth) {
     const int r = plan.radices()[depth], sub = n / r, twiddle_step = plan.size() / n;
     const auto here = [&] {
         switch (r) {
-            case 2: stage<sign, 2>(plan, data, sub, twiddle_step); break;
-            case 3: stage<sign, 3>(plan, data, sub, twiddle_step); break;
-            case 4: stage<sign, 4>(plan, data, sub, twiddle_step); break;
-            case 5: stage<sign, 5>(plan, data, sub, twiddle_step); break;
-            default: stage_any<sign>(plan, data, r, sub, twiddle_step);
+            case 2:
+                stage<sign, 2>(plan, data, sub, twiddle_step);
+                break;
+            case 3:
+                stage<sign, 3>(plan, data, sub, twiddle_step);
+                break;
+            case 4:
+                stage<sign, 4>(plan, data, sub, twiddle_step);
+                break;
+            case 5:
+                stage<sign, 5>(plan, data, sub, twiddle_step);
+                break;
+            default:
+                stage_any<sign>(plan, data, r, sub, twiddle_step);
         }
     };
     if (sign < 0) here();
@@ -173,8 +191,12 @@ void transform(const BatchFft& plan, float* data, int n, std::size_t depth) {
     if (sign > 0) here();
 }
 
-void forward(const BatchFft& plan, float* data) { transform<-1>(plan, data, plan.size(), 0); }
-void inverse(const BatchFft& plan, float* data) { transform<1>(plan, data, plan.size(), 0); }
+void forward(const BatchFft& plan, float* data) {
+    transform<-1>(plan, data, plan.size(), 0);
+}
+void inverse(const BatchFft& plan, float* data) {
+    transform<1>(plan, data, plan.size(), 0);
+}
 
 }  // namespace domelight::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -216,8 +238,12 @@ BatchFft::BatchFft(int n) : n_(n), position_(n), twiddles_(2 * std::size_t(n)) {
     }
 }
 
-void BatchFft::forward(float* data) const { HWY_DYNAMIC_DISPATCH(forward)(*this, data); }
-void BatchFft::inverse(float* data) const { HWY_DYNAMIC_DISPATCH(inverse)(*this, data); }
+void BatchFft::forward(float* data) const {
+    HWY_DYNAMIC_DISPATCH(forward)(*this, data);
+}
+void BatchFft::inverse(float* data) const {
+    HWY_DYNAMIC_DISPATCH(inverse)(*this, data);
+}
 
 }  // namespace domelight::simd
 #endif

@@ -8,10 +8,10 @@
 #include <hwy/contrib/math/math-inl.h>
 // clang-format on
 
+#include "simd/direct_lights.h"
+
 #include <algorithm>
 #include <numbers>
-
-#include "simd/direct_lights.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {
@@ -84,7 +84,8 @@ HWY_INLINE void add_lights(const LightNode* nodes, int node_count, const PointSe
                 for (int p = begin; p < end; ++p) {
                     const V dx = hn::Sub(vx, hn::Set(d, points.x[p])), dy = hn::Sub(vy, hn::Set(d, points.y[p])),
                             dz = hn::Sub(vz, hn::Set(d, points.z[p]));
-                    const V half_chord2 = hn::Mul(hn::Set(d, 0.5f), hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))));
+                    const V half_chord2 =
+                        hn::Mul(hn::Set(d, 0.5f), hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))));
                     const V f = kernel(half_chord2);
                     r = hn::MulAdd(f, hn::Set(d, points.r[p]), r);
                     g = hn::MulAdd(f, hn::Set(d, points.g[p]), g);

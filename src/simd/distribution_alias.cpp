@@ -2,14 +2,14 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/distribution_alias.cpp"
+// clang-format off: the order is Highway's
 #include <hwy/foreach_target.h>
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
-
 #include "simd/distribution_alias.h"
 #include "simd/distribution_float-inl.h"
-
 #include <algorithm>
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {
@@ -22,7 +22,8 @@ struct Drawn {
     alignas(64) double item[k_batch], offset[k_batch], length[k_batch], quanta[k_batch];
 };
 
-/// One draw from the table's entry of the cell; returns the item. Selects, not branches: which part is drawn cannot be guessed.
+/// One draw from the table's entry of the cell; returns the item. Selects, not branches: which part is drawn cannot be
+/// guessed.
 HWY_INLINE std::uint32_t choose(std::uint32_t packed, std::uint32_t xi, int split_bits, Drawn& to, int k) {
     const std::uint32_t mask = (1u << split_bits) - 1, place = xi & mask, split = packed & mask;
     const std::uint32_t alias = 0u - std::uint32_t(place >= split);  // all ones where the alias is drawn
@@ -34,8 +35,8 @@ HWY_INLINE std::uint32_t choose(std::uint32_t packed, std::uint32_t xi, int spli
     return item;
 }
 
-void sample_alias(const AliasRows& marginal, const AliasRows& conditional, const UnitPoint* points, std::size_t count, float* u, float* v,
-                  float* pdf_uv) {
+void sample_alias(const AliasRows& marginal, const AliasRows& conditional, const UnitPoint* points, std::size_t count,
+                  float* u, float* v, float* pdf_uv) {
     const AliasRows::Entry* rows_entries = marginal.row(0);
     const int row_split = 32 - marginal.bits, column_split = 32 - conditional.bits;
     const double width = conditional.items, height = conditional.count, scale = width * height * 0x1p-64;
@@ -44,19 +45,22 @@ void sample_alias(const AliasRows& marginal, const AliasRows& conditional, const
     const hn::ScalableTag<double> d;
     const int lanes = int(hn::Lanes(d));
     for (Drawn* drawn : {&rows, &columns})
-        for (int k = 0; k < k_batch; ++k) drawn->item[k] = drawn->offset[k] = 0, drawn->length[k] = drawn->quanta[k] = 1;
+        for (int k = 0; k < k_batch; ++k)
+            drawn->item[k] = drawn->offset[k] = 0, drawn->length[k] = drawn->quanta[k] = 1;
 
     for (std::size_t start = 0; start < count; start += k_batch) {
         const int n = int(std::min<std::size_t>(k_batch, count - start));
         const UnitPoint* p = points + start;
         for (int k = 0; k < n; ++k) {
-            const std::uint32_t j = choose(rows_entries[p[k].y >> row_split].alias_and_split, p[k].y, row_split, rows, k);
+            const std::uint32_t j =
+                choose(rows_entries[p[k].y >> row_split].alias_and_split, p[k].y, row_split, rows, k);
             rows.quanta[k] = double(std::int64_t(rows_entries[j].last_quantum)) + 1;
             entry[k] = conditional.entries.data() + (std::size_t(j) << conditional.bits);
             hwy::Prefetch(entry[k] + (p[k].x >> column_split));
         }
         for (int k = 0; k < n; ++k) {
-            const std::uint32_t i = choose(entry[k][p[k].x >> column_split].alias_and_split, p[k].x, column_split, columns, k);
+            const std::uint32_t i =
+                choose(entry[k][p[k].x >> column_split].alias_and_split, p[k].x, column_split, columns, k);
             entry[k] += i;
             hwy::Prefetch(entry[k]);
         }
@@ -64,18 +68,22 @@ void sample_alias(const AliasRows& marginal, const AliasRows& conditional, const
 
         alignas(64) float buffer[3][k_batch];
         const bool whole = n == k_batch;
-        float *to_u = whole ? u + start : buffer[0], *to_v = whole ? v + start : buffer[1], *to_pdf = whole ? pdf_uv + start : buffer[2];
+        float *to_u = whole ? u + start : buffer[0], *to_v = whole ? v + start : buffer[1],
+              *to_pdf = whole ? pdf_uv + start : buffer[2];
         const hn::Rebind<float, decltype(d)> df;
         for (int k = 0; k < k_batch; k += lanes) {
             const auto half = hn::Set(d, 0.5), one = hn::Set(d, 1.0);
             const auto position = [&](const Drawn& drawn, double n_items, float* to) HWY_ATTR {
                 const auto item = hn::Load(d, drawn.item + k);
-                const auto x = hn::Add(item, hn::Div(hn::Add(hn::Load(d, drawn.offset + k), half), hn::Load(d, drawn.length + k)));
-                hn::StoreU(texel_floats(d, hn::Mul(x, hn::Set(d, 1.0 / n_items)), item, hn::Set(d, n_items), one), df, to + k);
+                const auto x =
+                    hn::Add(item, hn::Div(hn::Add(hn::Load(d, drawn.offset + k), half), hn::Load(d, drawn.length + k)));
+                hn::StoreU(texel_floats(d, hn::Mul(x, hn::Set(d, 1.0 / n_items)), item, hn::Set(d, n_items), one), df,
+                           to + k);
             };
             position(columns, width, to_u);
             position(rows, height, to_v);
-            const auto density = hn::Mul(hn::Mul(hn::Load(d, rows.quanta + k), hn::Load(d, columns.quanta + k)), hn::Set(d, scale));
+            const auto density =
+                hn::Mul(hn::Mul(hn::Load(d, rows.quanta + k), hn::Load(d, columns.quanta + k)), hn::Set(d, scale));
             hn::StoreU(hn::DemoteTo(df, density), df, to_pdf + k);
         }
         if (!whole) {
@@ -94,7 +102,8 @@ namespace domelight::simd {
 
 HWY_EXPORT(sample_alias);
 
-void sample_alias(const AliasRows& marginal, const AliasRows& conditional, std::span<const UnitPoint> points, float* u, float* v, float* pdf_uv) {
+void sample_alias(const AliasRows& marginal, const AliasRows& conditional, std::span<const UnitPoint> points, float* u,
+                  float* v, float* pdf_uv) {
     HWY_DYNAMIC_DISPATCH(sample_alias)(marginal, conditional, points.data(), points.size(), u, v, pdf_uv);
 }
 

@@ -2,15 +2,15 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/distribution_bilinear.cpp"
+// clang-format off: the order is Highway's
 #include <hwy/foreach_target.h>
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
-
 #include "simd/distribution_bilinear.h"
 #include "distribution/bilinear_place.h"
-
 #include <algorithm>
 #include <cstring>
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {
@@ -48,14 +48,16 @@ struct Mixture {
         return hn::FindFirstTrue(d, hn::Lt(hn::Set(d, mass), mixed));
     }
 
-    /// The segment in which `mass` is reached, given `start`, a little before it: nearly always among the vector of edges that begins there. If not,
-    /// it is halved down from what the two rows' guide cells (each: first column, last column) bracket.
+    /// The segment in which `mass` is reached, given `start`, a little before it: nearly always among the vector of
+    /// edges that begins there. If not, it is halved down from what the two rows' guide cells (each: first column, last
+    /// column) bracket.
     HWY_INLINE int find(double mass, int start, std::uint32_t above_cell, std::uint32_t below_cell) const {
         const W d;
         const int lanes = int(hn::Lanes(d));
         const auto from = window(mass, start);
         if (HWY_LIKELY(from > 0)) return start + int(from) - 1;
-        int first = int(std::min(above_cell & 0xffff, below_cell & 0xffff)), last = int(std::max(above_cell >> 16, below_cell >> 16));
+        int first = int(std::min(above_cell & 0xffff, below_cell & 0xffff)),
+            last = int(std::max(above_cell >> 16, below_cell >> 16));
         if (lanes > 2) {
             if (from == 0)
                 last = start - 1, start = std::max(first, start - lanes + 1);
@@ -119,8 +121,8 @@ HWY_INLINE std::uint32_t guide_pair(const std::uint16_t* guide) {
     return std::uint32_t(guide[0]) | std::uint32_t(guide[1]) << 16;
 }
 
-void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_begins, const UnitPoint* points, std::size_t count,
-                     float* u, float* v, float* pdf_uv) {
+void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_begins,
+                     const UnitPoint* points, std::size_t count, float* u, float* v, float* pdf_uv) {
     const hn::ScalableTag<double> d;
     const hn::Rebind<float, decltype(d)> df;
     const hn::Rebind<std::int32_t, decltype(d)> di;
@@ -133,9 +135,11 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
     const int width = columns.items, height = columns.count - 2, row_shift = rows.shift, shift = columns.shift;
     const std::int32_t* edges = columns.edges.data();
     const std::uint16_t *shapes = columns.shape.data(), *guides = columns.guide.data();
-    const std::size_t edge_stride = std::size_t(width) + 1, shape_stride = std::size_t(width), guide_stride = std::size_t(columns.cells()) + 8;
+    const std::size_t edge_stride = std::size_t(width) + 1, shape_stride = std::size_t(width),
+                      guide_stride = std::size_t(columns.cells()) + 8;
     const std::uint32_t in_cell = (shift == 32 ? 0u : 1u << shift) - 1;
-    const VD one = hn::Set(d, 1.0), two = hn::Set(d, 2.0), half = hn::Set(d, 0.5), tiny = hn::Set(d, 1e-300), middle = hn::Set(d, 0x1p31);
+    const VD one = hn::Set(d, 1.0), two = hn::Set(d, 2.0), half = hn::Set(d, 0.5), tiny = hn::Set(d, 1e-300),
+             middle = hn::Set(d, 0x1p31);
     const auto load_pairs = [&](const std::int32_t* from, VD& before, VD& after) HWY_ATTR {
         hn::Vec<decltype(di)> low, high;
         hn::LoadInterleaved2(di, from, low, high);
@@ -158,7 +162,8 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
         for (int k = 0; k < n; ++k) {
             const std::uint32_t x = p[k].x, y = p[k].y;
             // edge > (y + 1/2) (2^32 - 1) / 2^32, in integers
-            const int s = find_from(row_edges, row_guide[std::uint64_t(y) >> row_shift], std::int32_t((y - (y >> 31)) ^ 0x80000000u));
+            const int s = find_from(row_edges, row_guide[std::uint64_t(y) >> row_shift],
+                                    std::int32_t((y - (y >> 31)) ^ 0x80000000u));
             b.segment[k] = s;
             copy_pair(row_edges + s, b.row_edges + 2 * k);
             b.begin[k] = row_begins[s];
@@ -176,8 +181,10 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
             const VD t = segment.invert(hn::Sub(table_mass(y), edge));
             // row_segment() in vectors
             const VD s = hn::PromoteTo(d, hn::Load(di, b.segment + k));
-            const VD start = hn::Max(hn::Sub(s, half), hn::Zero(d)), end = hn::Min(hn::Add(s, half), hn::Set(d, double(height)));
-            const VD length = hn::Sub(end, start), reciprocal = hn::Sub(hn::Set(d, 3.0), hn::Mul(two, length));  // of 1/2 or 1
+            const VD start = hn::Max(hn::Sub(s, half), hn::Zero(d)),
+                     end = hn::Min(hn::Add(s, half), hn::Set(d, double(height)));
+            const VD length = hn::Sub(end, start),
+                     reciprocal = hn::Sub(hn::Set(d, 3.0), hn::Mul(two, length));  // of 1/2 or 1
             const VD value = segment.at(t), share = hn::Div(hn::Mul(segment.end, t), hn::Max(value, tiny));
             hn::Store(share, d, b.below + k);
             hn::Store(hn::Sub(one, share), d, b.above + k);
@@ -188,23 +195,27 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
 
         // Columns: the guides bracket, and a straight line through what they say of each row guesses.
         for (int k = 0; k < n; ++k) {
-            const std::uint16_t* cell = guides + std::size_t(b.segment[k]) * guide_stride + (std::uint64_t(p[k].x) >> shift);
+            const std::uint16_t* cell =
+                guides + std::size_t(b.segment[k]) * guide_stride + (std::uint64_t(p[k].x) >> shift);
             b.above_cell[k] = guide_pair(cell);  // past the last cell there is a last column
             b.below_cell[k] = guide_pair(cell + guide_stride);
         }
         for (int k = 0; k < k_batch; k += lanes) {
-            const VU low = hn::Set(du, 0xffffu), above = hn::Load(du, b.above_cell + k), below = hn::Load(du, b.below_cell + k);
+            const VU low = hn::Set(du, 0xffffu), above = hn::Load(du, b.above_cell + k),
+                     below = hn::Load(du, b.below_cell + k);
             const auto a0 = hn::BitCast(di, hn::And(above, low)), a1 = hn::BitCast(di, hn::ShiftRight<16>(above));
             const auto b0 = hn::BitCast(di, hn::And(below, low)), b1 = hn::BitCast(di, hn::ShiftRight<16>(below));
             const auto first = hn::Min(a0, b0), last = hn::Max(a1, b1);
             const auto fa = hn::ConvertTo(df, a0), fb = hn::ConvertTo(df, b0), unit = hn::Set(df, 1.0f);
-            const auto length_a = hn::Add(hn::ConvertTo(df, hn::Sub(a1, a0)), unit), length_b = hn::Add(hn::ConvertTo(df, hn::Sub(b1, b0)), unit);
+            const auto length_a = hn::Add(hn::ConvertTo(df, hn::Sub(a1, a0)), unit),
+                       length_b = hn::Add(hn::ConvertTo(df, hn::Sub(b1, b0)), unit);
             VU x, y;
             hn::LoadInterleaved2(du, &p[k].x, x, y);
             const auto place = hn::BitCast(di, hn::ShiftRight<1>(hn::And(x, hn::Set(du, in_cell))));
             const auto t = hn::Mul(hn::ConvertTo(df, place), hn::Set(df, float(2 / (double(in_cell) + 1))));
             const auto from_a = hn::Add(fa, hn::Mul(t, length_a)), from_b = hn::Add(fb, hn::Mul(t, length_b));
-            const auto at = hn::Add(from_a, hn::Mul(hn::DemoteTo(df, hn::Load(d, b.below + k)), hn::Sub(from_b, from_a)));
+            const auto at =
+                hn::Add(from_a, hn::Mul(hn::DemoteTo(df, hn::Load(d, b.below + k)), hn::Sub(from_b, from_a)));
             const auto start = hn::Sub(hn::ConvertTo(di, at), hn::Set(di, int(hn::Lanes(W())) / 2 - 1));
             hn::Store(hn::Max(hn::Min(start, last), first), di, b.start + k);
         }
@@ -234,7 +245,8 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
 
         alignas(64) float buffer[3][k_batch];
         const bool whole = n == k_batch;
-        float *to_u = whole ? u + begin : buffer[0], *to_v = whole ? v + begin : buffer[1], *to_pdf = whole ? pdf_uv + begin : buffer[2];
+        float *to_u = whole ? u + begin : buffer[0], *to_v = whole ? v + begin : buffer[1],
+              *to_pdf = whole ? pdf_uv + begin : buffer[2];
         const auto under_one = hn::Set(df, 0x1.fffffep-1f);
         for (int k = 0; k < k_batch; k += lanes) {
             VD above_edge, above_next, below_edge, below_next;
@@ -247,9 +259,11 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
             const auto c_begin = hn::Mul(c, hn::PromoteTo(d, hn::Load(di, b.below_shape + k)));
             const auto from = hn::Mul(hn::Add(a_begin, c_begin), hn::Set(d, 2.0 / 65535));
             const Segments<decltype(d)> segment{d, from, hn::Sub(hn::Mul(two, hn::Add(a, c)), from)};
-            const auto mass = hn::Sub(hn::Load(d, b.mass + k), hn::Add(hn::Mul(above, above_edge), hn::Mul(below, below_edge)));
+            const auto mass =
+                hn::Sub(hn::Load(d, b.mass + k), hn::Add(hn::Mul(above, above_edge), hn::Mul(below, below_edge)));
             const auto t = segment.invert(hn::Max(mass, hn::Zero(d)));
-            auto x = hn::Mul(hn::Add(hn::Add(hn::PromoteTo(d, hn::Load(di, b.item + k)), half), t), hn::Set(d, 1.0 / width));
+            auto x =
+                hn::Mul(hn::Add(hn::Add(hn::PromoteTo(d, hn::Load(di, b.item + k)), half), t), hn::Set(d, 1.0 / width));
             x = hn::IfThenElse(hn::Ge(x, one), hn::Sub(x, one), x);
             hn::StoreU(hn::Min(hn::DemoteTo(df, x), under_one), df, to_u + k);
             hn::StoreU(hn::Min(hn::DemoteTo(df, hn::Load(d, b.v + k)), under_one), df, to_v + k);
@@ -272,8 +286,8 @@ namespace domelight::simd {
 
 HWY_EXPORT(sample_bilinear);
 
-void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_begins, std::span<const UnitPoint> points, float* u,
-                     float* v, float* pdf_uv) {
+void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_begins,
+                     std::span<const UnitPoint> points, float* u, float* v, float* pdf_uv) {
     HWY_DYNAMIC_DISPATCH(sample_bilinear)(rows, columns, row_begins, points.data(), points.size(), u, v, pdf_uv);
 }
 

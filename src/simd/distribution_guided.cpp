@@ -2,14 +2,14 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/distribution_guided.cpp"
+// clang-format off: the order is Highway's
 #include <hwy/foreach_target.h>
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
-
 #include "simd/distribution_guided.h"
 #include "simd/distribution_float-inl.h"
-
 #include <algorithm>
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {
@@ -17,7 +17,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr int k_batch = 64;
 
-/// The first item from `from` on whose last quantum is xi or more: a vector of them at a time. There is one: the last item's is 2^32 - 1.
+/// The first item from `from` on whose last quantum is xi or more: a vector of them at a time. There is one: the last
+/// item's is 2^32 - 1.
 HWY_INLINE int find_from(const std::uint32_t* last, int from, std::uint32_t xi) {
     const hn::CappedTag<std::uint32_t, 16> d;
     const auto target = hn::Set(d, xi);
@@ -38,8 +39,8 @@ struct Drawn {
     }
 };
 
-void sample_guided(const GuidedRows& marginal, const GuidedRows& conditional, const UnitPoint* points, std::size_t count, float* u, float* v,
-                   float* pdf_uv) {
+void sample_guided(const GuidedRows& marginal, const GuidedRows& conditional, const UnitPoint* points,
+                   std::size_t count, float* u, float* v, float* pdf_uv) {
     const std::uint32_t *row_last = marginal.last_of(0), *column_last[k_batch];
     const std::uint16_t *row_guide = marginal.guide_of(0), *column_guide[k_batch];
     const std::size_t stride = std::size_t(conditional.items) + 1, cells = std::size_t(conditional.cells()) + 8;
@@ -48,7 +49,8 @@ void sample_guided(const GuidedRows& marginal, const GuidedRows& conditional, co
     Drawn rows, columns;
     const hn::ScalableTag<double> d;
     const int lanes = int(hn::Lanes(d));
-    for (int k = 0; k < k_batch; ++k) columns.item[k] = columns.offset[k] = rows.item[k] = rows.offset[k] = 0, columns.quanta[k] = rows.quanta[k] = 1;
+    for (int k = 0; k < k_batch; ++k)
+        columns.item[k] = columns.offset[k] = rows.item[k] = rows.offset[k] = 0, columns.quanta[k] = rows.quanta[k] = 1;
 
     for (std::size_t start = 0; start < count; start += k_batch) {
         const int n = int(std::min<std::size_t>(k_batch, count - start));
@@ -70,18 +72,22 @@ void sample_guided(const GuidedRows& marginal, const GuidedRows& conditional, co
 
         alignas(64) float buffer[3][k_batch];
         const bool whole = n == k_batch;
-        float *to_u = whole ? u + start : buffer[0], *to_v = whole ? v + start : buffer[1], *to_pdf = whole ? pdf_uv + start : buffer[2];
+        float *to_u = whole ? u + start : buffer[0], *to_v = whole ? v + start : buffer[1],
+              *to_pdf = whole ? pdf_uv + start : buffer[2];
         const hn::Rebind<float, decltype(d)> df;
         for (int k = 0; k < k_batch; k += lanes) {
             const auto half = hn::Set(d, 0.5), one = hn::Set(d, 1.0);
             const auto position = [&](const Drawn& drawn, double n_items, float* to) HWY_ATTR {
                 const auto item = hn::Load(d, drawn.item + k);
-                const auto x = hn::Add(item, hn::Div(hn::Add(hn::Load(d, drawn.offset + k), half), hn::Load(d, drawn.quanta + k)));
-                hn::StoreU(texel_floats(d, hn::Mul(x, hn::Set(d, 1.0 / n_items)), item, hn::Set(d, n_items), one), df, to + k);
+                const auto x =
+                    hn::Add(item, hn::Div(hn::Add(hn::Load(d, drawn.offset + k), half), hn::Load(d, drawn.quanta + k)));
+                hn::StoreU(texel_floats(d, hn::Mul(x, hn::Set(d, 1.0 / n_items)), item, hn::Set(d, n_items), one), df,
+                           to + k);
             };
             position(columns, width, to_u);
             position(rows, height, to_v);
-            const auto density = hn::Mul(hn::Mul(hn::Load(d, rows.quanta + k), hn::Load(d, columns.quanta + k)), hn::Set(d, scale));
+            const auto density =
+                hn::Mul(hn::Mul(hn::Load(d, rows.quanta + k), hn::Load(d, columns.quanta + k)), hn::Set(d, scale));
             hn::StoreU(hn::DemoteTo(df, density), df, to_pdf + k);
         }
         if (!whole) {
@@ -100,7 +106,8 @@ namespace domelight::simd {
 
 HWY_EXPORT(sample_guided);
 
-void sample_guided(const GuidedRows& marginal, const GuidedRows& conditional, std::span<const UnitPoint> points, float* u, float* v, float* pdf_uv) {
+void sample_guided(const GuidedRows& marginal, const GuidedRows& conditional, std::span<const UnitPoint> points,
+                   float* u, float* v, float* pdf_uv) {
     HWY_DYNAMIC_DISPATCH(sample_guided)(marginal, conditional, points.data(), points.size(), u, v, pdf_uv);
 }
 

@@ -2,15 +2,15 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/grid_lookup.cpp"
+// clang-format off: the order is Highway's
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 #include <hwy/contrib/math/math-inl.h>
-
 #include "simd/grid_lookup.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {
@@ -30,10 +30,12 @@ HWY_INLINE V arc_tangent2(D d, V y, V x) {
 constexpr int k_block = 64;
 
 /// Grid coordinates of directions: column in [0, width], row in [-1/2, rings - 1/2].
-void grid_coordinates(const GridView& grid, const double* x, const double* y, const double* z, int count, double* column, double* row) {
+void grid_coordinates(const GridView& grid, const double* x, const double* y, const double* z, int count,
+                      double* column, double* row) {
     const hn::ScalableTag<double> d;
     const int lanes = int(hn::Lanes(d));
-    const auto per_column = hn::Set(d, grid.width / (2 * std::numbers::pi)), per_row = hn::Set(d, grid.rings / std::numbers::pi);
+    const auto per_column = hn::Set(d, grid.width / (2 * std::numbers::pi)),
+               per_row = hn::Set(d, grid.rings / std::numbers::pi);
     for (int i = 0; i < count; i += lanes) {
         const auto vx = hn::LoadU(d, x + i), vy = hn::LoadU(d, y + i), vz = hn::LoadU(d, z + i);
         auto phi = arc_tangent2(d, vz, vx);
@@ -86,7 +88,8 @@ HWY_INLINE void lookup_one(const GridView& grid, const Place& place, float* rgb)
         const auto weight = hn::Set(d, place.down[k]);
         for (int v = 0; v < vectors; ++v) sum[v] = hn::MulAdd(hn::LoadU(d, from + v * lanes), weight, sum[v]);
     }
-    // Vectors whose lanes are the same channels add up first: all of them, unless a vector is shorter than a texel (the portable target).
+    // Vectors whose lanes are the same channels add up first: all of them, unless a vector is shorter than a texel (the
+    // portable target).
     constexpr int kinds = lanes < 4 ? 4 / lanes : 1;
     alignas(64) float parts[lanes * kinds];
     for (int k = 0; k < kinds; ++k) {
@@ -111,14 +114,15 @@ HWY_INLINE void scatter_one(const GridView& grid, float* rgbx, const Place& plac
     float* to = rgbx + place.offset;
     for (int k = 0; k < k_taps; ++k, to += grid.stride) {
         const auto weight = hn::Set(d, place.down[k]);
-        for (int v = 0; v < vectors; ++v) hn::StoreU(hn::MulAdd(row[v], weight, hn::LoadU(d, to + v * lanes)), d, to + v * lanes);
+        for (int v = 0; v < vectors; ++v)
+            hn::StoreU(hn::MulAdd(row[v], weight, hn::LoadU(d, to + v * lanes)), d, to + v * lanes);
     }
 }
 
 /// Calls use(i, place) for each direction.
 template <typename Use>
-HWY_INLINE void for_each_place(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count,
-                               const Use& use) {
+HWY_INLINE void for_each_place(const GridView& grid, const TapTable& table, const double* x, const double* y,
+                               const double* z, int count, const Use& use) {
     double column[k_block], row[k_block], bx[k_block], by[k_block], bz[k_block];
     for (int i = 0; i < count; i += k_block) {
         const int n = std::min(k_block, count - i);
@@ -139,13 +143,16 @@ HWY_INLINE void for_each_place(const GridView& grid, const TapTable& table, cons
     }
 }
 
-void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out) {
-    for_each_place(grid, table, x, y, z, count, [&](int i, const Place& place) HWY_ATTR { lookup_one(grid, place, out + 3 * std::size_t(i)); });
+void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z,
+                       int count, float* out) {
+    for_each_place(grid, table, x, y, z, count,
+                   [&](int i, const Place& place) HWY_ATTR { lookup_one(grid, place, out + 3 * std::size_t(i)); });
 }
 
-void lookup_quarter_turns(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count,
-                          float* const (&out)[4]) {
-    const std::ptrdiff_t quarter = grid.width, row = 4 * std::ptrdiff_t(grid.width);  // floats of a quarter of a ring, and of all
+void lookup_quarter_turns(const GridView& grid, const TapTable& table, const double* x, const double* y,
+                          const double* z, int count, float* const (&out)[4]) {
+    const std::ptrdiff_t quarter = grid.width,
+                         row = 4 * std::ptrdiff_t(grid.width);  // floats of a quarter of a ring, and of all
     for_each_place(grid, table, x, y, z, count, [&](int i, Place& place) HWY_ATTR {
         for (int k = 0; k < 4; ++k) {
             lookup_one(grid, place, out[k] + 3 * std::size_t(i));
@@ -156,9 +163,11 @@ void lookup_quarter_turns(const GridView& grid, const TapTable& table, const dou
     });
 }
 
-void scatter_directions(const GridView& grid, float* rgbx, const TapTable& table, const double* x, const double* y, const double* z, int count,
-                        const float* rgb) {
-    for_each_place(grid, table, x, y, z, count, [&](int i, const Place& place) HWY_ATTR { scatter_one(grid, rgbx, place, rgb + 3 * std::size_t(i)); });
+void scatter_directions(const GridView& grid, float* rgbx, const TapTable& table, const double* x, const double* y,
+                        const double* z, int count, const float* rgb) {
+    for_each_place(grid, table, x, y, z, count, [&](int i, const Place& place) HWY_ATTR {
+        scatter_one(grid, rgbx, place, rgb + 3 * std::size_t(i));
+    });
 }
 
 }  // namespace domelight::simd::HWY_NAMESPACE
@@ -182,15 +191,16 @@ TapTable::TapTable(const InterpolationTaps& taps) : across((k_steps + 1) * 32), 
     }
 }
 
-void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out) {
+void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z,
+                       int count, float* out) {
     HWY_DYNAMIC_DISPATCH(lookup_directions)(grid, table, x, y, z, count, out);
 }
-void lookup_quarter_turns(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count,
-                          float* const (&out)[4]) {
+void lookup_quarter_turns(const GridView& grid, const TapTable& table, const double* x, const double* y,
+                          const double* z, int count, float* const (&out)[4]) {
     HWY_DYNAMIC_DISPATCH(lookup_quarter_turns)(grid, table, x, y, z, count, out);
 }
-void scatter_directions(const GridView& grid, float* rgbx, const TapTable& table, const double* x, const double* y, const double* z, int count,
-                        const float* rgb) {
+void scatter_directions(const GridView& grid, float* rgbx, const TapTable& table, const double* x, const double* y,
+                        const double* z, int count, const float* rgb) {
     HWY_DYNAMIC_DISPATCH(scatter_directions)(grid, rgbx, table, x, y, z, count, rgb);
 }
 

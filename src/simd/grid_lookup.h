@@ -1,9 +1,9 @@
 #pragma once
 
+#include "math/interpolation_taps.h"
+
 #include <cstddef>
 #include <vector>
-
-#include "math/interpolation_taps.h"
 
 namespace domelight::simd {
 
@@ -15,23 +15,27 @@ struct TapTable {
     std::vector<float> down;    ///< [k_steps + 1][8]: over rows
 };
 
-/// A function on rings of latitude with its surroundings: `rgbx` points at ring 0, column 0; columns -4 .. width + 7 and rings -4 .. rings + 3 exist.
+/// A function on rings of latitude with its surroundings: `rgbx` points at ring 0, column 0; columns -4 .. width + 7
+/// and rings -4 .. rings + 3 exist.
 struct GridView {
     const float* rgbx;
     std::ptrdiff_t stride;  ///< floats from ring to ring
     int rings, width;
 };
 
-/// Values at `count` directions (need not be of unit length): 8 x 8 taps in colatitude and azimuth from +X towards +Z. out: RGB.
-void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count, float* out);
+/// Values at `count` directions (need not be of unit length): 8 x 8 taps in colatitude and azimuth from +X towards +Z.
+/// out: RGB.
+void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z,
+                       int count, float* out);
 
-/// The same at four directions for each one given: as it is and turned by one, two and three quarters from +X towards +Z. A grid that is a multiple
-/// of four wide has the same weights there.
-void lookup_quarter_turns(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z, int count,
-                          float* const (&out)[4]);
+/// The same at four directions for each one given: as it is and turned by one, two and three quarters from +X towards
+/// +Z. A grid that is a multiple of four wide has the same weights there.
+void lookup_quarter_turns(const GridView& grid, const TapTable& table, const double* x, const double* y,
+                          const double* z, int count, float* const (&out)[4]);
 
-/// The lookup's transpose: adds each direction's value (RGB) to the 8 x 8 grid points around it with the lookup's weights. `rgbx` as in GridView.
-void scatter_directions(const GridView& grid, float* rgbx, const TapTable& table, const double* x, const double* y, const double* z, int count,
-                        const float* rgb);
+/// The lookup's transpose: adds each direction's value (RGB) to the 8 x 8 grid points around it with the lookup's
+/// weights. `rgbx` as in GridView.
+void scatter_directions(const GridView& grid, float* rgbx, const TapTable& table, const double* x, const double* y,
+                        const double* z, int count, const float* rgb);
 
 }  // namespace domelight::simd

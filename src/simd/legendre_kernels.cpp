@@ -2,10 +2,11 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/legendre_kernels.cpp"
+// clang-format off: the order is Highway's
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-
 #include "simd/legendre_kernels.h"
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {
@@ -21,8 +22,8 @@ constexpr int k_side_by_side = 4;
 
 /// `vectors` double vectors of rings at once; returns after `count` degrees.
 template <int vectors>
-HWY_INLINE void legendre_vectors(const LegendreStep* steps, int count, const double* x2, double* p, double* p_prev, float* out,
-                                 std::ptrdiff_t out_stride) {
+HWY_INLINE void legendre_vectors(const LegendreStep* steps, int count, const double* x2, double* p, double* p_prev,
+                                 float* out, std::ptrdiff_t out_stride) {
     const DD d;
     const DH half;
     const int lanes = int(hn::Lanes(d));
@@ -47,18 +48,20 @@ HWY_INLINE void legendre_vectors(const LegendreStep* steps, int count, const dou
     }
 }
 
-void legendre_rows(const LegendreStep* steps, int count, const double* x2, double* p, double* p_prev, int rings, float* out,
-                   std::ptrdiff_t out_stride) {
+void legendre_rows(const LegendreStep* steps, int count, const double* x2, double* p, double* p_prev, int rings,
+                   float* out, std::ptrdiff_t out_stride) {
     const int lanes = int(hn::Lanes(DD()));
     int r = 0;
     for (; r + k_side_by_side * lanes <= rings; r += k_side_by_side * lanes)
         legendre_vectors<k_side_by_side>(steps, count, x2 + r, p + r, p_prev + r, out + r, out_stride);
-    for (; r + lanes <= rings; r += lanes) legendre_vectors<1>(steps, count, x2 + r, p + r, p_prev + r, out + r, out_stride);
+    for (; r + lanes <= rings; r += lanes)
+        legendre_vectors<1>(steps, count, x2 + r, p + r, p_prev + r, out + r, out_stride);
 }
 
 /// `degrees` rows of p against the six rows of data: degrees * 6 sums in registers.
 template <int degrees>
-HWY_INLINE void project(const float* p, std::ptrdiff_t p_stride, const float* data, std::ptrdiff_t data_stride, int rings, float* sums) {
+HWY_INLINE void project(const float* p, std::ptrdiff_t p_stride, const float* data, std::ptrdiff_t data_stride,
+                        int rings, float* sums) {
     const DF d;
     VF sum[degrees][6];
     for (int i = 0; i < degrees; ++i)
@@ -75,16 +78,19 @@ HWY_INLINE void project(const float* p, std::ptrdiff_t p_stride, const float* da
         for (int c = 0; c < 6; ++c) sums[i * 6 + c] += hn::GetLane(hn::SumOfLanes(d, sum[i][c]));
 }
 
-void project_rows(const float* p, std::ptrdiff_t p_stride, int count, const float* data, std::ptrdiff_t data_stride, int rings, float* sums) {
+void project_rows(const float* p, std::ptrdiff_t p_stride, int count, const float* data, std::ptrdiff_t data_stride,
+                  int rings, float* sums) {
     // 24 sums fit AVX-512's 32 registers, 12 fit 16.
     constexpr int degrees = HWY_TARGET == HWY_AVX3 ? 4 : 2;
     int i = 0;
-    for (; i + degrees <= count; i += degrees) project<degrees>(p + i * p_stride, p_stride, data, data_stride, rings, sums + i * 6);
+    for (; i + degrees <= count; i += degrees)
+        project<degrees>(p + i * p_stride, p_stride, data, data_stride, rings, sums + i * 6);
     for (; i < count; i += 2) project<2>(p + i * p_stride, p_stride, data, data_stride, rings, sums + i * 6);
 }
 
 template <int vectors>
-HWY_INLINE void expand(const float* p, std::ptrdiff_t p_stride, int count, const float* coefficients, float* out, std::ptrdiff_t out_stride) {
+HWY_INLINE void expand(const float* p, std::ptrdiff_t p_stride, int count, const float* coefficients, float* out,
+                       std::ptrdiff_t out_stride) {
     const DF d;
     const int lanes = int(hn::Lanes(d));
     VF sum[6][vectors];
@@ -102,11 +108,13 @@ HWY_INLINE void expand(const float* p, std::ptrdiff_t p_stride, int count, const
         for (int v = 0; v < vectors; ++v) hn::Store(sum[c][v], d, out + c * out_stride + v * lanes);
 }
 
-void expand_rows(const float* p, std::ptrdiff_t p_stride, int count, const float* coefficients, int rings, float* out, std::ptrdiff_t out_stride) {
+void expand_rows(const float* p, std::ptrdiff_t p_stride, int count, const float* coefficients, int rings, float* out,
+                 std::ptrdiff_t out_stride) {
     constexpr int vectors = HWY_TARGET == HWY_AVX3 ? 4 : 2;
     const int lanes = int(hn::Lanes(DF()));
     int r = 0;
-    for (; r + vectors * lanes <= rings; r += vectors * lanes) expand<vectors>(p + r, p_stride, count, coefficients, out + r, out_stride);
+    for (; r + vectors * lanes <= rings; r += vectors * lanes)
+        expand<vectors>(p + r, p_stride, count, coefficients, out + r, out_stride);
     for (; r < rings; r += lanes) expand<1>(p + r, p_stride, count, coefficients, out + r, out_stride);
 }
 
@@ -120,14 +128,16 @@ HWY_EXPORT(legendre_rows);
 HWY_EXPORT(project_rows);
 HWY_EXPORT(expand_rows);
 
-void legendre_rows(const LegendreStep* steps, int count, const double* x2, double* p, double* p_prev, int rings, float* out,
-                   std::ptrdiff_t out_stride) {
+void legendre_rows(const LegendreStep* steps, int count, const double* x2, double* p, double* p_prev, int rings,
+                   float* out, std::ptrdiff_t out_stride) {
     HWY_DYNAMIC_DISPATCH(legendre_rows)(steps, count, x2, p, p_prev, rings, out, out_stride);
 }
-void project_rows(const float* p, std::ptrdiff_t p_stride, int count, const float* data, std::ptrdiff_t data_stride, int rings, float* sums) {
+void project_rows(const float* p, std::ptrdiff_t p_stride, int count, const float* data, std::ptrdiff_t data_stride,
+                  int rings, float* sums) {
     HWY_DYNAMIC_DISPATCH(project_rows)(p, p_stride, count, data, data_stride, rings, sums);
 }
-void expand_rows(const float* p, std::ptrdiff_t p_stride, int count, const float* coefficients, int rings, float* out, std::ptrdiff_t out_stride) {
+void expand_rows(const float* p, std::ptrdiff_t p_stride, int count, const float* coefficients, int rings, float* out,
+                 std::ptrdiff_t out_stride) {
     HWY_DYNAMIC_DISPATCH(expand_rows)(p, p_stride, count, coefficients, rings, out, out_stride);
 }
 

@@ -9,18 +9,21 @@ struct LegendreStep {
     double a, b, c;
 };
 
-/// Rings are handled in groups of this many; arrays over rings are padded to a multiple of it with zeros and 64-byte aligned.
+/// Rings are handled in groups of this many; arrays over rings are padded to a multiple of it with zeros and 64-byte
+/// aligned.
 inline constexpr int k_ring_group = 16;
 
-/// Writes P_l for `count` degrees (two apart) on `rings` rings to out[i * out_stride + ring] and leaves p, p_prev (P_l, P_{l-2} of the next degree).
-/// The recurrence runs in double; what is written is float.
-void legendre_rows(const LegendreStep* steps, int count, const double* x2, double* p, double* p_prev, int rings, float* out,
-                   std::ptrdiff_t out_stride);
+/// Writes P_l for `count` degrees (two apart) on `rings` rings to out[i * out_stride + ring] and leaves p, p_prev (P_l,
+/// P_{l-2} of the next degree). The recurrence runs in double; what is written is float.
+void legendre_rows(const LegendreStep* steps, int count, const double* x2, double* p, double* p_prev, int rings,
+                   float* out, std::ptrdiff_t out_stride);
 
 /// sums[i * 6 + c] += sum_ring p[i * p_stride + ring] data[c * data_stride + ring], i < count, c < 6. count is even.
-void project_rows(const float* p, std::ptrdiff_t p_stride, int count, const float* data, std::ptrdiff_t data_stride, int rings, float* sums);
+void project_rows(const float* p, std::ptrdiff_t p_stride, int count, const float* data, std::ptrdiff_t data_stride,
+                  int rings, float* sums);
 
 /// out[c * out_stride + ring] += sum_i p[i * p_stride + ring] coefficients[i * 6 + c], i < count, c < 6.
-void expand_rows(const float* p, std::ptrdiff_t p_stride, int count, const float* coefficients, int rings, float* out, std::ptrdiff_t out_stride);
+void expand_rows(const float* p, std::ptrdiff_t p_stride, int count, const float* coefficients, int rings, float* out,
+                 std::ptrdiff_t out_stride);
 
 }  // namespace domelight::simd

@@ -8,9 +8,9 @@
 #include <hwy/cache_control.h>
 // clang-format on
 
-#include <algorithm>
-
 #include "simd/light_samples.h"
+
+#include <algorithm>
 
 HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {
@@ -20,7 +20,8 @@ using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 using VI = hn::Vec<hn::RebindToSigned<D>>;
 
-/// cos and sin of 2 pi t, t in [-1, 1]: the nearest quarter turn, and Taylor's series for the rest, |x| <= pi / 4. Within 1.5e-7.
+/// cos and sin of 2 pi t, t in [-1, 1]: the nearest quarter turn, and Taylor's series for the rest, |x| <= pi / 4.
+/// Within 1.5e-7.
 HWY_INLINE void turn_cosine_sine(V t, V& cosine, V& sine) {
     const D d;
     const hn::RebindToSigned<D> di;
@@ -47,7 +48,8 @@ HWY_INLINE void turn_cosine_sine(V t, V& cosine, V& sine) {
 constexpr int k_block = 64;
 
 /// Directions and densities of a block.
-HWY_INLINE void turn_block(const float (&m)[9], int count, float least_sine, const float* u, const float* v, float* pdf, float* x, float* y, float* z) {
+HWY_INLINE void turn_block(const float (&m)[9], int count, float least_sine, const float* u, const float* v, float* pdf,
+                           float* x, float* y, float* z) {
     const D d;
     const int lanes = int(hn::Lanes(d));
     alignas(64) float in[3][k_block] = {}, out[4][k_block];
@@ -64,12 +66,14 @@ HWY_INLINE void turn_block(const float (&m)[9], int count, float least_sine, con
         cos_theta = hn::IfThenElse(south, hn::Neg(cos_theta), cos_theta);
         const V sx = hn::Mul(sin_theta, cos_phi), sz = hn::Mul(sin_theta, sin_phi);
         const auto turned = [&](int r) HWY_ATTR {
-            return hn::MulAdd(hn::Set(d, m[r]), sx, hn::MulAdd(hn::Set(d, m[r + 1]), cos_theta, hn::Mul(hn::Set(d, m[r + 2]), sz)));
+            return hn::MulAdd(hn::Set(d, m[r]), sx,
+                              hn::MulAdd(hn::Set(d, m[r + 1]), cos_theta, hn::Mul(hn::Set(d, m[r + 2]), sz)));
         };
         hn::Store(turned(0), d, out[0] + i);
         hn::Store(turned(3), d, out[1] + i);
         hn::Store(turned(6), d, out[2] + i);
-        const V area = hn::Mul(hn::Max(sin_theta, hn::Set(d, least_sine)), hn::Set(d, 19.739208802f));  // 2 pi^2 sin theta
+        const V area =
+            hn::Mul(hn::Max(sin_theta, hn::Set(d, least_sine)), hn::Set(d, 19.739208802f));  // 2 pi^2 sin theta
         hn::Store(hn::Div(hn::Load(d, in[2] + i), area), d, out[3] + i);
     }
     std::copy_n(out[0], count, x);
@@ -79,7 +83,8 @@ HWY_INLINE void turn_block(const float (&m)[9], int count, float least_sine, con
 }
 
 /// Radiance of a block: addresses and fetches first, so that the block's cache misses overlap.
-HWY_INLINE void look_up_block(const LightImage& image, int count, const float* u, const float* v, float* r, float* g, float* b) {
+HWY_INLINE void look_up_block(const LightImage& image, int count, const float* u, const float* v, float* r, float* g,
+                              float* b) {
     const int w = image.width, h = image.height;
     if (!image.bilinear) {
         const float* at[k_block];
@@ -110,17 +115,20 @@ HWY_INLINE void look_up_block(const LightImage& image, int count, const float* u
     for (int i = 0; i < count; ++i)
         for (int c = 0; c < 3; ++c) {
             const float a = upper[i][c], e = lower[i][c];
-            const float above = a + s[i] * (upper[i][right[i] + c] - a), below = e + s[i] * (lower[i][right[i] + c] - e);
+            const float above = a + s[i] * (upper[i][right[i] + c] - a),
+                        below = e + s[i] * (lower[i][right[i] + c] - e);
             out[c][i] = std::max(above + t[i] * (below - above), 0.f);
         }
 }
 
-void complete_light_samples(const LightImage& image, const float (&to_world)[9], int count, float least_sine, const float* u, const float* v,
-                            float* pdf, const std::array<float*, 3>& direction, const std::array<float*, 3>& radiance) {
+void complete_light_samples(const LightImage& image, const float (&to_world)[9], int count, float least_sine,
+                            const float* u, const float* v, float* pdf, const std::array<float*, 3>& direction,
+                            const std::array<float*, 3>& radiance) {
     for (int i = 0; i < count; i += k_block) {
         const int n = std::min(k_block, count - i);
         look_up_block(image, n, u + i, v + i, radiance[0] + i, radiance[1] + i, radiance[2] + i);
-        turn_block(to_world, n, least_sine, u + i, v + i, pdf + i, direction[0] + i, direction[1] + i, direction[2] + i);
+        turn_block(to_world, n, least_sine, u + i, v + i, pdf + i, direction[0] + i, direction[1] + i,
+                   direction[2] + i);
     }
 }
 
@@ -132,8 +140,9 @@ namespace domelight::simd {
 
 HWY_EXPORT(complete_light_samples);
 
-void complete_light_samples(const LightImage& image, const float (&to_world)[9], int count, float least_sine, const float* u, const float* v,
-                            float* pdf, const std::array<float*, 3>& direction, const std::array<float*, 3>& radiance) {
+void complete_light_samples(const LightImage& image, const float (&to_world)[9], int count, float least_sine,
+                            const float* u, const float* v, float* pdf, const std::array<float*, 3>& direction,
+                            const std::array<float*, 3>& radiance) {
     HWY_DYNAMIC_DISPATCH(complete_light_samples)(image, to_world, count, least_sine, u, v, pdf, direction, radiance);
 }
 

@@ -13,9 +13,10 @@ struct LightImage {
     bool bilinear;
 };
 
-/// Completes drawn points: directions (turned by the rows of `to_world`), radiance, and pdf from per unit square to per steradian in place,
-/// pdf / (2 pi^2 max(sin theta, least_sine)).
-void complete_light_samples(const LightImage& image, const float (&to_world)[9], int count, float least_sine, const float* u, const float* v,
-                            float* pdf, const std::array<float*, 3>& direction, const std::array<float*, 3>& radiance);
+/// Completes drawn points: directions (turned by the rows of `to_world`), radiance, and pdf from per unit square to per
+/// steradian in place, pdf / (2 pi^2 max(sin theta, least_sine)).
+void complete_light_samples(const LightImage& image, const float (&to_world)[9], int count, float least_sine,
+                            const float* u, const float* v, float* pdf, const std::array<float*, 3>& direction,
+                            const std::array<float*, 3>& radiance);
 
 }  // namespace domelight::simd

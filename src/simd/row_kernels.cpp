@@ -7,10 +7,10 @@
 #include <hwy/highway.h>
 // clang-format on
 
-#include <algorithm>
-
 #include "simd/batch_fft.h"
 #include "simd/row_kernels.h"
+
+#include <algorithm>
 
 HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {

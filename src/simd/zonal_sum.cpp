@@ -2,20 +2,21 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/zonal_sum.cpp"
+// clang-format off: the order is Highway's
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 #include <hwy/contrib/math/math-inl.h>
-
 #include "simd/zonal_sum.h"
-
 #include <algorithm>
 #include <numbers>
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-void add_zonal_sum(const PointSet& points, const ZonalTable& table, const float* x, const float* y, const float* z, int count, float* rgb) {
+void add_zonal_sum(const PointSet& points, const ZonalTable& table, const float* x, const float* y, const float* z,
+                   int count, float* rgb) {
     const hn::CappedTag<float, 16> d;
     const hn::RebindToSigned<decltype(d)> di;
     const int lanes = int(hn::Lanes(d));
@@ -35,7 +36,8 @@ void add_zonal_sum(const PointSet& points, const ZonalTable& table, const float*
             const auto at = hn::Mul(hn::Acos(d, c), scale);
             const auto index = hn::ConvertTo(di, at);
             const auto t = hn::Sub(at, hn::ConvertTo(d, index));
-            const auto low = hn::GatherIndex(d, table.values, index), high = hn::GatherIndex(d, table.values + 1, index);
+            const auto low = hn::GatherIndex(d, table.values, index),
+                       high = hn::GatherIndex(d, table.values + 1, index);
             const auto f = hn::MulAdd(t, hn::Sub(high, low), low);
             r = hn::MulAdd(f, hn::Set(d, points.r[p]), r);
             g = hn::MulAdd(f, hn::Set(d, points.g[p]), g);
@@ -57,7 +59,8 @@ namespace domelight::simd {
 
 HWY_EXPORT(add_zonal_sum);
 
-void add_zonal_sum(const PointSet& points, const ZonalTable& table, const float* x, const float* y, const float* z, int count, float* rgb) {
+void add_zonal_sum(const PointSet& points, const ZonalTable& table, const float* x, const float* y, const float* z,
+                   int count, float* rgb) {
     HWY_DYNAMIC_DISPATCH(add_zonal_sum)(points, table, x, y, z, count, rgb);
 }
 

@@ -10,13 +10,15 @@ struct PointSet {
     int count;
 };
 
-/// A function of the angle between two directions, linear between table[i] = f(pi i / steps), i = 0..steps (and one more entry after it).
+/// A function of the angle between two directions, linear between table[i] = f(pi i / steps), i = 0..steps (and one
+/// more entry after it).
 struct ZonalTable {
     const float* values;
     int steps;
 };
 
 /// rgb[3 i + c] += sum_p f(angle(direction_i, p)) power_p[c] for `count` unit directions.
-void add_zonal_sum(const PointSet& points, const ZonalTable& table, const float* x, const float* y, const float* z, int count, float* rgb);
+void add_zonal_sum(const PointSet& points, const ZonalTable& table, const float* x, const float* y, const float* z,
+                   int count, float* rgb);
 
 }  // namespace domelight::simd

@@ -1,7 +1,7 @@
 #include "domelight/distribution_alias.h"
+#include "domelight/distribution_guided.h"
 
 #include "distribution/distribution_samples.h"
-#include "domelight/distribution_guided.h"
 #include "test.h"
 
 using namespace domelight;

@@ -11,7 +11,8 @@
 
 namespace domelight::test {
 
-/// Upper regularised incomplete gamma function Q(a, x) = Gamma(a, x) / Gamma(a); a > 0, x >= 0; in [0, 1], to about 1e-12.
+/// Upper regularised incomplete gamma function Q(a, x) = Gamma(a, x) / Gamma(a); a > 0, x >= 0; in [0, 1], to about
+/// 1e-12.
 ///
 /// Below x = a + 1 the series of P (DLMF 8.7.1), above it the continued fraction of Q (DLMF 8.9.2) by Lentz's method.
 inline double regularised_gamma_q(double a, double x) {
@@ -37,17 +38,20 @@ inline double regularised_gamma_q(double a, double x) {
     return scale * fraction;
 }
 
-/// Probability that counts as far from `expected` as `observed` (or farther) arise by chance: chi-square with (cells - 1) degrees of freedom.
+/// Probability that counts as far from `expected` as `observed` (or farther) arise by chance: chi-square with (cells -
+/// 1) degrees of freedom.
 ///
 /// observed   counts in each cell
-/// expected   counts expected in each cell, >= 0; scaled to the observed total if theirs differs (the caller tests the total itself)
-/// returns    p-value in [0, 1]; 0 where a cell that expects nothing has a count; 1 where only one cell is left
+/// expected   counts expected in each cell, >= 0; scaled to the observed total if theirs differs (the caller tests the
+/// total itself) returns    p-value in [0, 1]; 0 where a cell that expects nothing has a count; 1 where only one cell
+/// is left
 ///
-/// Pearson's statistic is chi-square distributed only where every cell expects some 5 counts or more, so cells that expect fewer are pooled, in
-/// order of what they expect.
+/// Pearson's statistic is chi-square distributed only where every cell expects some 5 counts or more, so cells that
+/// expect fewer are pooled, in order of what they expect.
 inline double chi_square_p_value(std::span<const double> observed, std::span<const double> expected) {
     constexpr double least = 5;
-    const double total = std::accumulate(observed.begin(), observed.end(), 0.0), mass = std::accumulate(expected.begin(), expected.end(), 0.0);
+    const double total = std::accumulate(observed.begin(), observed.end(), 0.0),
+                 mass = std::accumulate(expected.begin(), expected.end(), 0.0);
     if (observed.size() != expected.size() || !std::isfinite(mass)) return 0;
     if (total == 0) return 1;
     if (!(mass > 0)) return 0;
@@ -73,7 +77,8 @@ inline double chi_square_p_value(std::span<const double> observed, std::span<con
     return cells > 1 ? regularised_gamma_q(0.5 * (cells - 1), 0.5 * statistic) : 1;
 }
 
-/// Significance of one test among `tests`, so that all of them together fail by chance with probability `overall` (Bonferroni).
+/// Significance of one test among `tests`, so that all of them together fail by chance with probability `overall`
+/// (Bonferroni).
 inline double corrected_significance(int tests, double overall = 0.01) {
     return overall / std::max(1, tests);
 }

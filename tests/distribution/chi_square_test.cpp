@@ -33,7 +33,8 @@ TEST_CASE("chi_square_p_value: uniform over fair draws, tiny over unfair ones") 
     // Kolmogorov-Smirnov against the uniform distribution: 1.95 / sqrt(n) is the 0.1 % point.
     std::sort(p_values.begin(), p_values.end());
     double largest = 0;
-    for (std::size_t i = 0; i < p_values.size(); ++i) largest = std::max(largest, std::abs(p_values[i] - (i + 0.5) / p_values.size()));
+    for (std::size_t i = 0; i < p_values.size(); ++i)
+        largest = std::max(largest, std::abs(p_values[i] - (i + 0.5) / p_values.size()));
     CHECK(largest < 1.95 / std::sqrt(400.0));
 
     std::vector<double> observed(100, 1000), expected(100, 1000);

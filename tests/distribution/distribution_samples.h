@@ -30,8 +30,8 @@ inline NamedWeights constant_weights(std::string name, int width, int height, fl
 
 /// `hot` in one texel, `background` in all others.
 inline NamedWeights hot_texel(int width, int height, int x, int y, float hot = 1, float background = 0) {
-    NamedWeights w{"hot " + std::to_string(x) + "," + std::to_string(y) + " of " + std::to_string(width) + "x" + std::to_string(height) +
-                       (background > 0 ? " over background" : ""),
+    NamedWeights w{"hot " + std::to_string(x) + "," + std::to_string(y) + " of " + std::to_string(width) + "x" +
+                       std::to_string(height) + (background > 0 ? " over background" : ""),
                    ImageF(width, height, 1, background)};
     *w.image.at(x, y) = hot;
     return w;
@@ -44,8 +44,8 @@ inline NamedWeights light_weights(std::string name, const ImageF& rgb, int heigh
     for (int y = 0; y < h * step; ++y)
         for (int x = 0; x < w * step; ++x) {
             const float* p = rgb.at(x, y);
-            *weights.image.at(x / step, y / step) +=
-                float((0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2]) * std::sin((y + 0.5) / rgb.height() * k_pi) / (step * step));
+            *weights.image.at(x / step, y / step) += float((0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2]) *
+                                                           std::sin((y + 0.5) / rgb.height() * k_pi) / (step * step));
         }
     return weights;
 }
@@ -73,7 +73,8 @@ inline NamedWeights patched_weights(int width, int height, unsigned seed) {
     w.name = "zero patches " + std::to_string(width) + "x" + std::to_string(height);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
-            if (y < 2 || y == height / 2 || y == height - 1 || x < 3 || x >= width - 2 || (x / 4 + y / 3) % 3 == 0) *w.image.at(x, y) = 0;
+            if (y < 2 || y == height / 2 || y == height - 1 || x < 3 || x >= width - 2 || (x / 4 + y / 3) % 3 == 0)
+                *w.image.at(x, y) = 0;
     return w;
 }
 
@@ -130,8 +131,9 @@ inline std::vector<UnitPoint> random_points(int count, std::uint64_t seed) {
     return points;
 }
 
-inline const DistributionMethod k_all_methods[] = {DistributionMethod::linear,   DistributionMethod::walk,          DistributionMethod::binary,
-                                                   DistributionMethod::guided,   DistributionMethod::alias,         DistributionMethod::hierarchical,
+inline const DistributionMethod k_all_methods[] = {DistributionMethod::linear,   DistributionMethod::walk,
+                                                   DistributionMethod::binary,   DistributionMethod::guided,
+                                                   DistributionMethod::alias,    DistributionMethod::hierarchical,
                                                    DistributionMethod::bilinear, DistributionMethod::bilinear_plain};
 
 inline std::unique_ptr<Distribution2D> made(const NamedWeights& weights, DistributionMethod method) {

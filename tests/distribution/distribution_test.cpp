@@ -1,9 +1,9 @@
 // What every method of drawing from a distribution must do, tested on all of them.
 #include "domelight/distribution.h"
 
+#include "distribution/bilinear_place.h"
 #include "distribution/chi_square.h"
 #include "distribution/distribution_samples.h"
-#include "distribution/bilinear_place.h"
 #include "test.h"
 
 #include <algorithm>
@@ -19,7 +19,8 @@ constexpr int k_draws = 60'000;
 /// How near densities must be to the weights, relative.
 double density_tolerance(DistributionMethod method) {
     switch (method) {
-        // What follows counts from texels of 1e-3 of the mean on, and rows of 300 of them: a float's 2^-24 is 2 % of such a texel, 2^-32 is 7e-5.
+        // What follows counts from texels of 1e-3 of the mean on, and rows of 300 of them: a float's 2^-24 is 2 % of
+        // such a texel, 2^-32 is 7e-5.
         case DistributionMethod::binary:
             return 5e-2;
         case DistributionMethod::guided:
@@ -32,7 +33,8 @@ double density_tolerance(DistributionMethod method) {
     }
 }
 
-/// Probability of each texel by the density: its own value, or the integral of the bilinear form (2 x 2 midpoints a quarter are exact for it).
+/// Probability of each texel by the density: its own value, or the integral of the bilinear form (2 x 2 midpoints a
+/// quarter are exact for it).
 std::vector<double> texel_probabilities(const Distribution2D& d) {
     const int w = d.width(), h = d.height();
     std::vector<double> p(std::size_t(w) * h);
@@ -60,7 +62,8 @@ double sampling_p_value(const Distribution2D& d, int draws, std::uint64_t seed) 
     const int w = 2 * d.width(), h = 2 * d.height();
     std::vector<double> observed(std::size_t(w) * h), expected(observed.size());
     for (int y = 0; y < h; ++y)
-        for (int x = 0; x < w; ++x) expected[std::size_t(y) * w + x] = d.pdf_uv((x + 0.5) / w, (y + 0.5) / h) * draws / (double(w) * h);
+        for (int x = 0; x < w; ++x)
+            expected[std::size_t(y) * w + x] = d.pdf_uv((x + 0.5) / w, (y + 0.5) / h) * draws / (double(w) * h);
     std::mt19937_64 random(seed);
     for (int i = 0; i < draws; ++i) {
         const std::uint64_t bits = random();
@@ -75,10 +78,14 @@ double apart(double a, double b) {
     return a == b ? 0 : std::abs(a - b) / std::max(std::abs(a), std::abs(b));
 }
 
-/// The map's Jacobian |d(u, v) / d(x, y)| at a point, by central differences of `step` quanta; 0 if a border lies within.
+/// The map's Jacobian |d(u, v) / d(x, y)| at a point, by central differences of `step` quanta; 0 if a border lies
+/// within.
 double jacobian(const Distribution2D& d, UnitPoint p, std::uint32_t step) {
-    const auto at = [&](std::int64_t dx, std::int64_t dy) { return d.sample({std::uint32_t(p.x + dx), std::uint32_t(p.y + dy)}); };
-    const auto l = at(-std::int64_t(step), 0), r = at(step, 0), t = at(0, -std::int64_t(step)), b = at(0, step), c = d.sample(p);
+    const auto at = [&](std::int64_t dx, std::int64_t dy) {
+        return d.sample({std::uint32_t(p.x + dx), std::uint32_t(p.y + dy)});
+    };
+    const auto l = at(-std::int64_t(step), 0), r = at(step, 0), t = at(0, -std::int64_t(step)), b = at(0, step),
+               c = d.sample(p);
     const double scale = 1 / (2.0 * step * 0x1p-32);
     const double ux = (r.u - l.u) * scale, vx = (r.v - l.v) * scale, uy = (b.u - t.u) * scale, vy = (b.v - t.v) * scale;
     // In one cell of what the density is smooth in, whose borders lie at texels' borders or (continuous) centres.
@@ -121,11 +128,14 @@ TEST_CASE("distribution: the density is the weights', and integrates to 1") {
             for (int y = 0; y < d->height(); ++y)
                 for (int x = 0; x < d->width(); ++x) {
                     const double weight = sum > 0 ? *weights.image.at(x, y) / sum : 1.0 / double(p.size());
-                    const double density = d->pdf_uv((x + 0.5) / d->width(), (y + 0.5) / d->height()) / double(p.size());
+                    const double density =
+                        d->pdf_uv((x + 0.5) / d->width(), (y + 0.5) / d->height()) / double(p.size());
                     double around = weight;
                     if (d->continuous() && sum > 0)
                         for (int j = std::max(0, y - 1); j <= std::min(y + 1, d->height() - 1); ++j)
-                            for (int i : {x - 1, x + 1}) around = std::max<double>(around, *weights.image.at((i + d->width()) % d->width(), j) / sum);
+                            for (int i : {x - 1, x + 1})
+                                around =
+                                    std::max<double>(around, *weights.image.at((i + d->width()) % d->width(), j) / sum);
                     worst = std::max(worst, std::abs(density - weight) / (around + 1e-3 / double(p.size())));
                 }
             CHECK(worst < density_tolerance(method));
@@ -144,7 +154,8 @@ TEST_CASE("distribution: what sample says of the density is what pdf_uv says the
             for (UnitPoint p : points) {
                 const auto s = d->sample(p);
                 inside &= s.u >= 0 && s.u < 1 && s.v >= 0 && s.v < 1 && s.pdf_uv > 0 && std::isfinite(s.pdf_uv);
-                // Where a continuous density falls to zero a rounding of the place is a large part of what is left: seen from the peak it is small.
+                // Where a continuous density falls to zero a rounding of the place is a large part of what is left:
+                // seen from the peak it is small.
                 const double scale = d->continuous() ? s.pdf_uv + 1e-3 : s.pdf_uv;
                 worst = std::max(worst, std::abs(d->pdf_uv(s.u, s.v) - s.pdf_uv) / scale);
             }
@@ -159,19 +170,22 @@ TEST_CASE("distribution: the numerical Jacobian of the map is one over the densi
         for (DistributionMethod method : k_all_methods) {
             CAPTURE(weights.name);
             CAPTURE(method_name(method));
-            // An alias table lays several pieces over each texel, whose densities add up; chi-square and the count of quanta test those.
+            // An alias table lays several pieces over each texel, whose densities add up; chi-square and the count of
+            // quanta test those.
             if (method == DistributionMethod::alias) continue;
             const auto d = made(weights, method);
             int seen = 0, wrong = 0;
             for (std::size_t i = 25; i < points.size(); ++i) {
-                // The binary form's inputs are floats, 256 quanta apart, and its positions come from differences of floats.
+                // The binary form's inputs are floats, 256 quanta apart, and its positions come from differences of
+                // floats.
                 const bool coarse = method == DistributionMethod::binary;
                 const std::uint32_t step = coarse ? 1u << 18 : d->continuous() ? 1u << 10 : 1u << 14;
                 const double j = jacobian(*d, points[i], step);
                 if (j == 0) continue;
                 const double pdf = d->sample(points[i]).pdf_uv;
                 ++seen;
-                // Second-order error of the difference where the density changes, see below; rounding of u, v at 1e-16 over a step of 2^-18.
+                // Second-order error of the difference where the density changes, see below; rounding of u, v at 1e-16
+                // over a step of 2^-18.
                 const double tolerance = coarse ? 5e-3 : d->continuous() ? 1e-3 : 1e-6;
                 wrong += apart(j, 1 / pdf) > tolerance && !(d->continuous() && pdf < 0.05);
             }
@@ -182,11 +196,12 @@ TEST_CASE("distribution: the numerical Jacobian of the map is one over the densi
 
 TEST_CASE("distribution: invert takes a sample back to its point") {
     const auto points = random_points(3000, 7);
-    // In quanta of 2^-32. Exact where half a quantum is more than double's rounding takes; the plain forms round down from a sum in double; floats
-    // have 24 bits of the 32, and two of them are subtracted.
+    // In quanta of 2^-32. Exact where half a quantum is more than double's rounding takes; the plain forms round down
+    // from a sum in double; floats have 24 bits of the 32, and two of them are subtracted.
     const std::map<DistributionMethod, double> quanta = {
-        {DistributionMethod::linear, 1},         {DistributionMethod::walk, 1},         {DistributionMethod::binary, 1024},
-        {DistributionMethod::guided, 0},         {DistributionMethod::hierarchical, 1}, {DistributionMethod::bilinear, 0},
+        {DistributionMethod::linear, 1},         {DistributionMethod::walk, 1},
+        {DistributionMethod::binary, 1024},      {DistributionMethod::guided, 0},
+        {DistributionMethod::hierarchical, 1},   {DistributionMethod::bilinear, 0},
         {DistributionMethod::bilinear_plain, 1},
     };
     for (const NamedWeights& weights : hard_weights())
@@ -230,7 +245,8 @@ TEST_CASE("distribution: many points at once give the bits of one at a time") {
                     const auto s = d->sample(points[i]);
                     inside &= u[i] >= 0 && u[i] < 1 && v[i] >= 0 && v[i] < 1 && pdf[i] > 0;
                     if (d->continuous()) continue;
-                    inside &= int(double(u[i]) * d->width()) == int(s.u * d->width()) && int(double(v[i]) * d->height()) == int(s.v * d->height());
+                    inside &= int(double(u[i]) * d->width()) == int(s.u * d->width()) &&
+                              int(double(v[i]) * d->height()) == int(s.v * d->height());
                 }
                 CHECK(inside);
             }
@@ -241,8 +257,10 @@ TEST_CASE("distribution: the fast methods draw what the plain ones draw") {
     for (const NamedWeights& weights : hard_weights()) {
         CAPTURE(weights.name);
         const auto linear = made(weights, DistributionMethod::linear), walk = made(weights, DistributionMethod::walk);
-        const auto guided = made(weights, DistributionMethod::guided), binary = made(weights, DistributionMethod::binary);
-        const auto bilinear = made(weights, DistributionMethod::bilinear), bilinear_plain = made(weights, DistributionMethod::bilinear_plain);
+        const auto guided = made(weights, DistributionMethod::guided),
+                   binary = made(weights, DistributionMethod::binary);
+        const auto bilinear = made(weights, DistributionMethod::bilinear),
+                   bilinear_plain = made(weights, DistributionMethod::bilinear_plain);
         double walk_off = 0, guided_off = 0, binary_off = 0, bilinear_off = 0;
         for (UnitPoint p : points) {
             const auto s = linear->sample(p);
@@ -265,8 +283,8 @@ TEST_CASE("distribution: the fast methods draw what the plain ones draw") {
 }
 
 TEST_CASE("distribution: a texel of no weight is never drawn by the piecewise-constant methods") {
-    for (const NamedWeights& weights :
-         {patched_weights(40, 20, 5), patched_weights(33, 17, 6), hot_texel(37, 11, 36, 10), hot_texel(37, 11, 0, 0), hot_texel(64, 32, 63, 31)})
+    for (const NamedWeights& weights : {patched_weights(40, 20, 5), patched_weights(33, 17, 6),
+                                        hot_texel(37, 11, 36, 10), hot_texel(37, 11, 0, 0), hot_texel(64, 32, 63, 31)})
         for (DistributionMethod method : k_all_methods) {
             const auto d = made(weights, method);
             if (d->continuous()) continue;
@@ -277,7 +295,8 @@ TEST_CASE("distribution: a texel of no weight is never drawn by the piecewise-co
             std::vector<float> u(count), v(count), pdf(count);
             d->sample(points, u, v, pdf);
             int black = 0;
-            for (int i = 0; i < count; ++i) black += *weights.image.at(int(double(u[i]) * d->width()), int(double(v[i]) * d->height())) == 0;
+            for (int i = 0; i < count; ++i)
+                black += *weights.image.at(int(double(u[i]) * d->width()), int(double(v[i]) * d->height())) == 0;
             CHECK(black == 0);
             for (int y = 0; y < d->height(); ++y)
                 for (int x = 0; x < d->width(); ++x) {
@@ -289,8 +308,9 @@ TEST_CASE("distribution: a texel of no weight is never drawn by the piecewise-co
 
 TEST_CASE("distribution: no texel of positive weight is lost beside a sun") {
     const NamedWeights weights = sun_and_background();
-    for (DistributionMethod method : {DistributionMethod::guided, DistributionMethod::alias, DistributionMethod::bilinear, DistributionMethod::linear,
-                                      DistributionMethod::hierarchical}) {
+    for (DistributionMethod method :
+         {DistributionMethod::guided, DistributionMethod::alias, DistributionMethod::bilinear,
+          DistributionMethod::linear, DistributionMethod::hierarchical}) {
         CAPTURE(method_name(method));
         const auto d = made(weights, method);
         int lost = 0;
@@ -302,11 +322,13 @@ TEST_CASE("distribution: no texel of positive weight is lost beside a sun") {
         int missed = 0;
         for (int y = 0; y < d->height(); ++y)
             for (int x = 0; x < d->width(); ++x) {
-                // Any quarter will do: where the density rises to the sun's row within the texel, that row rules but the first of its quanta.
+                // Any quarter will do: where the density rises to the sun's row within the texel, that row rules but
+                // the first of its quanta.
                 bool drawn = false;
                 for (double du : {0.25, 0.75})
                     for (double dv : {0.25, 0.75}) {
-                        const auto s = d->sample(d->invert((x + du) / d->width(), (y + dv) / d->height()).value_or(UnitPoint{}));
+                        const auto s =
+                            d->sample(d->invert((x + du) / d->width(), (y + dv) / d->height()).value_or(UnitPoint{}));
                         drawn |= int(s.u * d->width()) == x && int(s.v * d->height()) == y;
                     }
                 missed += !drawn;
@@ -327,18 +349,23 @@ TEST_CASE("distribution: the built-in sky and a photograph pass the chi-square t
     } else {
         MESSAGE("DOMELIGHT_DATA is not set: the built-in sky only");
     }
-    const DistributionMethod methods[] = {DistributionMethod::guided, DistributionMethod::alias, DistributionMethod::hierarchical,
-                                          DistributionMethod::bilinear, DistributionMethod::binary};
+    const DistributionMethod methods[] = {DistributionMethod::guided, DistributionMethod::alias,
+                                          DistributionMethod::hierarchical, DistributionMethod::bilinear,
+                                          DistributionMethod::binary};
     for (const NamedWeights& weights : all)
         for (DistributionMethod method : methods) {
             CAPTURE(weights.name);
             CAPTURE(method_name(method));
-            CHECK(sampling_p_value(*made(weights, method), 1'000'000, 23) > corrected_significance(int(all.size() * std::size(methods))));
+            CHECK(sampling_p_value(*made(weights, method), 1'000'000, 23) >
+                  corrected_significance(int(all.size() * std::size(methods))));
         }
 }
 
 TEST_CASE("distribution: bad weights are errors that name the texel") {
-    for (auto [value, word] : {std::pair{-1.0f, "negative"}, {std::nanf(""), "not a number"}, {INFINITY, "infinite"}, {-INFINITY, "negative"}})
+    for (auto [value, word] : {std::pair{-1.0f, "negative"},
+                               {std::nanf(""), "not a number"},
+                               {INFINITY, "infinite"},
+                               {-INFINITY, "negative"}})
         for (DistributionMethod method : k_all_methods) {
             NamedWeights weights = constant_weights("bad", 6, 4, 1);
             *weights.image.at(5, 2) = value;

@@ -1,8 +1,8 @@
 #include "domelight/distribution_guided.h"
+#include "domelight/distribution_plain.h"
 
 #include "distribution/chi_square.h"
 #include "distribution/distribution_samples.h"
-#include "domelight/distribution_plain.h"
 #include "simd/instruction_set.h"
 #include "test.h"
 
@@ -14,7 +14,8 @@ using namespace domelight::test;
 namespace {
 
 std::vector<std::vector<float>> hard_rows() {
-    std::vector<std::vector<float>> rows = {{1}, {0, 3}, {3, 0}, {0, 0, 5, 0, 0}, {1, 2, 3}, {0, 0, 0}, {1e-30f, 1e8f, 1e-30f}};
+    std::vector<std::vector<float>> rows = {
+        {1}, {0, 3}, {3, 0}, {0, 0, 5, 0, 0}, {1, 2, 3}, {0, 0, 0}, {1e-30f, 1e8f, 1e-30f}};
     std::mt19937 random(3);
     std::exponential_distribution<float> value(1);
     for (int n : {7, 64, 100, 1000}) {
@@ -83,8 +84,9 @@ TEST_CASE("PlainDistribution1D: the average, and a known map") {
     const PlainDistribution1D d(std::vector<double>{1, 0, 3});
     CHECK(d.mean() == doctest::Approx(4.0 / 3));
     CHECK(d.sample_linear(0.125).x == doctest::Approx(0.5 / 3));  // half of the first quarter: half of the first third
-    CHECK(d.sample_linear(0.625).x == doctest::Approx(2.5 / 3));  // half of the last three quarters: half of the last third
-    CHECK(d.sample_linear(0.125).pdf == doctest::Approx(0.75));   // 1 / (4/3)
+    CHECK(d.sample_linear(0.625).x ==
+          doctest::Approx(2.5 / 3));  // half of the last three quarters: half of the last third
+    CHECK(d.sample_linear(0.125).pdf == doctest::Approx(0.75));  // 1 / (4/3)
     CHECK(d.sample_linear(0.625).pdf == doctest::Approx(2.25));
 }
 
@@ -103,7 +105,8 @@ TEST_CASE("GuidedRows: every item owns as many quanta as the table says, the gui
             total += quanta;
             if (quanta == 0) continue;
             const std::uint32_t first = table.first_quantum(0, i), last = table.last_of(0)[i];
-            for (std::uint32_t xi : {first, last, std::uint32_t(first + (last - first) / 2)}) CHECK(table.find(0, xi) == i);
+            for (std::uint32_t xi : {first, last, std::uint32_t(first + (last - first) / 2)})
+                CHECK(table.find(0, xi) == i);
             CHECK(std::abs(double(quanta) - row[i] / sum * 0x1p32) <= row.size() + 2);
         }
         CHECK(total == std::uint64_t(1) << 32);
@@ -111,7 +114,8 @@ TEST_CASE("GuidedRows: every item owns as many quanta as the table says, the gui
 }
 
 TEST_CASE("GuidedDistribution: a stratified set stays stratified") {
-    // 64 x 64 strata: each draws into its own image of the square, so row counts differ from the marginal by less than a stratum's row.
+    // 64 x 64 strata: each draws into its own image of the square, so row counts differ from the marginal by less than
+    // a stratum's row.
     const NamedWeights weights = sky_weights(32);
     const auto d = made(weights, DistributionMethod::guided);
     double last_v = 0;
@@ -130,8 +134,9 @@ TEST_CASE("GuidedDistribution: a stratified set stays stratified") {
 TEST_CASE("distribution: the same bits with every instruction set and number of threads") {
     const NamedWeights weights = patched_weights(333, 77, 8);
     const auto points = random_points(5000, 31);
-    for (DistributionMethod method : {DistributionMethod::guided, DistributionMethod::alias, DistributionMethod::bilinear, DistributionMethod::binary,
-                                      DistributionMethod::hierarchical}) {
+    for (DistributionMethod method :
+         {DistributionMethod::guided, DistributionMethod::alias, DistributionMethod::bilinear,
+          DistributionMethod::binary, DistributionMethod::hierarchical}) {
         CAPTURE(method_name(method));
         std::vector<float> first;
         for (const char* set : {"", "AVX2", "SSE4", "SCALAR"})
@@ -141,7 +146,8 @@ TEST_CASE("distribution: the same bits with every instruction set and number of 
                 REQUIRE(bool(d));
                 std::vector<float> out(3 * points.size());
                 const std::span<float> all(out);
-                (*d)->sample(points, all.first(points.size()), all.subspan(points.size(), points.size()), all.last(points.size()));
+                (*d)->sample(points, all.first(points.size()), all.subspan(points.size(), points.size()),
+                             all.last(points.size()));
                 if (first.empty()) first = out;
                 CHECK(std::memcmp(first.data(), out.data(), out.size() * sizeof(float)) == 0);
             }

@@ -1,11 +1,12 @@
 #include "filtering/bright_split.h"
 
-#include <algorithm>
-#include <random>
-
 #include "domelight/projection.h"
+
 #include "filtering/tent_nodes.h"
 #include "test.h"
+
+#include <algorithm>
+#include <random>
 
 using namespace domelight;
 
@@ -13,7 +14,8 @@ namespace {
 
 constexpr int k_height = 256, k_width = 512;
 
-/// A dim sky with a sun of one texel, one at the pole, a lamp of 12 x 7 texels whose colour changes across it, and one over the seam.
+/// A dim sky with a sun of one texel, one at the pole, a lamp of 12 x 7 texels whose colour changes across it, and one
+/// over the seam.
 ImageF lamps() {
     ImageF image(k_width, k_height, 3, 0.5f);
     const auto set = [&](int x, int y, float r, float g, float b) {
@@ -85,8 +87,8 @@ TEST_CASE("bright_split: the tree of lights gives each kernel over the tents the
     const Taken taken;
     std::mt19937 random(5);
     std::normal_distribution<double> normal;
-    for (const ZonalKernel& kernel : {ZonalKernel::ggx(0.1), ZonalKernel::ggx(0.2), ZonalKernel::ggx(0.5), ZonalKernel::ggx(1), ZonalKernel::cosine(),
-                                      ZonalKernel::charlie(0.5)}) {
+    for (const ZonalKernel& kernel : {ZonalKernel::ggx(0.1), ZonalKernel::ggx(0.2), ZonalKernel::ggx(0.5),
+                                      ZonalKernel::ggx(1), ZonalKernel::cosine(), ZonalKernel::charlie(0.5)}) {
         const auto lights = taken.split.lights(kernel);
         const DirectKernelTable table(kernel);
         const Vec3d mean = taken.mean();
@@ -96,15 +98,18 @@ TEST_CASE("bright_split: the tree of lights gives each kernel over the tents the
             // Half of them at one to a few hundred texels from a lamp.
             if (k % 2) {
                 const auto& [x, y] = taken.texels[random() % taken.texels.size()];
-                n = normalize(latlong_direction({(x + 0.5) / k_width, (y + 0.5) / k_height}) + n * (k_pi / k_height * std::pow(1.5, k % 15)));
+                n = normalize(latlong_direction({(x + 0.5) / k_width, (y + 0.5) / k_height}) +
+                              n * (k_pi / k_height * std::pow(1.5, k % 15)));
             }
             const float x = float(n.x), y = float(n.y), z = float(n.z);
             float rgb[3] = {};
-            simd::add_direct_lights(lights.nodes.data(), int(lights.nodes.size()), lights.points.view(), table.view(), &x, &y, &z, 1, rgb);
+            simd::add_direct_lights(lights.nodes.data(), int(lights.nodes.size()), lights.points.view(), table.view(),
+                                    &x, &y, &z, 1, rgb);
             const Vec3d truth = taken.exactly(kernel, n);
             // Relative to the sum, or where the horizon hides nearly all of it to a tenth of its mean over the sphere.
-            
-            for (const auto& [got, want, floor] : {std::tuple{rgb[0], truth.x, mean.x}, {rgb[1], truth.y, mean.y}, {rgb[2], truth.z, mean.z}})
+
+            for (const auto& [got, want, floor] :
+                 {std::tuple{rgb[0], truth.x, mean.x}, {rgb[1], truth.y, mean.y}, {rgb[2], truth.z, mean.z}})
                 worst = std::max(worst, std::abs(got - want) / std::max(want, 0.1 * floor));
         }
         CAPTURE(kernel.width);

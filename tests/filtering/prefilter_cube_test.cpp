@@ -1,11 +1,11 @@
 #include "domelight/prefilter.h"
 #include "domelight/projection.h"
+
 #include "image/bordered_cube.h"
 #include "math/gauss_legendre.h"
+#include "test.h"
 
 #include <random>
-
-#include "test.h"
 
 using namespace domelight;
 
@@ -44,7 +44,8 @@ struct CubeTruth {
     Vec3d convolve(const ZonalKernel& kernel, const Vec3d& axis) const {
         Vec3d sum;
         for (std::size_t i = 0; i < direction.size(); ++i)
-            sum = sum + light[i] * kernel.density(std::atan2(length(cross(axis, direction[i])), dot(axis, direction[i])));
+            sum =
+                sum + light[i] * kernel.density(std::atan2(length(cross(axis, direction[i])), dot(axis, direction[i])));
         return sum;
     }
 };

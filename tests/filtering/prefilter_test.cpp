@@ -1,8 +1,9 @@
 #include "domelight/prefilter.h"
 
-#include "accuracy.h"
 #include "domelight/environment.h"
 #include "domelight/spherical_harmonics.h"
+
+#include "accuracy.h"
 #include "filtering/ring_grid.h"
 #include "filtering/sh_analysis.h"
 #include "filtering/sh_synthesis.h"
@@ -38,7 +39,8 @@ void check_rows(const std::vector<Accuracy>& rows, double most_rmse, double most
         CAPTURE(row.name);
         CAPTURE(row.where.y);
         CHECK_MESSAGE(row.rmse <= most_rmse, row.name << " (width " << row.width << "): RMSE " << row.rmse);
-        CHECK_MESSAGE(row.largest <= (row.name == "irradiance" ? 1e-3 : most), row.name << " (width " << row.width << "): max " << row.largest);
+        CHECK_MESSAGE(row.largest <= (row.name == "irradiance" ? 1e-3 : most),
+                      row.name << " (width " << row.width << "): max " << row.largest);
     }
 }
 
@@ -52,8 +54,10 @@ ImageF load(const std::filesystem::path& file) {
 
 bool same_bits(const FilterResult& a, const FilterResult& b) {
     for (std::size_t l = 0; l < a.specular.size(); ++l)
-        if (!std::equal(a.specular[l].pixels().begin(), a.specular[l].pixels().end(), b.specular[l].pixels().begin())) return false;
-    return std::equal(a.irradiance_over_pi.pixels().begin(), a.irradiance_over_pi.pixels().end(), b.irradiance_over_pi.pixels().begin()) &&
+        if (!std::equal(a.specular[l].pixels().begin(), a.specular[l].pixels().end(), b.specular[l].pixels().begin()))
+            return false;
+    return std::equal(a.irradiance_over_pi.pixels().begin(), a.irradiance_over_pi.pixels().end(),
+                      b.irradiance_over_pi.pixels().begin()) &&
            std::equal(a.sh.begin(), a.sh.end(), b.sh.begin());
 }
 
@@ -95,7 +99,8 @@ TEST_CASE("prefilter: Charlie and modified Phong are the integral") {
     options.specular = {{64, false, ZonalKernel::charlie(0.15)}};
     check_rows(measure_levels(sun_image(256, 1e4, 0.1, 2.0), options, 60), 1e-3, 2e-2);
     options.specular.clear();
-    for (double exponent : {1.0, 2.0, 5.0, 20.0, 100.0, 2048.0}) options.specular.push_back({64, false, {Lobe::phong_brdf, exponent}});
+    for (double exponent : {1.0, 2.0, 5.0, 20.0, 100.0, 2048.0})
+        options.specular.push_back({64, false, {Lobe::phong_brdf, exponent}});
     check_rows(measure_levels(sun_image(256, 1e4, 0.4, 2.0), options, 60), 1e-4, 2e-3);
 }
 
@@ -107,10 +112,11 @@ TEST_CASE("prefilter: narrow lobes, with what outshines the rest taken out first
 }
 
 TEST_CASE("prefilter: real environments, every level of generic and khronos") {
-    for (const char* name : {"env_highres/spruit_sunrise_1k.hdr", "env_latlong/potsdamer_platz_1k.hdr", "env_latlong/vestibule_1k.hdr",
-                             "env_latlong/noon_grass_1k.hdr"}) {
+    for (const char* name : {"env_highres/spruit_sunrise_1k.hdr", "env_latlong/potsdamer_platz_1k.hdr",
+                             "env_latlong/vestibule_1k.hdr", "env_latlong/noon_grass_1k.hdr"}) {
         const auto folder = data_folder();
-        if (!folder || !std::filesystem::exists(*folder / name)) return note_skip("DOMELIGHT_DATA has no real environments");
+        if (!folder || !std::filesystem::exists(*folder / name))
+            return note_skip("DOMELIGHT_DATA has no real environments");
         const ImageF image = load(*folder / name);
         CAPTURE(name);
         check_rows(measure_levels(image, generic_options(), 100), 1e-4, 2e-3);
@@ -129,8 +135,10 @@ TEST_CASE("prefilter: the same bits on any number of threads and for rows handed
         ImageRowSource source(image);
         auto result = prefilter(source, options);
         REQUIRE(result);
-        if (!first) first = std::move(*result);
-        else CHECK_MESSAGE(same_bits(*first, *result), threads << " threads");
+        if (!first)
+            first = std::move(*result);
+        else
+            CHECK_MESSAGE(same_bits(*first, *result), threads << " threads");
     }
 }
 
@@ -150,7 +158,8 @@ TEST_CASE("prefilter: instruction sets agree to 1e-6") {
         for (std::size_t l = 0; l < options.specular.size(); ++l) {
             double error2 = 0, sum2 = 0;
             const auto a = first->specular[l].pixels(), b = result->specular[l].pixels();
-            for (std::size_t i = 0; i < a.size(); ++i) error2 += (a[i] - double(b[i])) * (a[i] - double(b[i])), sum2 += double(a[i]) * a[i];
+            for (std::size_t i = 0; i < a.size(); ++i)
+                error2 += (a[i] - double(b[i])) * (a[i] - double(b[i])), sum2 += double(a[i]) * a[i];
             CHECK_MESSAGE(std::sqrt(error2 / sum2) <= 1e-6, set << ", level " << l << ": " << std::sqrt(error2 / sum2));
         }
     }
@@ -176,13 +185,15 @@ TEST_CASE("prefilter: a turn of the world turns the maps") {
 }
 
 TEST_CASE("prefilter: SH coefficients are the integrals over the reconstruction, to 1e-5 of their norm") {
-    // Against Gauss-Legendre over each texel's tent, in double; with suns, one at a pole and one on the seam, and a turned world.
+    // Against Gauss-Legendre over each texel's tent, in double; with suns, one at a pole and one on the seam, and a
+    // turned world.
     constexpr int height = 48, width = 2 * height, bands = 6;
     ImageF image = noise_image(width, height, 3, 1e5f);
     image.at(0, 30)[1] = 3e4f;
     image.at(20, 0)[2] = 1e6f;
     const double angle = 0.7, c = std::cos(angle), s = std::sin(angle);
-    for (const Mat3& world_to_source : {Mat3{}, rotation_y(1), Mat3{{Vec3d{1, 0, 0}, Vec3d{0, c, -s}, Vec3d{0, s, c}}} * rotation_y(0.3)}) {
+    for (const Mat3& world_to_source :
+         {Mat3{}, rotation_y(1), Mat3{{Vec3d{1, 0, 0}, Vec3d{0, c, -s}, Vec3d{0, s, c}}} * rotation_y(0.3)}) {
         std::vector<Vec3d> truth(bands * bands);
         std::vector<double> basis(bands * bands);
         BrightPoints nodes;
@@ -190,7 +201,8 @@ TEST_CASE("prefilter: SH coefficients are the integrals over the reconstruction,
             for (int x = 0; x < width; ++x) add_tent_nodes(nodes, width, height, x, y, image.at(x, y), 3);
         for (int i = 0; i < nodes.count(); ++i) {
             sh_basis(world_to_source.transposed() * normalize(nodes.place(i)), bands, basis);
-            for (int k = 0; k < bands * bands; ++k) truth[k] = truth[k] + Vec3d{nodes.r[i], nodes.g[i], nodes.b[i]} * basis[k];
+            for (int k = 0; k < bands * bands; ++k)
+                truth[k] = truth[k] + Vec3d{nodes.r[i], nodes.g[i], nodes.b[i]} * basis[k];
         }
         // Wide lobes alone, and with a narrow one, for which the suns are taken out.
         for (const double narrowest : {0.2, 0.05}) {
@@ -224,7 +236,8 @@ TEST_CASE("prefilter: no edge shows: steps across a cube's edges are the truth's
         std::vector<Vec3d> directions;
         for (int f = 0; f < 6; ++f)
             for (int y = 0; y < n; ++y)
-                for (int x = 0; x < n; ++x) directions.push_back(normalize(cube_direction(f, {(x + 0.5) / n, (y + 0.5) / n})));
+                for (int x = 0; x < n; ++x)
+                    directions.push_back(normalize(cube_direction(f, {(x + 0.5) / n, (y + 0.5) / n})));
         const auto truth = convolve_exactly(image, options.specular[l].kernel, directions);
         const auto value = [&](int f, int x, int y) { return double(map.face(f).at(x, y)[0]); };
         const auto expected = [&](int f, int x, int y) { return truth[(std::size_t(f) * n + y) * n + x].x; };

@@ -84,7 +84,9 @@ TEST_CASE("ply: truncated and lying files are errors") {
     CHECK(contains(changed("list uchar", "list float"), "no whole type"));
     CHECK(contains(changed("binary_little_endian", "binary_middle_endian"), "there is no format"));
     CHECK(contains(changed(std::string("\4\0\0\0\0\1", 6), std::string("\4\0\0\0\0\x09", 6)), "there is no vertex 9"));
-    CHECK(contains(changed("element face 2\n", "element face 2\nelement nothing 18446744073709551615\n"), "do not fit"));
-    CHECK(changed("end_header", "element nothing 18446744073709551615\nend_header") == "loaded");  // entries of no bytes
+    CHECK(
+        contains(changed("element face 2\n", "element face 2\nelement nothing 18446744073709551615\n"), "do not fit"));
+    CHECK(changed("end_header", "element nothing 18446744073709551615\nend_header") ==
+          "loaded");  // entries of no bytes
     CHECK(contains(error_of(load_text("not a ply", "a.ply")), "not a PLY file"));
 }

@@ -1,12 +1,12 @@
+#include "domelight/reference.h"
 #include "domelight/render.h"
+#include "domelight/sky.h"
+
+#include "render/shapes.h"
+#include "test.h"
 
 #include <algorithm>
 #include <cstring>
-
-#include "domelight/reference.h"
-#include "domelight/sky.h"
-#include "render/shapes.h"
-#include "test.h"
 
 using namespace domelight;
 using namespace domelight::test;
@@ -89,7 +89,8 @@ TEST_CASE("render: rough metal keeps its light in a white furnace, with multiple
         o.multiple_scattering = false;
         const RenderResult single = render(scene, ImageF(32, 16, 3, 1.f), o);
         CHECK(mean_inside(single, single.radiance) < (roughness > 0.5f ? 0.95 : 1));
-        CHECK(mean_inside(single, single.specular) == doctest::Approx(mean_inside(single, single.radiance)).epsilon(1e-6));
+        CHECK(mean_inside(single, single.specular) ==
+              doctest::Approx(mean_inside(single, single.radiance)).epsilon(1e-6));
     }
 }
 
@@ -107,7 +108,8 @@ TEST_CASE("render: Lambert on a sphere is the exact irradiance, pixel by pixel w
             const Vec3d normal = normalize(Vec3d{N[0], N[1], N[2]});
             const Vec3d truth = convolve_exactly(sky, ZonalKernel::cosine(), std::span(&normal, 1))[0] * 0.8;
             // A pixel's mean over its normals bends a little: 1 %.
-            const double error = std::sqrt(r.variance.at(x, y)[1] + std::pow(0.01 * truth.y, 2)), d = r.radiance.at(x, y)[1] - truth.y;
+            const double error = std::sqrt(r.variance.at(x, y)[1] + std::pow(0.01 * truth.y, 2)),
+                         d = r.radiance.at(x, y)[1] - truth.y;
             z2 += d * d / (error * error);
             ratio += r.radiance.at(x, y)[1] / truth.y;
             ++n;

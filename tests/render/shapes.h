@@ -1,9 +1,9 @@
 #pragma once
 // Small scenes that the tests make.
 
-#include <cmath>
-
 #include "domelight/scene.h"
+
+#include <cmath>
 
 namespace domelight::test {
 
@@ -20,7 +20,8 @@ inline Mesh sphere_mesh(int rings) {
         }
     for (int j = 0; j < rings; ++j)
         for (int i = 0; i < columns; ++i) {
-            const std::uint32_t a = std::uint32_t(j * (columns + 1) + i), b = a + 1, c = a + std::uint32_t(columns) + 1, d = c + 1;
+            const std::uint32_t a = std::uint32_t(j * (columns + 1) + i), b = a + 1, c = a + std::uint32_t(columns) + 1,
+                                d = c + 1;
             // Counter-clockwise from outside; the poles' triangles of no area left out.
             if (j > 0) mesh.indices.insert(mesh.indices.end(), {a, b, d});
             if (j < rings - 1) mesh.indices.insert(mesh.indices.end(), {a, d, c});

@@ -1,22 +1,24 @@
 #include "domelight/environment_sampler.h"
 
-#include <algorithm>
-#include <random>
-
-#include "distribution/chi_square.h"
 #include "domelight/projection.h"
 #include "domelight/sequences.h"
 #include "domelight/sky.h"
+
+#include "distribution/chi_square.h"
 #include "test.h"
+
+#include <algorithm>
+#include <random>
 
 using namespace domelight;
 using namespace domelight::test;
 
 namespace {
 
-constexpr DistributionMethod k_methods[] = {DistributionMethod::linear,       DistributionMethod::walk,     DistributionMethod::binary,
-                                            DistributionMethod::guided,       DistributionMethod::alias,    DistributionMethod::hierarchical,
-                                            DistributionMethod::bilinear,     DistributionMethod::bilinear_plain};
+constexpr DistributionMethod k_methods[] = {DistributionMethod::linear,   DistributionMethod::walk,
+                                            DistributionMethod::binary,   DistributionMethod::guided,
+                                            DistributionMethod::alias,    DistributionMethod::hierarchical,
+                                            DistributionMethod::bilinear, DistributionMethod::bilinear_plain};
 
 ImageF one_hot(int width, int height, int x, int y, float rest) {
     ImageF image(width, height, 3, rest);
@@ -57,19 +59,22 @@ std::vector<std::pair<std::string, ImageF>> environments() {
 
 /// Int of the density over each cell of a grid over the image, `fine` x `fine` cells a texel, by midpoints.
 std::vector<double> integrals(const EnvironmentSampler& sampler, int columns, int rows) {
-    const int w = sampler.image().width, h = sampler.image().height, fine_x = 24 * std::max(1, columns / w), fine_y = 24 * std::max(1, rows / h);
+    const int w = sampler.image().width, h = sampler.image().height, fine_x = 24 * std::max(1, columns / w),
+              fine_y = 24 * std::max(1, rows / h);
     std::vector<double> out(std::size_t(columns) * rows);
     const int nx = w * fine_x, ny = h * fine_y;
     for (int y = 0; y < ny; ++y)
         for (int x = 0; x < nx; ++x) {
             const UV uv{(x + 0.5) / nx, (y + 0.5) / ny};
             const double density = sampler.pdf_solid_angle(Vec3f(latlong_direction(uv)));
-            out[std::size_t(int(uv.v * rows)) * columns + int(uv.u * columns)] += density * latlong_solid_angle(y, nx, ny);
+            out[std::size_t(int(uv.v * rows)) * columns + int(uv.u * columns)] +=
+                density * latlong_solid_angle(y, nx, ny);
         }
     return out;
 }
 
-EnvironmentSampler make(const ImageF& image, const EnvironmentSamplerOptions& options, const Mat3& world_to_source = {}) {
+EnvironmentSampler make(const ImageF& image, const EnvironmentSamplerOptions& options,
+                        const Mat3& world_to_source = {}) {
     auto sampler = EnvironmentSampler::build(image, options, world_to_source);
     REQUIRE(sampler);
     return std::move(*sampler);
@@ -78,14 +83,17 @@ EnvironmentSampler make(const ImageF& image, const EnvironmentSamplerOptions& op
 struct Batch {
     explicit Batch(std::size_t n) : values(9 * n), n_(n) {}
     std::span<float> part(int k) { return {values.data() + k * n_, n_}; }
-    LightSampleSpans spans() { return {part(0), part(1), part(2), part(3), part(4), part(5), part(6), part(7), part(8)}; }
+    LightSampleSpans spans() {
+        return {part(0), part(1), part(2), part(3), part(4), part(5), part(6), part(7), part(8)};
+    }
     std::vector<float> values;
     std::size_t n_;
 };
 
 }  // namespace
 
-TEST_CASE("environment_sampler: directions follow the density, which integrates to 1, for every method and environment") {
+TEST_CASE(
+    "environment_sampler: directions follow the density, which integrates to 1, for every method and environment") {
     int tests = 0;
     double least = 1;
     for (const auto& [name, image] : environments())
@@ -101,14 +109,16 @@ TEST_CASE("environment_sampler: directions follow the density, which integrates 
                 double sum = 0;
                 for (const double e : expected) sum += e;
                 INFO(name << ", " << method_name(method) << ", variant " << variant);
-                CHECK(sum == doctest::Approx(1).epsilon(4e-3));  // of the midpoint sum beside a pole, where the density has 1 / sin theta
+                CHECK(sum == doctest::Approx(1).epsilon(
+                                 4e-3));  // of the midpoint sum beside a pole, where the density has 1 / sin theta
                 constexpr int samples = 20000;
                 std::vector<double> observed(expected.size());
                 for (int i = 0; i < samples; ++i) {
                     const LightSample s = sampler.sample(random_point(99, i));
                     REQUIRE(s.pdf_solid_angle > 0);
                     const UV uv = latlong_uv(Vec3d(s.direction));
-                    observed[std::size_t(std::min(rows - 1, int(uv.v * rows))) * columns + std::min(columns - 1, int(uv.u * columns))] += 1;
+                    observed[std::size_t(std::min(rows - 1, int(uv.v * rows))) * columns +
+                             std::min(columns - 1, int(uv.u * columns))] += 1;
                 }
                 for (double& e : expected) e *= samples / sum;
                 const double p = chi_square_p_value(observed, expected);
@@ -119,9 +129,12 @@ TEST_CASE("environment_sampler: directions follow the density, which integrates 
     CHECK(least * tests > 1e-3);  // Bonferroni
 }
 
-TEST_CASE("environment_sampler: a sample's radiance and density are those of its direction, in a turned and mirrored world too") {
+TEST_CASE(
+    "environment_sampler: a sample's radiance and density are those of its direction, in a turned and mirrored world "
+    "too") {
     const Mat3 mirrored{{Vec3d{0, 0, 1}, Vec3d{0, 1, 0}, Vec3d{1, 0, 0}}};
-    for (const Mat3& world_to_source : {Mat3{}, rotation_y(1.1), mirrored, Mat3{{Vec3d{1, 0, 0}, Vec3d{0, 0, 1}, Vec3d{0, -1, 0}}}})
+    for (const Mat3& world_to_source :
+         {Mat3{}, rotation_y(1.1), mirrored, Mat3{{Vec3d{1, 0, 0}, Vec3d{0, 0, 1}, Vec3d{0, -1, 0}}}})
         for (const auto& [name, image] : environments())
             for (const DistributionMethod method : {DistributionMethod::guided, DistributionMethod::bilinear}) {
                 EnvironmentSamplerOptions options;
@@ -145,7 +158,9 @@ TEST_CASE("environment_sampler: a sample's radiance and density are those of its
             }
 }
 
-TEST_CASE("environment_sampler: a constant environment is drawn evenly over the sphere, the courses' form too much at the poles") {
+TEST_CASE(
+    "environment_sampler: a constant environment is drawn evenly over the sphere, the courses' form too much at the "
+    "poles") {
     const ImageF image(64, 32, 3, 0.7f);
     for (const DistributionMethod method : {DistributionMethod::guided, DistributionMethod::bilinear}) {
         EnvironmentSamplerOptions options;
@@ -156,7 +171,8 @@ TEST_CASE("environment_sampler: a constant environment is drawn evenly over the 
         for (int y = 0; y < 32; ++y) {
             const double theta = k_pi * (y + 0.5) / 32;
             const Vec3f d(latlong_direction({0.3, (y + 0.5) / 32}));
-            CHECK(even.pdf_solid_angle(d) * 4 * k_pi == doctest::Approx(1).epsilon(2e-3));  // sin theta's steps against its integral
+            CHECK(even.pdf_solid_angle(d) * 4 * k_pi ==
+                  doctest::Approx(1).epsilon(2e-3));  // sin theta's steps against its integral
             CHECK(courses.pdf_solid_angle(d) * 2 * k_pi * k_pi * std::sin(theta) == doctest::Approx(1).epsilon(1e-4));
         }
     }
@@ -183,7 +199,8 @@ TEST_CASE("environment_sampler: batches give the same samples") {
                 for (int i = 0; i < n; ++i) {
                     const LightSample s = sampler.sample(points[i]);
                     worst = std::max(worst, std::abs(double(batch.part(8)[i]) / s.pdf_solid_angle - 1));
-                    const Vec3f d{batch.part(2)[i], batch.part(3)[i], batch.part(4)[i]}, L{batch.part(5)[i], batch.part(6)[i], batch.part(7)[i]};
+                    const Vec3f d{batch.part(2)[i], batch.part(3)[i], batch.part(4)[i]},
+                        L{batch.part(5)[i], batch.part(6)[i], batch.part(7)[i]};
                     direction = std::max(direction, double(length(d - s.direction)));
                     CHECK(length(L - s.radiance) <= 2e-3 * length(s.radiance) + 0.02);
                 }
@@ -205,7 +222,8 @@ TEST_CASE("environment_sampler: the density is the Jacobian of the map from the 
             // A step long enough for float directions.
             const std::uint32_t step = 1u << 20;
             p = {std::min(p.x, ~step), std::min(p.y, ~step)};
-            const Vec3d a(sampler.sample(p).direction), b(sampler.sample({p.x + step, p.y}).direction), c(sampler.sample({p.x, p.y + step}).direction);
+            const Vec3d a(sampler.sample(p).direction), b(sampler.sample({p.x + step, p.y}).direction),
+                c(sampler.sample({p.x, p.y + step}).direction);
             const LightSample middle = sampler.sample({p.x + step / 2, p.y + step / 2});
             ratio.push_back(length(cross(b - a, c - a)) / (double(step) * step * 0x1p-64) * middle.pdf_solid_angle);
         }
@@ -219,7 +237,8 @@ TEST_CASE("environment_sampler: the density is the Jacobian of the map from the 
 
 TEST_CASE("environment_sampler: invert goes back as far as float directions allow") {
     const ImageF image = noise(16, 8, 12);
-    for (const DistributionMethod method : {DistributionMethod::guided, DistributionMethod::bilinear, DistributionMethod::hierarchical}) {
+    for (const DistributionMethod method :
+         {DistributionMethod::guided, DistributionMethod::bilinear, DistributionMethod::hierarchical}) {
         EnvironmentSamplerOptions options;
         options.method = method;
         const EnvironmentSampler sampler = make(image, options);
@@ -229,9 +248,12 @@ TEST_CASE("environment_sampler: invert goes back as far as float directions allo
             const LightSample s = sampler.sample(p);
             const auto back = sampler.invert(s.direction);
             REQUIRE(back);
-            // A direction is known to 1e-7; so is a point of the square, times the density over the image (and 1 / sin theta).
+            // A direction is known to 1e-7; so is a point of the square, times the density over the image (and 1 / sin
+            // theta).
             const double scale = 1e-6 * std::max(1.0, 20.0 * s.pdf_solid_angle);
-            worst = std::max(worst, std::max(std::abs(unit_double(back->x) - unit_double(p.x)), std::abs(unit_double(back->y) - unit_double(p.y))) / scale);
+            worst = std::max(worst, std::max(std::abs(unit_double(back->x) - unit_double(p.x)),
+                                             std::abs(unit_double(back->y) - unit_double(p.y))) /
+                                        scale);
         }
         INFO(method_name(method));
         CHECK(worst < 5);
@@ -249,7 +271,8 @@ TEST_CASE("environment_sampler: compensation leaves the dim half out, and a cons
     options.compensate = true;
     options.method = DistributionMethod::guided;
     const EnvironmentSampler sampler = make(image, options);
-    CHECK(sampler.compensation() == doctest::Approx(1 + 10 * 4 * latlong_solid_angle(4, 16, 8) / (4 * k_pi)).epsilon(1e-6));
+    CHECK(sampler.compensation() ==
+          doctest::Approx(1 + 10 * 4 * latlong_solid_angle(4, 16, 8) / (4 * k_pi)).epsilon(1e-6));
     CHECK(sampler.pdf_solid_angle(Vec3f(latlong_direction({10.5 / 16, 4.5 / 8}))) == 0);
     for (int i = 0; i < 100; ++i) CHECK(sampler.sample(random_point(1, i)).radiance.x == 11);
     const EnvironmentSampler constant = make(ImageF(16, 8, 3, 0.3f), options);
@@ -263,7 +286,8 @@ TEST_CASE("environment_sampler: without light, with one texel, with bad texels")
         options.method = method;
         for (const ImageF& image : {ImageF(8, 4, 3), ImageF(1, 1, 3, 1.f), ImageF(1, 1, 3)}) {
             const EnvironmentSampler sampler = make(image, options);
-            for (const UnitPoint p : {UnitPoint{0, 0}, {0xffffffffu, 0xffffffffu}, {0x80000000u, 0}, {0, 0xffffffffu}}) {
+            for (const UnitPoint p :
+                 {UnitPoint{0, 0}, {0xffffffffu, 0xffffffffu}, {0x80000000u, 0}, {0, 0xffffffffu}}) {
                 const LightSample s = sampler.sample(p);
                 CHECK(std::isfinite(s.pdf_solid_angle));
                 CHECK(s.pdf_solid_angle > 0);

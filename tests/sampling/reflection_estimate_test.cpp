@@ -1,14 +1,15 @@
 #include "domelight/reflection_estimate.h"
 
-#include <algorithm>
-
 #include "domelight/environment.h"
 #include "domelight/prefilter.h"
 #include "domelight/product_sampling.h"
 #include "domelight/projection.h"
 #include "domelight/reference.h"
 #include "domelight/sky.h"
+
 #include "test.h"
+
+#include <algorithm>
 
 using namespace domelight;
 using namespace domelight::test;
@@ -29,7 +30,8 @@ ImageF small_environment() {
 
 /// The prefilter's lobe as a surface: n = v, f NdotL = K, drawn by GGX half vectors.
 Surface prefilter_lobe(const Vec3d& axis, const ZonalKernel& kernel) {
-    Surface surface = make_surface(axis, axis, BasicGgxBrdf<GgxNormals::half_vectors>{float(kernel.width), {1, 1, 1}, {1, 1, 1}});
+    Surface surface =
+        make_surface(axis, axis, BasicGgxBrdf<GgxNormals::half_vectors>{float(kernel.width), {1, 1, 1}, {1, 1, 1}});
     surface.evaluate = [kernel](const Vec3f&, const Vec3f& L) {
         if (!(L.z > 0)) return Vec3f{};
         const float f = float(kernel.density(std::atan2(std::hypot(double(L.x), L.y), double(L.z))) / L.z);
@@ -39,8 +41,11 @@ Surface prefilter_lobe(const Vec3d& axis, const ZonalKernel& kernel) {
 }
 
 double largest_deviation(const Estimate& e, const Vec3d& truth) {
-    const auto in_errors = [](double got, double want, double error) { return std::abs(got - want) / (error + 1e-6 * want); };
-    return std::max({in_errors(e.radiance.x, truth.x, e.standard_error.x), in_errors(e.radiance.y, truth.y, e.standard_error.y),
+    const auto in_errors = [](double got, double want, double error) {
+        return std::abs(got - want) / (error + 1e-6 * want);
+    };
+    return std::max({in_errors(e.radiance.x, truth.x, e.standard_error.x),
+                     in_errors(e.radiance.y, truth.y, e.standard_error.y),
                      in_errors(e.radiance.z, truth.z, e.standard_error.z)});
 }
 
@@ -61,8 +66,8 @@ TEST_CASE("estimate_reflection: every strategy agrees with the exact irradiance 
             EstimateOptions o;
             o.samples = 100000;
             const Estimate e = estimate_reflection(surface, s, strategy, o);
-            INFO(strategy_name(strategy) << " at " << normal.x << " " << normal.y << " " << normal.z << ": " << e.radiance.y << " +- " << e.standard_error.y
-                                         << ", exact " << truth.y);
+            INFO(strategy_name(strategy) << " at " << normal.x << " " << normal.y << " " << normal.z << ": "
+                                         << e.radiance.y << " +- " << e.standard_error.y << ", exact " << truth.y);
             CHECK(largest_deviation(e, truth) < 4.5);  // 7e-6 for one, two-sided; 60 numbers
             // And it says something: the interval is narrow.
             CHECK(e.standard_error.y / truth.y < most_error);
@@ -91,12 +96,14 @@ TEST_CASE("estimate_reflection: the lobe of the prefilter gives the exact prefil
         const ZonalKernel kernel = ZonalKernel::ggx(roughness);
         const Vec3d axis = normalize(Vec3d{-0.8, 0.7, 0.2});
         const Vec3d truth = convolve_exactly(image, kernel, std::span(&axis, 1))[0];
-        for (const Strategy strategy : {Strategy::brdf, Strategy::environment, Strategy::mis_balance, Strategy::mis_power, Strategy::product}) {
+        for (const Strategy strategy :
+             {Strategy::brdf, Strategy::environment, Strategy::mis_balance, Strategy::mis_power, Strategy::product}) {
             EstimateOptions o;
             o.samples = 60000;
             o.seed = 5;
             const Estimate e = estimate_reflection(prefilter_lobe(axis, kernel), *sampler, strategy, o);
-            INFO(strategy_name(strategy) << ", roughness " << roughness << ": " << e.radiance.y << " +- " << e.standard_error.y << ", exact " << truth.y);
+            INFO(strategy_name(strategy) << ", roughness " << roughness << ": " << e.radiance.y << " +- "
+                                         << e.standard_error.y << ", exact " << truth.y);
             CHECK(largest_deviation(e, truth) < 4.5);
         }
     }
@@ -120,7 +127,8 @@ TEST_CASE("estimate_reflection: on a photograph the estimate is the bake's irrad
         const float* p = baked->irradiance_over_pi.cube.face(face).at(x, y);
         EstimateOptions o;
         o.samples = 200000;
-        const Estimate e = estimate_reflection(make_surface(normal, normal, LambertBrdf{}), *sampler, Strategy::mis_balance, o);
+        const Estimate e =
+            estimate_reflection(make_surface(normal, normal, LambertBrdf{}), *sampler, Strategy::mis_balance, o);
         INFO(e.radiance.y << " +- " << e.standard_error.y << ", baked " << p[1]);
         CHECK(largest_deviation(e, {p[0], p[1], p[2]}) < 4.5);
         CHECK(e.standard_error.y < 0.01 * p[1]);
@@ -140,13 +148,17 @@ TEST_CASE("estimate_reflection: low-discrepancy points beat random ones") {
             o.samples = 1024;
             o.sequence = sequence;
             o.seed = seed;
-            const double e = estimate_reflection(make_surface(normal, normal, LambertBrdf{}), *sampler, Strategy::environment, o).radiance.y - truth.y;
+            const double e =
+                estimate_reflection(make_surface(normal, normal, LambertBrdf{}), *sampler, Strategy::environment, o)
+                    .radiance.y -
+                truth.y;
             sum += e * e;
         }
         return std::sqrt(sum / 16);
     };
     const double random = rmse(Sequence::random);
-    for (const Sequence s : {Sequence::stratified, Sequence::hammersley, Sequence::halton, Sequence::sobol}) CHECK(rmse(s) < 0.25 * random);
+    for (const Sequence s : {Sequence::stratified, Sequence::hammersley, Sequence::halton, Sequence::sobol})
+        CHECK(rmse(s) < 0.25 * random);
 }
 
 TEST_CASE("sample_product: draws in proportion to the product, and nothing where there is none") {
@@ -157,6 +169,7 @@ TEST_CASE("sample_product: draws in proportion to the product, and nothing where
     for (int i = 0; i < 16; ++i) candidates[i] = random_point(1, i);
     CHECK(sample_product(*sampler, [](const LightSample&) { return 0.f; }, candidates, {5, 0}).pdf_solid_angle == 0);
     // A target that is the density itself leaves nothing to choose: the result has the sampler's own density.
-    const LightSample s = sample_product(*sampler, [](const LightSample& l) { return l.pdf_solid_angle; }, candidates, {7u << 20, 0});
+    const LightSample s =
+        sample_product(*sampler, [](const LightSample& l) { return l.pdf_solid_angle; }, candidates, {7u << 20, 0});
     CHECK(s.pdf_solid_angle == doctest::Approx(sampler->pdf_solid_angle(s.direction)).epsilon(1e-4));
 }

@@ -1,12 +1,12 @@
 #include "simd/batch_fft.h"
 
+#include "simd/instruction_set.h"
+#include "test.h"
+
 #include <hwy/aligned_allocator.h>
 
 #include <complex>
 #include <numbers>
-
-#include "simd/instruction_set.h"
-#include "test.h"
 
 using domelight::simd::BatchFft;
 using domelight::simd::k_fft_lanes;
@@ -18,7 +18,8 @@ std::vector<std::complex<double>> plain_dft(const std::vector<std::complex<doubl
     const int n = int(x.size());
     std::vector<std::complex<double>> y(n);
     for (int f = 0; f < n; ++f)
-        for (int i = 0; i < n; ++i) y[f] += x[i] * std::polar(1.0, sign * 2 * std::numbers::pi * (std::int64_t(f) * i % n) / n);
+        for (int i = 0; i < n; ++i)
+            y[f] += x[i] * std::polar(1.0, sign * 2 * std::numbers::pi * (std::int64_t(f) * i % n) / n);
     return y;
 }
 
@@ -55,7 +56,8 @@ TEST_CASE("batch_fft: forward and inverse agree with the definition, for every k
             for (int i = 0; i < n; ++i)
                 for (int lane = 0; lane < k_fft_lanes; ++lane) {
                     const float* at = data.get() + std::size_t(i) * 2 * k_fft_lanes + lane;
-                    worst = std::max(worst, std::abs(x[lane][i] - std::complex<double>(at[0], at[k_fft_lanes]) / double(n)));
+                    worst = std::max(worst,
+                                     std::abs(x[lane][i] - std::complex<double>(at[0], at[k_fft_lanes]) / double(n)));
                 }
             CHECK_MESSAGE(worst < 3e-7 * (2 + std::log2(n)), "round trip, n = " << n << " on " << set);
         }
