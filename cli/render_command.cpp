@@ -176,19 +176,24 @@ Result<void> write_picture(const std::string& file, const RenderResult& r, const
     return write_png(file, pixels.view());
 }
 
-Result<void> write_layers(const std::string& file, const RenderResult& r) {
+Result<void> write_layers(const std::string& file, const RenderResult& r, const Scene& scene) {
     const ExrLayer layers[] = {{"", r.radiance, ""},         {"", r.opacity, "A"},         {"direct", r.direct, ""},
                                {"indirect", r.indirect, ""}, {"diffuse", r.diffuse, ""},   {"specular", r.specular, ""},
                                {"albedo", r.albedo, ""},     {"normal", r.normal, ""},     {"depth", r.depth, "Z"},
                                {"object", r.object, "Y"},    {"variance", r.variance, ""}, {"samples", r.samples, "Y"}};
-    return write_exr_layers(file, layers);
+    // `compare` names the objects of its table by it: one a line, from object 1 on.
+    ExrWriteOptions options;
+    std::string& names = options.attributes["objects"];
+    for (const Instance& instance : scene.instances) names += instance.name + "\n";
+    return write_exr_layers(file, layers, options);
 }
 
-Result<void> write(const std::string& file, const RenderResult& r, const RenderWords& w, double ev) {
+Result<void> write(const std::string& file, const RenderResult& r, const Scene& scene, const RenderWords& w,
+                   double ev) {
     const std::string extension = std::filesystem::path(file).extension().string();
     if (extension == ".png") return write_picture(file, r, w, ev);
     if (extension == ".hdr") return write_hdr(file, r.radiance.view(), w.common.threads.value_or(0));
-    return write_layers(file, r);
+    return write_layers(file, r, scene);
 }
 
 void print_result(const RenderWords& w, const Scene& scene, const RenderResult& r, const RenderOptions& o, double ev) {
@@ -258,7 +263,7 @@ int run_render(const std::vector<std::string>& words) {
     if (!result) return print_error(result.error());
     const double ev = std::isnan(w.ev) ? automatic_ev(*result) : w.ev;
     for (const std::string& o : w.outputs)
-        if (auto ok = write(o, *result, w, ev); !ok) return print_error(ok.error().at(o));
+        if (auto ok = write(o, *result, traced->scene(), w, ev); !ok) return print_error(ok.error().at(o));
     print_result(w, traced->scene(), *result, options, ev);
     return exit_done;
 }
