@@ -244,6 +244,7 @@ int run_render(const std::vector<std::string>& words) {
     auto scene = is_built_in(w.scenes[0]) ? built_in_scene(w.scenes[0]) : load_scene(w.scenes[0], scene_options);
     if (!scene) return print_error(scene.error());
     print_warnings(scene->warnings, w.common, w.scenes[0]);
+    print_warnings(not_rendered(*scene), w.common, w.scenes[0]);
     w.environment.threads = w.common.threads.value_or(0);
     auto environment = open_environment_or_sky(w.environment_files, w.environment);
     if (!environment) return print_error(environment.error());

@@ -74,10 +74,11 @@ struct RenderResult {
     ImageF albedo, normal;     ///< of the first surface, in the world
     ImageF depth;              ///< 1 channel: distance from the eye, mean of what was hit; infinite where nothing was
     ImageF object;             ///< 1 channel: instance + 1 of the pixel's first sample, 0: none
-    ImageF variance;           ///< of the mean, of each channel of `radiance`
-    ImageF samples;            ///< 1 channel
-    double noise = 0;          ///< standard error of L / (1 + L), mean over the picture (rms)
-    double seconds = 0;        ///< by the clock
+    /// Of the mean, of each channel of `radiance`, as if samples were independent: Sobol points make it an upper guess.
+    ImageF variance;
+    ImageF samples;      ///< 1 channel
+    double noise = 0;    ///< standard error of L / (1 + L), mean over the picture (rms)
+    double seconds = 0;  ///< by the clock
     std::int64_t rays = 0;
     int sample_count = 0;  ///< the most of any pixel
 };
@@ -89,6 +90,9 @@ EnvironmentSamplerOptions reference_sampler_options(LightStrategy strategy = Lig
 /// Same bits on any number of threads (unless stopped by the clock). Errors: "cancelled".
 Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSampler& sampler,
                                       const RenderOptions& options);
+
+/// What of a scene's materials the renderers do not know: "clearcoat of 2 materials are left out", for a warning.
+std::vector<std::string> not_rendered(const Scene& scene);
 
 /// A camera that looks from `eye` at `target`, +Y up.
 Camera look_at(const Vec3f& eye, const Vec3f& target, float fov_y);

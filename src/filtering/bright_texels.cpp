@@ -50,10 +50,11 @@ void BrightTexels::add_rows(ImageView<const float> rows, std::span<const simd::S
 }
 
 BrightPoints BrightTexels::points(const Vec3d& mean, int band_limit) const {
-    const double total = 4 * k_pi * std::max({mean.x, mean.y, mean.z});
+    const double largest = std::max({mean.x, mean.y, mean.z}), total = 4 * k_pi * largest;
     std::vector<Texel> texels;
     for (const Texel& t : heap_)
-        if (t.power > k_least_share * total) texels.push_back(t);
+        if (t.power > k_least_share * total && std::max({t.rgb[0], t.rgb[1], t.rgb[2]}) > k_least_contrast * largest)
+            texels.push_back(t);
     std::sort(texels.begin(), texels.end(), stronger);
 
     // A texel wider than a few waves is no point: its own tent has smoothed it beyond what truncation could show.

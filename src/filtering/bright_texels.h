@@ -33,6 +33,9 @@ struct BrightPoints {
 
 /// A texel with less than this part of all power leaves nothing that can be seen.
 constexpr double k_least_share = 1e-4;
+/// And one that is not this many times the mean is no sun: among others like it, what truncation leaves out cancels.
+/// (In small images every texel has its share.)
+constexpr double k_least_contrast = 10;
 
 /// Finds the texels that carry the most power (radiance times solid angle) as the rows of a lat-long image pass by.
 ///

@@ -112,7 +112,7 @@ Spectrum analyse_cube(const BorderedCube& cube, int band_limit, int threads) {
     return rings.finish(threads);
 }
 
-BrightPoints bright_points(const BorderedCube& cube, const Vec3d& mean, double least_share, int band_limit, int most) {
+BrightPoints bright_points(const BorderedCube& cube, const Vec3d& mean, int band_limit, int most) {
     const int n = cube.size();
     struct Texel {
         double power;
@@ -120,7 +120,7 @@ BrightPoints bright_points(const BorderedCube& cube, const Vec3d& mean, double l
     };
     // Border texels too: on their face they stand for a neighbour's light.
     std::vector<Texel> texels;
-    const double least = least_share * 4 * k_pi * std::max({mean.x, mean.y, mean.z});
+    const double of_mean = std::max({mean.x, mean.y, mean.z}), least = k_least_share * 4 * k_pi * of_mean;
     for (int f = 0; f < 6; ++f)
         for (int y = -1; y <= n; ++y)
             for (int x = -1; x <= n; ++x) {
@@ -128,7 +128,7 @@ BrightPoints bright_points(const BorderedCube& cube, const Vec3d& mean, double l
                 const float largest = std::max({p[0], p[1], p[2]});
                 if (largest * 4.0 / (double(n) * n) <= least) continue;  // no texel is larger than 4 / n^2
                 const double power = largest * cube_solid_angle(std::clamp(x, 0, n - 1), std::clamp(y, 0, n - 1), n);
-                if (power > least) texels.push_back({power, f, x, y});
+                if (power > least && largest > k_least_contrast * of_mean) texels.push_back({power, f, x, y});
             }
     std::stable_sort(texels.begin(), texels.end(), [](const Texel& a, const Texel& b) { return a.power > b.power; });
     if (int(texels.size()) > most) texels.resize(most);

@@ -216,7 +216,7 @@ Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& optio
     if (options.progress && !options.progress("read", 1)) return k_cancelled;
     const BorderedCube cube(source);
     const Spectrum spectrum = analyse_cube(cube, plan.band_limit, options.threads);
-    const auto points = [&](int band_limit) { return bright_points(cube, result.mean, k_least_share, band_limit); };
+    const auto points = [&](int band_limit) { return bright_points(cube, result.mean, band_limit); };
     if (auto done = finish(spectrum, nullptr, nullptr, points, plan, options, result); !done) return done.error();
     return result;
 }
