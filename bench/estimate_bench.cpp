@@ -7,6 +7,7 @@
 // per sample and variance are measured in the same run, with independent random points; "Sobol" is the time with
 // Owen-scrambled Sobol points, by the number of them at which the error over 16 randomisations falls below 1 %.
 
+#include "domelight/colour.h"
 #include "domelight/environment.h"
 #include "domelight/projection.h"
 #include "domelight/reflection_estimate.h"
@@ -28,10 +29,6 @@ double cpu_seconds() {
     timespec t;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
     return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
-
-double luminance(const Vec3d& c) {
-    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
 }
 
 struct Samplers {

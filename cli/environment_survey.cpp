@@ -1,6 +1,7 @@
 #include "environment_survey.h"
 
 #include "domelight/area_resample.h"
+#include "domelight/colour.h"
 #include "domelight/prefilter.h"
 #include "domelight/projection.h"
 
@@ -11,11 +12,6 @@
 
 namespace domelight::cli {
 namespace {
-
-/// Rec. 709 luminance.
-double luminance(const float* rgb) {
-    return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
-}
 
 void note_range(EnvironmentSurvey& survey, std::span<const float> values) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());

@@ -1,5 +1,6 @@
 #include "sample_explain.h"
 
+#include "domelight/colour.h"
 #include "domelight/image_io.h"
 
 #include <fmt/core.h>
@@ -74,7 +75,7 @@ std::string text_of(const SampleWords& w, const EnvironmentSampler& sampler, con
         "radiance = ({:.6g}, {:.6g}, {:.6g}), {}\n",
         s.u, s.v, s.direction.x, s.direction.y, s.direction.z, s.radiance.x, s.radiance.y, s.radiance.z,
         e.continuous ? "bilinear" : "of the texel");
-    const double light = 0.2126 * s.radiance.x + 0.7152 * s.radiance.y + 0.0722 * s.radiance.z;
+    const double light = luminance(Vec3d(s.radiance));
     t += fmt::format("   pdf_solid_angle = {:.6g}\n   luminance / pdf_solid_angle = {:.6g}", s.pdf_solid_angle,
                      light / s.pdf_solid_angle);
     if (!w.compensate && w.weight == "radiant-power")

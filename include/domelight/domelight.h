@@ -5,6 +5,7 @@
 #include "domelight/bake_audit.h"
 #include "domelight/brdf.h"
 #include "domelight/brdf_table.h"
+#include "domelight/colour.h"
 #include "domelight/distribution.h"
 #include "domelight/distribution_alias.h"
 #include "domelight/distribution_bilinear.h"

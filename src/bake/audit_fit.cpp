@@ -1,5 +1,6 @@
 #include "bake/audit_fit.h"
 
+#include "domelight/colour.h"
 #include "domelight/projection.h"
 #include "domelight/random.h"
 
@@ -9,17 +10,6 @@
 
 namespace domelight {
 namespace {
-
-float luminance_of(const Vec3f& v) {
-    return 0.2126f * v.x + 0.7152f * v.y + 0.0722f * v.z;
-}
-
-/// A number that mixes the bits of another well (splitmix64's finaliser).
-std::uint64_t mixed(std::uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
-    return x ^ (x >> 31);
-}
 
 struct Ratio {
     float ratio;
@@ -63,7 +53,7 @@ double mean_luminance(const Cubemap& cube) {
             const double w = cube_solid_angle(x, y, n);
             for (int f = 0; f < 6; ++f) {
                 const float* p = cube.face(f).at(x, y);
-                const float l = luminance_of({p[0], p[1], p[2]});
+                const float l = luminance(Vec3f{p[0], p[1], p[2]});
                 if (std::isfinite(l)) sum += w * l, weight += w;
             }
         }
@@ -83,14 +73,14 @@ TexelSample sample_texels(const Cubemap& cube, int most) {
     sample.mean = mean_luminance(cube);
     for (std::int64_t k = 0; k < pieces; ++k) {
         const std::int64_t begin = all * k / pieces, end = all * (k + 1) / pieces;
-        const std::int64_t i = begin + std::int64_t(mixed(std::uint64_t(k) + 1) % std::uint64_t(end - begin));
+        const std::int64_t i = begin + std::int64_t(mix_bits(std::uint64_t(k)) % std::uint64_t(end - begin));
         Vec3f v = value(i);
         if (!finite(v)) continue;
         v = {std::max(v.x, 0.0f), std::max(v.y, 0.0f), std::max(v.z, 0.0f)};
         sample.texels.push_back(int(i));
         sample.weights.push_back(cube_solid_angle(int(i % n), int(i / n) % n, n) * double(all) / double(pieces));
         sample.values.push_back(v);
-        sample.luminance.push_back(luminance_of(v));
+        sample.luminance.push_back(luminance(v));
     }
     return sample;
 }
@@ -122,13 +112,13 @@ Fit fit_level(const TexelSample& sample, const Cubemap& exact, const std::vector
     } else if (quick) {
         double logs = 0, weight = 0;
         for (std::size_t k = 0; k < count; ++k)
-            if (const float e = luminance_of(truth(k)), t = sample.luminance[k]; e > 0 && t > 0)
+            if (const float e = luminance(truth(k)), t = sample.luminance[k]; e > 0 && t > 0)
                 logs += sample.weights[k] * std::log(t / e), weight += sample.weights[k];
         fit.scale = weight > 0 ? std::exp(logs / weight) : 1;
     } else {
         std::vector<Ratio> ratios;
         for (std::size_t k = 0; k < count; ++k)
-            if (const float e = luminance_of(truth(k)); e > 0)
+            if (const float e = luminance(truth(k)); e > 0)
                 ratios.push_back({sample.luminance[k] / e, sample.weights[k]});
         fit.scale = weighted_median(ratios);
     }

@@ -60,7 +60,7 @@ double log_average_luminance(ImageView<const float> image) {
         const double w = latlong_solid_angle(y, image.width, image.height);
         for (int x = step_x / 2; x < image.width; x += step_x) {
             const float* p = image.at(x, y);
-            const float l = finite(luminance({p[0], p[1], p[2]}));
+            const float l = finite(luminance(Vec3f{p[0], p[1], p[2]}));
             values.push_back(l);
             weights.push_back(w);
             mean += w * l;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "domelight/colour.h"
 #include "domelight/image.h"
 #include "domelight/vec.h"
 
@@ -42,10 +43,6 @@ struct Display {
         return {to_byte(c.x), to_byte(c.y), to_byte(c.z)};
     }
 };
-
-inline float luminance(const Vec3f& v) {
-    return 0.2126f * v.x + 0.7152f * v.y + 0.0722f * v.z;
-}
 
 /// Log-average luminance of a lat-long image (3 channels) over solid angle (Reinhard et al. 2002, eq. 1), each
 /// luminance counted as no less than a thousandth of the mean so that black surroundings do not decide. 0 for a black

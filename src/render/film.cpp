@@ -1,18 +1,12 @@
 #include "render/film.h"
 
+#include "domelight/colour.h"
+
 #include <fmt/core.h>
 
 #include <limits>
 
 namespace domelight {
-namespace {
-
-double luminance(const Vec3d& c) {
-    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
-}
-
-}  // namespace
-
 double PixelSums::noise() const {
     if (count < 2) return 1e9;
     const double mean = luminance(radiance) / count, error = std::sqrt(std::max(0.0, luminance(variance_of_mean())));

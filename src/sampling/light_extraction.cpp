@@ -1,5 +1,6 @@
 #include "domelight/light_extraction.h"
 
+#include "domelight/colour.h"
 #include "domelight/parallel.h"
 
 #include "sampling/bright_regions.h"
@@ -15,9 +16,6 @@
 namespace domelight {
 namespace {
 
-double luminance(const Vec3d& v) {
-    return 0.2126 * v.x + 0.7152 * v.y + 0.0722 * v.z;
-}
 Vec3d rgb(const float* p) {
     return {p[0], p[1], p[2]};
 }
