@@ -15,8 +15,6 @@ HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr int k_batch = 64;
-
 /// Items drawn, their positions as offset / length, and their quanta.
 struct Drawn {
     alignas(64) double item[k_batch], offset[k_batch], length[k_batch], quanta[k_batch];
@@ -39,11 +37,9 @@ void sample_alias(const AliasRows& marginal, const AliasRows& conditional, const
                   float* u, float* v, float* pdf_uv) {
     const AliasRows::Entry* rows_entries = marginal.row(0);
     const int row_split = 32 - marginal.bits, column_split = 32 - conditional.bits;
-    const double width = conditional.items, height = conditional.count, scale = width * height * 0x1p-64;
+    const double width = conditional.items, height = conditional.count;
     const AliasRows::Entry* entry[k_batch];
     Drawn rows, columns;
-    const hn::ScalableTag<double> d;
-    const int lanes = int(hn::Lanes(d));
     for (Drawn* drawn : {&rows, &columns})
         for (int k = 0; k < k_batch; ++k)
             drawn->item[k] = drawn->offset[k] = 0, drawn->length[k] = drawn->quanta[k] = 1;
@@ -66,31 +62,10 @@ void sample_alias(const AliasRows& marginal, const AliasRows& conditional, const
         }
         for (int k = 0; k < n; ++k) columns.quanta[k] = double(std::int64_t(entry[k]->last_quantum)) + 1;
 
-        alignas(64) float buffer[3][k_batch];
-        const bool whole = n == k_batch;
-        float *to_u = whole ? u + start : buffer[0], *to_v = whole ? v + start : buffer[1],
-              *to_pdf = whole ? pdf_uv + start : buffer[2];
-        const hn::Rebind<float, decltype(d)> df;
-        for (int k = 0; k < k_batch; k += lanes) {
-            const auto half = hn::Set(d, 0.5), one = hn::Set(d, 1.0);
-            const auto position = [&](const Drawn& drawn, double n_items, float* to) HWY_ATTR {
-                const auto item = hn::Load(d, drawn.item + k);
-                const auto x =
-                    hn::Add(item, hn::Div(hn::Add(hn::Load(d, drawn.offset + k), half), hn::Load(d, drawn.length + k)));
-                hn::StoreU(texel_floats(d, hn::Mul(x, hn::Set(d, 1.0 / n_items)), item, hn::Set(d, n_items), one), df,
-                           to + k);
-            };
-            position(columns, width, to_u);
-            position(rows, height, to_v);
-            const auto density =
-                hn::Mul(hn::Mul(hn::Load(d, rows.quanta + k), hn::Load(d, columns.quanta + k)), hn::Set(d, scale));
-            hn::StoreU(hn::DemoteTo(df, density), df, to_pdf + k);
-        }
-        if (!whole) {
-            std::copy_n(buffer[0], n, u + start);
-            std::copy_n(buffer[1], n, v + start);
-            std::copy_n(buffer[2], n, pdf_uv + start);
-        }
+        const BatchOutput out(u + start, v + start, pdf_uv + start, n);
+        store_texel_draws({columns.item, columns.offset, columns.length, columns.quanta, width},
+                          {rows.item, rows.offset, rows.length, rows.quanta, height}, out);
+        out.finish();
     }
 }
 

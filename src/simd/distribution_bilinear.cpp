@@ -7,6 +7,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 #include "simd/distribution_bilinear.h"
+#include "simd/distribution_float-inl.h"
 #include "distribution/bilinear_place.h"
 #include <algorithm>
 #include <cstring>
@@ -16,7 +17,6 @@ HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr int k_batch = 64;
 constexpr double k_total = BilinearRows::k_total;
 
 /// The first item from `from` on whose end is over `target`.
@@ -243,10 +243,7 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
             b.below_shape[k] = shape[shape_stride];
         }
 
-        alignas(64) float buffer[3][k_batch];
-        const bool whole = n == k_batch;
-        float *to_u = whole ? u + begin : buffer[0], *to_v = whole ? v + begin : buffer[1],
-              *to_pdf = whole ? pdf_uv + begin : buffer[2];
+        const BatchOutput out(u + begin, v + begin, pdf_uv + begin, n);
         const auto under_one = hn::Set(df, 0x1.fffffep-1f);
         for (int k = 0; k < k_batch; k += lanes) {
             VD above_edge, above_next, below_edge, below_next;
@@ -265,16 +262,12 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
             auto x =
                 hn::Mul(hn::Add(hn::Add(hn::PromoteTo(d, hn::Load(di, b.item + k)), half), t), hn::Set(d, 1.0 / width));
             x = hn::IfThenElse(hn::Ge(x, one), hn::Sub(x, one), x);
-            hn::StoreU(hn::Min(hn::DemoteTo(df, x), under_one), df, to_u + k);
-            hn::StoreU(hn::Min(hn::DemoteTo(df, hn::Load(d, b.v + k)), under_one), df, to_v + k);
+            hn::StoreU(hn::Min(hn::DemoteTo(df, x), under_one), df, out.to[0] + k);
+            hn::StoreU(hn::Min(hn::DemoteTo(df, hn::Load(d, b.v + k)), under_one), df, out.to[1] + k);
             const auto pdf_u = hn::Mul(segment.at(t), hn::Set(d, width * (1 / k_total)));
-            hn::StoreU(hn::DemoteTo(df, hn::Mul(hn::Load(d, b.pdf_v + k), pdf_u)), df, to_pdf + k);
+            hn::StoreU(hn::DemoteTo(df, hn::Mul(hn::Load(d, b.pdf_v + k), pdf_u)), df, out.to[2] + k);
         }
-        if (!whole) {
-            std::copy_n(buffer[0], n, u + begin);
-            std::copy_n(buffer[1], n, v + begin);
-            std::copy_n(buffer[2], n, pdf_uv + begin);
-        }
+        out.finish();
     }
 }
 

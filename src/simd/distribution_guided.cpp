@@ -15,8 +15,6 @@ HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr int k_batch = 64;
-
 /// The first item from `from` on whose last quantum is xi or more: a vector of them at a time. There is one: the last
 /// item's is 2^32 - 1.
 HWY_INLINE int find_from(const std::uint32_t* last, int from, std::uint32_t xi) {
@@ -44,11 +42,9 @@ void sample_guided(const GuidedRows& marginal, const GuidedRows& conditional, co
     const std::uint32_t *row_last = marginal.last_of(0), *column_last[k_batch];
     const std::uint16_t *row_guide = marginal.guide_of(0), *column_guide[k_batch];
     const std::size_t stride = std::size_t(conditional.items) + 1, cells = std::size_t(conditional.cells()) + 8;
-    const double width = conditional.items, height = conditional.count, scale = width * height * 0x1p-64;
+    const double width = conditional.items, height = conditional.count;
     int from[k_batch];
     Drawn rows, columns;
-    const hn::ScalableTag<double> d;
-    const int lanes = int(hn::Lanes(d));
     for (int k = 0; k < k_batch; ++k)
         columns.item[k] = columns.offset[k] = rows.item[k] = rows.offset[k] = 0, columns.quanta[k] = rows.quanta[k] = 1;
 
@@ -70,31 +66,10 @@ void sample_guided(const GuidedRows& marginal, const GuidedRows& conditional, co
         }
         for (int k = 0; k < n; ++k) columns.set(k, column_last[k], find_from(column_last[k], from[k], p[k].x), p[k].x);
 
-        alignas(64) float buffer[3][k_batch];
-        const bool whole = n == k_batch;
-        float *to_u = whole ? u + start : buffer[0], *to_v = whole ? v + start : buffer[1],
-              *to_pdf = whole ? pdf_uv + start : buffer[2];
-        const hn::Rebind<float, decltype(d)> df;
-        for (int k = 0; k < k_batch; k += lanes) {
-            const auto half = hn::Set(d, 0.5), one = hn::Set(d, 1.0);
-            const auto position = [&](const Drawn& drawn, double n_items, float* to) HWY_ATTR {
-                const auto item = hn::Load(d, drawn.item + k);
-                const auto x =
-                    hn::Add(item, hn::Div(hn::Add(hn::Load(d, drawn.offset + k), half), hn::Load(d, drawn.quanta + k)));
-                hn::StoreU(texel_floats(d, hn::Mul(x, hn::Set(d, 1.0 / n_items)), item, hn::Set(d, n_items), one), df,
-                           to + k);
-            };
-            position(columns, width, to_u);
-            position(rows, height, to_v);
-            const auto density =
-                hn::Mul(hn::Mul(hn::Load(d, rows.quanta + k), hn::Load(d, columns.quanta + k)), hn::Set(d, scale));
-            hn::StoreU(hn::DemoteTo(df, density), df, to_pdf + k);
-        }
-        if (!whole) {
-            std::copy_n(buffer[0], n, u + start);
-            std::copy_n(buffer[1], n, v + start);
-            std::copy_n(buffer[2], n, pdf_uv + start);
-        }
+        const BatchOutput out(u + start, v + start, pdf_uv + start, n);
+        store_texel_draws({columns.item, columns.offset, columns.quanta, columns.quanta, width},
+                          {rows.item, rows.offset, rows.quanta, rows.quanta, height}, out);
+        out.finish();
     }
 }
 
