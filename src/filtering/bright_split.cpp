@@ -1,5 +1,6 @@
 #include "filtering/bright_split.h"
 
+#include "domelight/frame.h"
 #include "domelight/projection.h"
 
 #include "filtering/tent_nodes.h"
@@ -17,13 +18,6 @@ namespace {
 /// Widths away from a light from which four points may stand for it.
 constexpr double k_far = 12;
 
-/// A direction's tangent plane.
-struct Tangents {
-    explicit Tangents(const Vec3d& n)
-        : s(normalize(cross(std::abs(n.y) < 0.9 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0}, n))), t(cross(n, s)) {}
-    Vec3d s, t;
-};
-
 /// Points [from, to) as four: the same power and first moments of each channel, the same second moments of their sum.
 /// What stands for a light so is right at a distance s up to third order in its width over s.
 ///
@@ -39,19 +33,20 @@ void add_quartet(BrightPoints& points, const BrightPoints& of, int from, int to)
         total += weight;
     }
     const Vec3d centre = sum / total, axis = normalize(centre);
-    const Tangents plane(axis);
+    const Frame<double> frame(axis);
     double ss = 0, st = 0, tt = 0;
     std::array<Vec3d, 3> shift;  // of each channel's centroid, times its power
     for (int i = from; i < to; ++i) {
         const Vec3d d = of.place(i) - centre;
-        const double weight = (double(of.r[i]) + of.g[i] + of.b[i]) / total, s = dot(d, plane.s), t = dot(d, plane.t);
+        const double weight = (double(of.r[i]) + of.g[i] + of.b[i]) / total, s = dot(d, frame.tangent),
+                     t = dot(d, frame.bitangent);
         ss += weight * s * s, st += weight * s * t, tt += weight * t * t;
         shift[0] = shift[0] + d * of.r[i], shift[1] = shift[1] + d * of.g[i], shift[2] = shift[2] + d * of.b[i];
     }
     const double angle = 0.5 * std::atan2(2 * st, ss - tt), half = std::hypot(0.5 * (ss - tt), st);
     for (int k = 0; k < 2; ++k) {
         const double a = angle + k * k_pi / 2, sigma = std::sqrt(std::max(0.5 * (ss + tt) + (k ? -half : half), 0.0));
-        const Vec3d e = plane.s * std::cos(a) + plane.t * std::sin(a);
+        const Vec3d e = frame.tangent * std::cos(a) + frame.bitangent * std::sin(a);
         for (int sign = -1; sign <= 1; sign += 2) {
             const auto part = [&](int c, double p) {
                 return float(0.25 * p + (sigma > 0 ? sign * dot(shift[c], e) / (2 * std::numbers::sqrt2 * sigma) : 0));
