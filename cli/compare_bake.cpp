@@ -43,21 +43,12 @@ std::vector<double> numbers_in(std::string text, std::size_t count) {
 Result<Bake> read_chain(const std::string& file) {
     const auto texture = read_texture(file);
     if (!texture) return texture.error().at(file);
-    if (texture->faces != 6) return Error{"texture is not a cube", file, "An audit needs a specular cube."};
-    if (texture->encoding == Encoding::rg16f || texture->encoding == Encoding::rg32f)
-        return Error{"texture has two channels, not a colour", file, ""};
+    auto cubes = decode_cubes(*texture);
+    if (!cubes) return cubes.error().at(file);
     const auto info = read_texture_info(file);
     Bake bake;
     bake.format = info ? fmt::format("{}, {}", info->container, info->format) : "texture";
-    for (int l = 0; l < int(texture->levels.size()); ++l) {
-        CubeLevel level;
-        level.cube = Cubemap(texture->level_width(l));
-        for (int f = 0; f < 6; ++f) {
-            const ImageF face = decode_texture(*texture, l, f);
-            std::copy(face.pixels().begin(), face.pixels().end(), level.cube.face(f).data);
-        }
-        bake.levels.push_back(std::move(level));
-    }
+    for (Cubemap& cube : *cubes) bake.levels.emplace_back().cube = std::move(cube);
     if (const auto key = texture->metadata.find("domelight.roughness"); key != texture->metadata.end()) {
         const auto stated = numbers_in(key->second, bake.levels.size());
         for (std::size_t l = 0; l < stated.size(); ++l) bake.levels[l].roughness = stated[l];

@@ -54,6 +54,9 @@ Texture encode_table(ImageView<const float> table, Encoding encoding);
 /// Float texels of one face of a level: RGB, or RG for two-channel encodings.
 ImageF decode_texture(const Texture& texture, int level, int face);
 
+/// All levels of a cube of colours. Errors: not six faces; two channels.
+Result<std::vector<Cubemap>> decode_cubes(const Texture& texture);
+
 enum class Supercompression { none, zstd };
 
 /// Containers. An output appears whole or not at all; an existing file is replaced only by a complete one.

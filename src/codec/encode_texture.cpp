@@ -5,6 +5,7 @@
 #include "codec/chain_encoder.h"
 #include "codec/encode_row.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace domelight {
@@ -65,6 +66,20 @@ ImageF decode_texture(const Texture& texture, int level, int face) {
     decode_texels(texture.encoding, texture.levels[level].data() + face_bytes * face, width * height,
                   image.pixels().data());
     return image;
+}
+
+Result<std::vector<Cubemap>> decode_cubes(const Texture& texture) {
+    if (texture.faces != 6)
+        return Error{"texture is not a cube", "", "Wanted is a specular cube, as `bake` writes it."};
+    if (texture.encoding == Encoding::rg16f || texture.encoding == Encoding::rg32f)
+        return Error{"texture has two channels, not a colour", "", ""};
+    std::vector<Cubemap> levels;
+    for (int l = 0; l < int(texture.levels.size()); ++l) {
+        Cubemap cube(texture.level_width(l));
+        for (int f = 0; f < 6; ++f) std::ranges::copy(decode_texture(texture, l, f).pixels(), cube.face(f).data);
+        levels.push_back(std::move(cube));
+    }
+    return levels;
 }
 
 }  // namespace domelight

@@ -59,16 +59,8 @@ Result<nlohmann::json> read_json(const std::filesystem::path& file) {
 Result<std::vector<Cubemap>> read_cubes(const std::filesystem::path& file) {
     auto texture = read_texture(file);
     if (!texture) return texture.error();
-    if (texture->faces != 6) return Error{"is no cube", file.string(), "Bake with the generic target's layout."};
-    std::vector<Cubemap> levels;
-    for (int l = 0; l < int(texture->levels.size()); ++l) {
-        Cubemap cube(texture->level_width(l));
-        for (int f = 0; f < 6; ++f) {
-            const ImageF face = decode_texture(*texture, l, f);
-            std::copy(face.pixels().begin(), face.pixels().end(), cube.face(f).data);
-        }
-        levels.push_back(std::move(cube));
-    }
+    auto levels = decode_cubes(*texture);
+    if (!levels) return levels.error().at(file.string());
     return levels;
 }
 
