@@ -18,8 +18,8 @@ namespace domelight {
 /// A scene with its acceleration structure.
 class RayScene {
   public:
-    /// Errors: no triangles; out of memory.
-    static Result<RayScene> build(Scene scene, int threads = 0);
+    /// Built on all cores. Errors: no triangles; out of memory.
+    static Result<RayScene> build(Scene scene);
     ~RayScene();
     RayScene(RayScene&&) noexcept;
     RayScene& operator=(RayScene&&) noexcept;

@@ -41,6 +41,11 @@ template <typename T>
 constexpr Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+/// Component by component: a colour through a filter.
+template <typename T>
+constexpr Vec3<T> product(const Vec3<T>& a, const Vec3<T>& b) {
+    return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
 template <typename T>
 T length(const Vec3<T>& v) {
     return std::sqrt(dot(v, v));

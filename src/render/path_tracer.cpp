@@ -22,9 +22,6 @@ constexpr int k_batch = 1024;        ///< samples that go through the steps toge
 constexpr int k_most_passages = 64;  ///< transparent surfaces a ray passes at most
 constexpr int k_roulette_from = 3;   ///< bounces before paths may end by chance
 
-Vec3f product(const Vec3f& a, const Vec3f& b) {
-    return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
 float largest(const Vec3f& c) {
     return std::max({c.x, c.y, c.z});
 }
@@ -152,7 +149,7 @@ class Tracer {
                                                      p.index)
                                               .x) < opacity)
                 return true;
-            p.ray.near = std::nextafter(p.hit.distance + 4e-6f * (1 + p.hit.distance), 1e30f);
+            pass(p.ray, p.hit);
         }
         return false;
     }
@@ -174,7 +171,7 @@ class Tracer {
             ++rays;
             if (hit.instance < 0 || hit.distance >= distance) return through;
             through *= 1 - opacity_at(scene_, hit);
-            ray.near = std::nextafter(hit.distance + 4e-6f * (1 + hit.distance), 1e30f);
+            pass(ray, hit);
         }
         return through;
     }

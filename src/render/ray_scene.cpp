@@ -52,7 +52,7 @@ std::size_t RayScene::memory_bytes() const {
     return impl_->bytes;
 }
 
-Result<RayScene> RayScene::build(Scene scene, int) {
+Result<RayScene> RayScene::build(Scene scene) {
     RayScene out;
     Impl& impl = *out.impl_;
     impl.scene = std::move(scene);

@@ -5,6 +5,8 @@
 
 #include <embree3/rtcore.h>
 
+#include <cmath>
+
 namespace domelight {
 
 /// A point of a surface that a ray met.
@@ -21,6 +23,11 @@ struct Ray {
     float near = 0;
 };
 
+/// Lets a ray that met a surface go on behind it.
+inline void pass(Ray& ray, const Hit& hit) {
+    ray.near = std::nextafter(hit.distance + 4e-6f * (1 + hit.distance), 1e30f);
+}
+
 struct RayScene::Impl {
     Impl() = default;
     ~Impl();
@@ -28,11 +35,7 @@ struct RayScene::Impl {
     RTCDevice device = nullptr;
     RTCScene world = nullptr;
     std::vector<RTCScene> objects;  ///< of meshes that have several instances
-    struct Geometry {
-        int instance;
-    };
-    std::vector<int> instance_of;  ///< of a geometry of `world`
-    std::vector<Affine> to_local_normal;
+    std::vector<int> instance_of;   ///< of a geometry of `world`
     std::size_t bytes = 0;
 
     Hit intersect(const Ray& ray, bool coherent) const;

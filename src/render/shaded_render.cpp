@@ -58,7 +58,7 @@ class ShadedTracer {
                 }
                 rest -= part;
             }
-            ray.near = std::nextafter(hit.distance + 4e-6f * (1 + hit.distance), 1e30f);
+            pass(ray, hit);
         }
         const Vec3d r(light);
         sums.radiance = sums.radiance + r;

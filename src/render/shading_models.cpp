@@ -6,12 +6,6 @@
 namespace domelight {
 namespace {
 
-Vec3f product(const Vec3f& a, const Vec3f& b) {
-    return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
-Vec3f reflect(const Vec3f& V, const Vec3f& N) {
-    return N * (2 * dot(N, V)) - V;
-}
 Vec3f irradiance(const Vec3f& N, const LightMaps& maps, const ShadingOptions& o) {
     return o.sh_irradiance ? maps.irradiance_over_pi_sh(N) : maps.irradiance_over_pi(N);
 }
@@ -19,11 +13,6 @@ Vec3f irradiance(const Vec3f& N, const LightMaps& maps, const ShadingOptions& o)
 /// Specular occlusion from the ambient one: Lagarde and de Rousiers 2014, "Moving Frostbite to PBR", listing 26.
 float specular_occlusion(float NdotV, float occlusion, float alpha) {
     return std::clamp(std::pow(NdotV + occlusion, std::exp2(-16 * alpha - 1)) - 1 + occlusion, 0.f, 1.f);
-}
-
-/// Fresnel at normal incidence and grazing, Schlick's mix between.
-Vec3f fresnel(const Bsdf& b, float NdotV) {
-    return b.f0 + (b.f90 - b.f0) * schlick_weight(NdotV);
 }
 
 }  // namespace
@@ -34,7 +23,7 @@ ShadedLight shade_split_sum(const SurfacePoint& s, const Vec3f& V, float occlusi
     const Vec3f E = irradiance(s.normal, maps, o);
     if (b.kind == Bsdf::Kind::lambert) return {product(b.diffuse, E) * occlusion, {}};
     const float NdotV = std::clamp(dot(s.normal, V), 0.f, 1.f), roughness = std::sqrt(b.alpha);
-    Vec3f R = reflect(V, s.normal);
+    Vec3f R = reflect_about(V, s.normal);
     if (o.bent_lookup) {
         // listing 21: the lobe leans to the normal the more the rougher it is
         const float smooth = 1 - roughness, lean = smooth * (std::sqrt(smooth) + roughness);
@@ -44,7 +33,7 @@ ShadedLight shade_split_sum(const SurfacePoint& s, const Vec3f& V, float occlusi
     const Vec3f single = b.f0 * scale + b.f90 * bias;
     ShadedLight light;
     light.specular = product(maps.specular(R, roughness), single);
-    const Vec3f F = fresnel(b, NdotV);
+    const Vec3f F = fresnel_schlick(NdotV, b.f0, b.f90);
     Vec3f below = b.diffuse * (1 - std::max({F.x, F.y, F.z}));  // kD (1 - metalness) c, the metalness in b.diffuse
     if (o.multiple_scattering) {
         // Fdez-Aguera 2019, listing 2: what single scattering loses comes back as cosine-weighted light.
@@ -68,12 +57,12 @@ ShadedLight shade_phong(const SurfacePoint& s, const Vec3f& V, float occlusion, 
     const Bsdf& b = s.bsdf;
     ShadedLight light{product(b.diffuse, irradiance(s.normal, maps, o)) * occlusion, {}};
     // The map is a GGX chain: looked up at the roughness whose exponent it is.
-    light.specular = product(maps.specular(reflect(V, s.normal), std::sqrt(b.alpha)), b.f0) * occlusion;
+    light.specular = product(maps.specular(reflect_about(V, s.normal), std::sqrt(b.alpha)), b.f0) * occlusion;
     return light;
 }
 
 ShadedLight shade_mirror(const SurfacePoint& s, const Vec3f& V, const EnvironmentSampler& environment) {
-    return {{}, environment.radiance(reflect(V, s.normal))};
+    return {{}, environment.radiance(reflect_about(V, s.normal))};
 }
 
 ShadedLight shade_refract(const SurfacePoint& s, const Vec3f& V, float ior, const EnvironmentSampler& environment) {
@@ -81,7 +70,7 @@ ShadedLight shade_refract(const SurfacePoint& s, const Vec3f& V, float ior, cons
     // Snell: sin t = eta sin i; beyond the critical angle all is reflected.
     const float cos2 = 1 - eta * eta * (1 - NdotV * NdotV), f0 = (ior - 1) / (ior + 1) * ((ior - 1) / (ior + 1));
     const float mix = cos2 > 0 ? f0 + (1 - f0) * schlick_weight(NdotV) : 1;
-    Vec3f light = environment.radiance(reflect(V, s.normal)) * mix;
+    Vec3f light = environment.radiance(reflect_about(V, s.normal)) * mix;
     if (mix < 1) light = light + environment.radiance(s.normal * (eta * NdotV - std::sqrt(cos2)) - V * eta) * (1 - mix);
     return {{}, light};
 }

@@ -1,6 +1,7 @@
 #include "render/surface.h"
 
 #include "domelight/brdf_table.h"
+#include "domelight/colour.h"
 
 #include "render/texture_lookup.h"
 
@@ -10,14 +11,8 @@
 namespace domelight {
 namespace {
 
-Vec3f product(const Vec3f& a, const Vec3f& b) {
-    return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
 Vec3f mix(const Vec3f& a, const Vec3f& b, float t) {
     return a + (b - a) * t;
-}
-float luminance(const Vec3f& c) {
-    return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
 }
 Vec3f unit_or(const Vec3f& v, const Vec3f& otherwise) {
     const float n = dot(v, v);
