@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
                     argv[3][0] == 'l' ? test::lambert_material(value) : test::metal_material(value);
     }
     double start = cpu_seconds();
-    auto traced = RayScene::build(std::move(scene), 1);
+    auto traced = RayScene::build(std::move(scene));
     fmt::print("build {:.3f} s CPU, {:.1f} MB\n", cpu_seconds() - start, double(traced->memory_bytes()) * 1e-6);
     start = cpu_seconds();
     auto sampler = EnvironmentSampler::build(image, reference_sampler_options(LightStrategy::mis, 1));

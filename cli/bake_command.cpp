@@ -208,12 +208,7 @@ int run_bake(const std::vector<std::string>& words) {
                          "domelight bake studio.hdr evening.hdr -o lights --for khronos --for filament",
                          "domelight bake studio.hdr -o small --size 128 --levels 5 --encoding rgb9e5 --zstd"});
     declare(arguments, w);
-    if (auto ok = arguments.parse(words); !ok) return print_error(ok.error(), exit_usage);
-    if (arguments.help_wanted()) {
-        fmt::print("{}", arguments.help());
-        return exit_done;
-    }
-    if (auto ok = check_common_options(w.common); !ok) return print_error(ok.error(), exit_usage);
+    if (const auto code = begin_command(arguments, words, w.common)) return *code;
     const auto options = bake_options(w);
     if (!options) return print_error(options.error(), exit_usage);
     const auto jobs = list_jobs(w);

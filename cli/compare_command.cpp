@@ -27,12 +27,7 @@ int run_compare(const std::vector<std::string>& words) {
     add_picture_options(arguments, pictures);
     add_bake_options(arguments, bake);
     add_common_options(arguments, common);
-    if (auto ok = arguments.parse(words); !ok) return print_error(ok.error(), exit_usage);
-    if (arguments.help_wanted()) {
-        fmt::print("{}", arguments.help());
-        return exit_done;
-    }
-    if (auto ok = check_common_options(common); !ok) return print_error(ok.error(), exit_usage);
+    if (const auto code = begin_command(arguments, words, common)) return *code;
     if (!bake.bake.empty()) {
         if (!inputs.empty())
             return print_error({"audits a bake: it takes no pictures A and B", "--bake", "Name the source with --env."},

@@ -147,7 +147,7 @@ double automatic_exposure(ImageView<const float> image, Mask mask) {
             for (int x = 0; x < image.width; ++x)
                 if (!mask.data || mask.at(x, y)[0] > 0) {
                     const float* p = image.at(x, y);
-                    use(std::max(double(luminance({p[0], p[1], p[2]})), 0.0));
+                    use(std::max(double(luminance(Vec3f{p[0], p[1], p[2]})), 0.0));
                 }
     };
     each([&](double l) { mean += l, ++pixels; });

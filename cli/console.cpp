@@ -27,6 +27,17 @@ int print_error(const Error& error, int otherwise) {
     return error.where.starts_with("--") ? exit_usage : otherwise;
 }
 
+std::optional<int> begin_command(Arguments& arguments, const std::vector<std::string>& words,
+                                 const CommonOptions& options) {
+    if (auto ok = arguments.parse(words); !ok) return print_error(ok.error(), exit_usage);
+    if (arguments.help_wanted()) {
+        fmt::print("{}", arguments.help());
+        return exit_done;
+    }
+    if (auto ok = check_common_options(options); !ok) return print_error(ok.error(), exit_usage);
+    return std::nullopt;
+}
+
 void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options, const std::string& place) {
     if (options.quiet) return;
     for (const std::string& warning : warnings)

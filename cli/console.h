@@ -23,6 +23,11 @@ Result<void> check_common_options(const CommonOptions& options);
 
 /// Prints "error: ..." to stderr and returns the exit code: 2 where the error's place is an option, else `otherwise`.
 int print_error(const Error& error, int otherwise = exit_failed);
+/// What every command begins with: reads its words and answers --help, wrong words and wrong common options. The exit
+/// code where that was all; nothing where the command goes on.
+std::optional<int> begin_command(Arguments& arguments, const std::vector<std::string>& words,
+                                 const CommonOptions& options);
+
 /// Prints "warning: ..." to stderr unless quiet.
 void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options,
                     const std::string& place = "");

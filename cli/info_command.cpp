@@ -243,12 +243,7 @@ int run_info(const std::vector<std::string>& words) {
                          "an environment, a texture, or a bake; without one the built-in sky");
     add_environment_options(arguments, w.environment);
     add_common_options(arguments, w.common);
-    if (auto ok = arguments.parse(words); !ok) return print_error(ok.error(), exit_usage);
-    if (arguments.help_wanted()) {
-        fmt::print("{}", arguments.help());
-        return exit_done;
-    }
-    if (auto ok = check_common_options(w.common); !ok) return print_error(ok.error(), exit_usage);
+    if (const auto code = begin_command(arguments, words, w.common)) return *code;
     if (w.inputs.size() == 1) {
         const fs::path input = w.inputs[0];
         std::error_code failure;

@@ -256,14 +256,9 @@ int run_lights(const std::vector<std::string>& words) {
         {"domelight lights studio.hdr -o lights", "domelight lights studio.hdr -o sun --max-lights 1 --format exr",
          "domelight lights -o sky --lux-per-unit 179 --json"});
     declare(arguments, w);
-    if (auto ok = arguments.parse(words); !ok) return print_error(ok.error(), exit_usage);
-    if (arguments.help_wanted()) {
-        fmt::print("{}", arguments.help());
-        return exit_done;
-    }
+    if (const auto code = begin_command(arguments, words, w.common)) return *code;
     w.options.max_lights = w.max_lights.value_or(w.options.max_lights);
     w.options.threads = w.common.threads.value_or(0);
-    if (auto ok = check_common_options(w.common); !ok) return print_error(ok.error(), exit_usage);
     if (auto ok = check(w); !ok) return print_error(ok.error(), exit_usage);
     return run(w);
 }

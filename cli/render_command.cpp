@@ -1,4 +1,5 @@
 #include "domelight/bake.h"
+#include "domelight/colour.h"
 #include "domelight/image_io.h"
 #include "domelight/render.h"
 #include "domelight/shading.h"
@@ -148,7 +149,7 @@ double automatic_ev(const RenderResult& r) {
         for (int x = 0; x < r.radiance.width(); ++x) {
             const float* p = r.radiance.at(x, y);
             const double w = 0.05 + *r.opacity.at(x, y);
-            sum += w * std::log(std::max(1e-6, 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2]));
+            sum += w * std::log(std::max(1e-6, luminance(p)));
             weight += w;
         }
     return std::log2(0.18 / std::exp(sum / weight));
@@ -227,12 +228,7 @@ int run_render(const std::vector<std::string>& words) {
          "domelight render helmet.glb --env sunset.hdr -o truth.exr,truth.png --spp 256",
          "domelight render ball --env sunset.hdr --shading split-sum -o engine.png"});
     declare(arguments, w);
-    if (auto ok = arguments.parse(words); !ok) return print_error(ok.error(), exit_usage);
-    if (arguments.help_wanted()) {
-        fmt::print("{}", arguments.help());
-        return exit_done;
-    }
-    if (auto ok = check_common_options(w.common); !ok) return print_error(ok.error(), exit_usage);
+    if (const auto code = begin_command(arguments, words, w.common)) return *code;
     std::vector<std::string> outputs;
     for (const std::string& o : w.outputs)
         for (const std::string& part : split(o, ',')) outputs.push_back(part);
@@ -250,7 +246,7 @@ int run_render(const std::vector<std::string>& words) {
     if (!environment) return print_error(environment.error());
 
     RenderOptions options = render_options(w, *scene);
-    auto traced = RayScene::build(std::move(*scene), options.threads);
+    auto traced = RayScene::build(std::move(*scene));
     if (!traced) return print_error(traced.error().at(w.scenes[0]));
     auto sampler =
         EnvironmentSampler::build(*environment, reference_sampler_options(options.strategy, options.threads));

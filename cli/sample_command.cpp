@@ -113,11 +113,7 @@ int run_sample(const std::vector<std::string>& words) {
                          "--plot convergence.png",
                          "domelight sample studio.hdr --tables shader"});
     declare_sample_options(arguments, w);
-    if (auto ok = arguments.parse(words); !ok) return print_error(ok.error(), exit_usage);
-    if (arguments.help_wanted()) {
-        fmt::print("{}", arguments.help());
-        return exit_done;
-    }
+    if (const auto code = begin_command(arguments, words, w.common)) return *code;
     if (auto ok = check_sample_options(arguments, w); !ok) return print_error(ok.error(), exit_usage);
 
     auto environment = open_environment_or_sky(w.inputs, w.environment);

@@ -1,5 +1,6 @@
 #include "sample_estimate.h"
 
+#include "domelight/colour.h"
 #include "domelight/image_io.h"
 
 #include "preview/plot.h"
@@ -23,10 +24,6 @@ Json number_json(double v) {
 Json vector_json(const Vec3d& v) {
     return Json::array({v.x, v.y, v.z});
 }
-double luminance(const Vec3d& v) {
-    return 0.2126 * v.x + 0.7152 * v.y + 0.0722 * v.z;
-}
-
 std::string surface_text(const SampleWords& w) {
     const double cosine = dot(w.normal_world, w.view_world), angle = std::acos(std::min(1.0, cosine)) * 180 / k_pi;
     std::string text = w.brdf;

@@ -157,7 +157,6 @@ void declare_sample_options(Arguments& a, SampleWords& w) {
 }
 
 Result<void> check_sample_options(const Arguments& arguments, SampleWords& w) {
-    if (auto ok = check_common_options(w.common); !ok) return ok;
     if (w.inputs.size() > 1 && !are_cube_faces(w.inputs) && w.environment.projection != "cube-faces")
         return Error{"more than one input, and not the six faces of a cube", "--projection",
                      "Sample one environment at a time."};

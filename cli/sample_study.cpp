@@ -1,5 +1,6 @@
 #include "sample_study.h"
 
+#include "domelight/colour.h"
 #include "domelight/parallel.h"
 #include "domelight/random.h"
 #include "domelight/reference.h"
@@ -14,10 +15,6 @@
 
 namespace domelight::cli {
 namespace {
-
-double luminance(const Vec3d& v) {
-    return 0.2126 * v.x + 0.7152 * v.y + 0.0722 * v.z;
-}
 
 double thread_seconds() {
     timespec t{};
@@ -137,9 +134,9 @@ std::optional<double> Runner::variance(const Contender& c, const Study& study) c
     Surface squared = surface_;
     squared.evaluate = [&](const Vec3f& V, const Vec3f& L) {
         const Vec3f f = surface_.evaluate(V, L), d(frame_.to_world(Vec3d(L))), radiance = plain_.radiance(d);
-        const double p = c.density(L, d),
-                     value = luminance({double(f.x) * radiance.x, double(f.y) * radiance.y, double(f.z) * radiance.z}) *
-                             L.z;
+        const double p = c.density(L, d), value = luminance(Vec3d{double(f.x) * radiance.x, double(f.y) * radiance.y,
+                                                                  double(f.z) * radiance.z}) *
+                                                  L.z;
         return value > 0 ? f * float(value / p) : Vec3f{};
     };
     const Runs r = repeat(16, words_.threads(), [&](int i) {

@@ -131,12 +131,7 @@ int run_sky(const std::vector<std::string>& words) {
         {"domelight sky -o sky.hdr", "domelight sky -o evening.exr --sun-elevation-deg 4 --turbidity 5 --height 256",
          "domelight sky --axes -o axes.png"});
     declare(arguments, w);
-    if (auto ok = arguments.parse(words); !ok) return print_error(ok.error(), exit_usage);
-    if (arguments.help_wanted()) {
-        fmt::print("{}", arguments.help());
-        return exit_done;
-    }
-    if (auto ok = check_common_options(w.common); !ok) return print_error(ok.error(), exit_usage);
+    if (const auto code = begin_command(arguments, words, w.common)) return *code;
     if (auto ok = check(w); !ok) return print_error(ok.error(), exit_usage);
     w.sky.height = w.height.value_or(512);
     w.sky.sun_disc = !w.no_sun_disc;
