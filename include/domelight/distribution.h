@@ -69,6 +69,9 @@ class Distribution2D {
     virtual void sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v,
                         std::span<float> pdf_uv) const;
 
+    /// Densities at many points at once, those of pdf_uv(u[i], v[i]) rounded to float. All spans have the same length.
+    virtual void pdfs_uv(std::span<const float> u, std::span<const float> v, std::span<float> pdf_uv) const;
+
     virtual int width() const = 0;
     virtual int height() const = 0;
     /// Whether the density is continuous (bilinear between texel centres) or constant in each texel.

@@ -65,6 +65,7 @@ class BilinearDistribution final : public Distribution2D {
     std::optional<UnitPoint> invert(double u, double v) const override;
     void sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v,
                 std::span<float> pdf_uv) const override;
+    void pdfs_uv(std::span<const float> u, std::span<const float> v, std::span<float> pdf_uv) const override;
     int width() const override { return columns_.items; }
     int height() const override { return columns_.count - 2; }
     bool continuous() const override { return true; }

@@ -75,6 +75,9 @@ class EnvironmentSampler {
     Vec3f radiance(const Vec3f& direction) const;
     /// Radiance and density together, for the other strategy's half of multiple importance sampling.
     LightSample look_up(const Vec3f& direction) const;
+    /// Many at once: u, v, radiance and density for the directions that out.x, y, z hold (any length but 0; left as
+    /// they are). The same up to rounding, several times as fast. An empty span of densities: not asked for.
+    void look_up(const LightSampleSpans& out) const;
     /// The point that sample() maps to a direction, where the method is invertible and no uniform share was asked for.
     std::optional<UnitPoint> invert(const Vec3f& direction) const;
 

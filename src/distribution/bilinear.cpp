@@ -151,6 +151,14 @@ struct Tables {
     }
 };
 
+void prefetch(const void* address) {
+#if defined(__GNUC__)
+    __builtin_prefetch(address);
+#else
+    (void)address;
+#endif
+}
+
 /// u's place among `items` segments from centre to centre.
 std::pair<int, double> column_place(double u, int items) {
     double x = (u > 0 ? std::min(u, 1.0) : 0.0) * items - 0.5;
@@ -224,6 +232,34 @@ double BilinearDistribution::pdf_uv(double u, double v) const {
     const auto [i, r] = column_place(u, width());
     const Row row = tables.at(s, t);
     return row.pdf_v * row.mixture.segment(i).at(r) * (width() * (1 / k_total));
+}
+
+void BilinearDistribution::pdfs_uv(std::span<const float> u, std::span<const float> v, std::span<float> pdf_uv) const {
+    assert(u.size() == v.size() && u.size() == pdf_uv.size());
+    constexpr std::size_t k_block = 64;
+    const Tables tables{rows_, columns_, row_begins_};
+    struct Place {
+        int s, i;
+        double t, r;
+    } places[k_block];
+    for (std::size_t first = 0; first < u.size(); first += k_block) {
+        const std::size_t n = std::min(k_block, u.size() - first);
+        // Fetched for the whole block before any is used: the block's cache misses overlap.
+        for (std::size_t k = 0; k < n; ++k) {
+            const auto [s, t] = tables.place(v[first + k]);
+            const auto [i, r] = column_place(u[first + k], width());
+            places[k] = {s, i, t, r};
+            for (int row = s; row <= s + 1; ++row) {
+                prefetch(columns_.edges_of(row) + i);
+                prefetch(columns_.shape_of(row) + i);
+            }
+        }
+        for (std::size_t k = 0; k < n; ++k) {
+            const Row row = tables.at(places[k].s, places[k].t);
+            pdf_uv[first + k] =
+                float(row.pdf_v * row.mixture.segment(places[k].i).at(places[k].r) * (width() * (1 / k_total)));
+        }
+    }
 }
 
 std::optional<UnitPoint> BilinearDistribution::invert(double u, double v) const {

@@ -19,6 +19,11 @@ std::optional<UnitPoint> Distribution2D::invert(double, double) const {
     return std::nullopt;
 }
 
+void Distribution2D::pdfs_uv(std::span<const float> u, std::span<const float> v, std::span<float> pdf_uv) const {
+    assert(u.size() == v.size() && u.size() == pdf_uv.size());
+    for (std::size_t i = 0; i < u.size(); ++i) pdf_uv[i] = float(this->pdf_uv(u[i], v[i]));
+}
+
 void Distribution2D::sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v,
                             std::span<float> pdf_uv) const {
     assert(u.size() == points.size() && v.size() == points.size() && pdf_uv.size() == points.size());

@@ -2,97 +2,22 @@
 // BRDF, weighted by the balance heuristic (Veach 1997, 9.2.2); the BRDF's ray goes on where light may bounce. Samples
 // of a tile go through each step together, so that the environment is drawn from in batches.
 
-#include "domelight/parallel.h"
-#include "domelight/sequences.h"
+#include "render/path_tracer.h"
 
 #include "render/camera.h"
-#include "render/film.h"
-#include "render/surface.h"
+#include "render/path.h"
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <cmath>
-#include <mutex>
+#include <limits>
 
 namespace domelight {
 namespace {
 
-constexpr int k_batch = 1024;        ///< samples that go through the steps together
 constexpr int k_most_passages = 64;  ///< transparent surfaces a ray passes at most
 constexpr int k_roulette_from = 3;   ///< bounces before paths may end by chance
 
-float largest(const Vec3f& c) {
-    return std::max({c.x, c.y, c.z});
-}
-
-/// One sample of a pixel on its way.
-struct Path {
-    int pixel = 0;            ///< in the tile
-    std::uint32_t index = 0;  ///< of the pixel's samples
-    std::uint64_t key = 0;    ///< of the pixel
-    Ray ray;
-    Vec3f throughput{1, 1, 1};
-    float pdf_brdf = 0;  ///< with which the ray was drawn; 0: by the camera
-    Hit hit;
-    SurfacePoint surface;
-    Vec3f V;  ///< local
-    /// Of what arrives along the path: the share of the first surface's diffuse lobe.
-    Vec3f diffuse_share;
-
-    Vec3f radiance, direct, indirect, diffuse, specular;
-    Vec3f albedo, normal;
-    float depth = 0;
-    int object = 0;
-    bool covered = false;
-
-    UnitPoint point(int pair) const { return sobol_owen(derive_key(key, std::uint64_t(pair)), index); }
-    /// Light that arrives after `bounce` bounces, parted among the layers.
-    void add(const Vec3f& light, int bounce) {
-        radiance = radiance + light;
-        (bounce == 0 ? direct : indirect) = (bounce == 0 ? direct : indirect) + light;
-        const Vec3f below = product(light, diffuse_share);
-        diffuse = diffuse + below;
-        specular = specular + (light - below);
-    }
-    /// The same at the first surface, where the lobes are known apart.
-    void add(const Bsdf::Value& lobes, const Vec3f& light, int bounce) {
-        if (bounce > 0) return add(product(lobes.sum(), light), bounce);
-        const Vec3f d = product(lobes.diffuse, light), s = product(lobes.specular, light);
-        radiance = radiance + d + s;
-        direct = direct + d + s;
-        diffuse = diffuse + d;
-        specular = specular + s;
-    }
-};
-
-/// The pairs of dimensions of a path.
-constexpr int k_pixel_pair = 0, k_pairs_a_bounce = 3;
-constexpr int light_pair(int bounce) {
-    return 1 + k_pairs_a_bounce * bounce;
-}
-constexpr int brdf_pair(int bounce) {
-    return 2 + k_pairs_a_bounce * bounce;
-}
-constexpr int chance_pair(int bounce) {
-    return 3 + k_pairs_a_bounce * bounce;
-}
-
-/// Light samples of a batch.
-struct LightBatch {
-    LightBatch() : values(9 * k_batch), points(k_batch) {}
-    LightSampleSpans spans(int n) {
-        const auto part = [&](int k) { return std::span<float>(values.data() + k * k_batch, std::size_t(n)); };
-        return {part(0), part(1), part(2), part(3), part(4), part(5), part(6), part(7), part(8)};
-    }
-    Vec3f direction(int i) const { return {values[2 * k_batch + i], values[3 * k_batch + i], values[4 * k_batch + i]}; }
-    Vec3f radiance(int i) const { return {values[5 * k_batch + i], values[6 * k_batch + i], values[7 * k_batch + i]}; }
-    float pdf(int i) const { return values[8 * k_batch + i]; }
-    std::vector<float> values;
-    std::vector<UnitPoint> points;
-};
-
-class Tracer {
+class Tracer final : public TileTracer {
   public:
     Tracer(const RayScene& scene, const EnvironmentSampler& sampler, const RenderOptions& options)
         : rays_(scene.impl()),
@@ -102,14 +27,13 @@ class Tracer {
           camera_(options.camera, options.width, options.height),
           passages_(has_passages(scene_)) {}
 
-    /// Adds to the sums of a tile, `count[i]` samples to pixel i of it. Returns the rays traced.
-    std::int64_t trace(int x0, int y0, int columns, std::span<const int> count, std::span<PixelSums> sums) const {
-        std::vector<Path> paths;
-        paths.reserve(k_batch);
-        LightBatch light;
+    std::int64_t trace(int x0, int y0, int columns, std::span<const int> count,
+                       std::span<PixelSums> sums) const override {
+        Workspace room;
+        std::vector<Path>& paths = room.paths;
         std::int64_t rays = 0;
         const auto flush = [&] {
-            rays += run(paths, light);
+            rays += run(room);
             for (const Path& p : paths) store(p, sums[p.pixel]);
             paths.clear();
         };
@@ -119,7 +43,7 @@ class Tracer {
             for (int i = 0; i < count[pixel]; ++i) {
                 paths.emplace_back();
                 start(paths.back(), pixel, x, y, std::uint32_t(first + i));
-                if (int(paths.size()) == k_batch) flush();
+                if (int(paths.size()) == k_path_batch) flush();
             }
         }
         flush();
@@ -177,19 +101,24 @@ class Tracer {
     }
 
     /// All paths of a batch to their ends.
-    std::int64_t run(std::span<Path> paths, LightBatch& light) const {
+    std::int64_t run(Workspace& room) const {
         std::int64_t rays = 0;
         std::vector<Path*> alive, next;
-        for (Path& p : paths) alive.push_back(&p);
+        for (Path& p : room.paths) alive.push_back(&p);
         for (int bounce = 0; !alive.empty(); ++bounce) {
-            // What the rays met.
+            find(alive, bounce, room, rays);
             next.clear();
             for (Path* p : alive)
-                if (arrive(*p, bounce, rays)) next.push_back(p);
+                if (p->hit.instance >= 0) {
+                    if (arrive(*p, bounce)) next.push_back(p);
+                } else
+                    room.endings.push_back({p, p->ray.direction});
+            escape(room, bounce - 1);
             std::swap(alive, next);
             // A light direction for each, all at once.
             const bool draw = options_.strategy != LightStrategy::brdf && !alive.empty();
             const int n = int(alive.size());
+            LightBatch& light = room.light;
             if (draw) {
                 for (int i = 0; i < n; ++i) light.points[i] = alive[i]->point(light_pair(bounce));
                 sampler_.sample(std::span(light.points.data(), std::size_t(n)), light.spans(n));
@@ -199,21 +128,72 @@ class Tracer {
                 Path& p = *alive[i];
                 const Frame<float> frame(p.surface.normal);
                 p.V = frame.to_local(-p.ray.direction);
-                if (draw) light_up(p, frame, light.direction(i), light.radiance(i), light.pdf(i), bounce, rays);
+                if (draw) light_up(p, frame, light.direction(i), light.radiance(i), light.pdf(i), bounce, room, rays);
                 for (const PunctualLight& l : scene_.lights) light_up(p, frame, l, bounce, rays);
-                if (scatter(p, frame, bounce, rays)) next.push_back(&p);
+                if (scatter(p, frame, bounce, room)) next.push_back(&p);
             }
+            settle(room, bounce, rays);
+            end(room, bounce, rays);
             std::swap(alive, next);
         }
         return rays;
     }
 
-    /// Traces a path's ray; adds what shines along it. Whether there is a surface to light.
-    bool arrive(Path& p, int bounce, std::int64_t& rays) const {
-        if (!find(p, bounce, rays)) {
-            escape(p, bounce);
-            return false;
+    /// What the paths' rays meet.
+    void find(std::span<Path* const> paths, int bounce, Workspace& room, std::int64_t& rays) const {
+        if (passages_ || bounce > 0) {
+            for (Path* p : paths)
+                if (!find(*p, bounce, rays)) p->hit.instance = -1;
+            return;
         }
+        in_packets(
+            paths, [](const Path* p) -> const Ray& { return p->ray; },
+            [&](std::span<const Ray* const> packet, std::size_t first) {
+                rays_.intersect(packet, std::span(room.hits).first(packet.size()));
+                for (std::size_t i = 0; i < packet.size(); ++i) paths[first + i]->hit = room.hits[i];
+            });
+        rays += std::int64_t(paths.size());
+    }
+
+    template <typename Items, typename RayOf, typename Use>
+    static void in_packets(const Items& items, const RayOf& ray_of, const Use& use) {
+        const Ray* packet[RayScene::Impl::k_packet];
+        for (std::size_t first = 0; first < items.size(); first += std::size(packet)) {
+            const std::size_t n = std::min(std::size(packet), items.size() - first);
+            for (std::size_t i = 0; i < n; ++i) packet[i] = &ray_of(items[first + i]);
+            use(std::span<const Ray* const>(packet, n), first);
+        }
+    }
+
+    /// Traces the shadow rays that wait, and adds the light that nothing hides.
+    void settle(Workspace& room, int bounce, std::int64_t& rays) const {
+        in_packets(
+            room.shadows, [](const Shadow& s) -> const Ray& { return s.ray; },
+            [&](std::span<const Ray* const> packet, std::size_t first) {
+                const std::uint32_t hidden = rays_.occluded(packet);
+                for (std::size_t i = 0; i < packet.size(); ++i) {
+                    const Shadow& s = room.shadows[first + i];
+                    if (!(hidden >> i & 1)) s.path->add(s.diffuse, s.specular, bounce);
+                }
+            });
+        rays += std::int64_t(room.shadows.size());
+        room.shadows.clear();
+    }
+
+    /// Adds light to a path, unless something hides it: now, or when its shadow ray is traced with the others.
+    void add_if_seen(Path& p, const Vec3f& direction, const Vec3f& diffuse, const Vec3f& specular, int bounce,
+                     Workspace& room, std::int64_t& rays) const {
+        const SurfacePoint& s = p.surface;
+        if (options_.occlusion && !passages_) {
+            if (dot(direction, s.geometric_normal) <= 0) return;
+            room.shadows.push_back({&p, {s.position + s.geometric_normal * s.error, direction, 0}, diffuse, specular});
+            return;
+        }
+        if (const float seen = visibility(s, direction, rays); seen > 0) p.add(diffuse * seen, specular * seen, bounce);
+    }
+
+    /// At a surface: adds what it emits. Whether there is one to light.
+    bool arrive(Path& p, int bounce) const {
         p.surface = surface_at(scene_, p.hit, p.ray.origin, p.ray.direction, options_.multiple_scattering);
         const SurfacePoint& s = p.surface;
         if (bounce == 0) {
@@ -235,31 +215,67 @@ class Tracer {
         return !s.unlit;
     }
 
-    /// A ray that met nothing: the background, or the environment as the BRDF's half of direct light.
-    void escape(Path& p, int bounce) const {
-        if (bounce == 0) {
-            if (options_.background == Background::environment) p.radiance = sampler_.radiance(p.ray.direction);
-            return;
+    /// Rays that met nothing: the background, or the environment as the BRDF's half of direct light.
+    void escape(Workspace& room, int bounce) const {
+        if (bounce < 0) {
+            if (options_.background == Background::environment) {
+                look_up(room, false);
+                for (std::size_t i = 0; i < room.endings.size(); ++i)
+                    room.endings[i].path->radiance = room.light.radiance(int(i));
+            }
+        } else if (options_.strategy != LightStrategy::environment) {
+            look_up(room, options_.strategy == LightStrategy::mis);
+            for (std::size_t i = 0; i < room.endings.size(); ++i) {
+                Path& p = *room.endings[i].path;
+                p.add(product(p.throughput, weighted(room.light.radiance(int(i)), room.light.pdf(int(i)), p.pdf_brdf)),
+                      bounce);
+            }
         }
-        if (options_.strategy == LightStrategy::environment) return;
-        const LightSample light = sampler_.look_up(p.ray.direction);
-        const float weight =
-            options_.strategy == LightStrategy::brdf ? 1 : p.pdf_brdf / (p.pdf_brdf + light.pdf_solid_angle);
-        p.add(product(p.throughput, light.radiance) * weight, bounce - 1);
+        room.endings.clear();
+    }
+
+    /// The ends of paths: only the environment can still be met, and whether it is takes less than finding what hides
+    /// it.
+    void end(Workspace& room, int bounce, std::int64_t& rays) const {
+        look_up(room, options_.strategy == LightStrategy::mis);
+        for (std::size_t i = 0; i < room.endings.size(); ++i) {
+            Path& p = *room.endings[i].path;
+            const Vec3f light = product(p.throughput,
+                                        weighted(room.light.radiance(int(i)), room.light.pdf(int(i)), p.pdf_brdf)),
+                        below = product(light, p.diffuse_share);
+            if (largest(light) > 0) add_if_seen(p, room.endings[i].direction, below, light - below, bounce, room, rays);
+        }
+        room.endings.clear();
+        settle(room, bounce, rays);
+    }
+
+    /// The environment where the endings went, into room.light.
+    void look_up(Workspace& room, bool densities) const {
+        LightSampleSpans spans = room.light.spans(int(room.endings.size()));
+        for (std::size_t i = 0; i < room.endings.size(); ++i) {
+            const Vec3f& d = room.endings[i].direction;
+            spans.x[i] = d.x, spans.y[i] = d.y, spans.z[i] = d.z;
+        }
+        if (!densities) spans.pdf_solid_angle = {};
+        sampler_.look_up(spans);
+    }
+
+    /// Light from where the BRDF's ray went, by the balance heuristic.
+    Vec3f weighted(const Vec3f& radiance, float pdf_light, float pdf_brdf) const {
+        return options_.strategy == LightStrategy::brdf ? radiance : radiance * (pdf_brdf / (pdf_brdf + pdf_light));
     }
 
     /// A direction drawn from the environment.
     void light_up(Path& p, const Frame<float>& frame, const Vec3f& direction, const Vec3f& radiance, float pdf,
-                  int bounce, std::int64_t& rays) const {
+                  int bounce, Workspace& room, std::int64_t& rays) const {
         const Vec3f L = frame.to_local(direction);
         if (!(L.z > 0) || largest(radiance) <= 0) return;
         const Bsdf::Value f = p.surface.bsdf.evaluate(p.V, L);
         if (largest(f.sum()) <= 0) return;
-        const float seen = visibility(p.surface, direction, rays);
-        if (seen <= 0) return;
         const float other = options_.strategy == LightStrategy::mis ? p.surface.bsdf.pdf_solid_angle(p.V, L) : 0;
         // The balance heuristic's weight over the density: 1 / (p_light + p_brdf).
-        p.add(f, product(p.throughput, radiance) * (seen * L.z / (pdf + other)), bounce);
+        const Vec3f light = product(p.throughput, radiance) * (L.z / (pdf + other));
+        add_if_seen(p, direction, product(f.diffuse, light), product(f.specular, light), bounce, room, rays);
     }
 
     /// A light of the scene's own.
@@ -287,14 +303,13 @@ class Tracer {
         if (!(L.z > 0) || strength <= 0) return;
         const Bsdf::Value f = p.surface.bsdf.evaluate(p.V, L);
         if (largest(f.sum()) <= 0) return;
-        p.add(f,
-              product(p.throughput, light.intensity) *
-                  (strength * L.z * visibility(p.surface, direction, rays, distance)),
-              bounce);
+        const Vec3f arriving = product(p.throughput, light.intensity) *
+                               (strength * L.z * visibility(p.surface, direction, rays, distance));
+        p.add(product(f.diffuse, arriving), product(f.specular, arriving), bounce);
     }
 
     /// Sends the path on by the BRDF. Whether there is more to come of it.
-    bool scatter(Path& p, const Frame<float>& frame, int bounce, std::int64_t& rays) const {
+    bool scatter(Path& p, const Frame<float>& frame, int bounce, Workspace& room) const {
         const bool last = bounce >= options_.bounces || !options_.occlusion;
         // Nothing beyond, and no light that way either.
         if (last && options_.strategy == LightStrategy::environment) return false;
@@ -313,12 +328,7 @@ class Tracer {
         if (!(largest(p.throughput) > 0)) return false;
         p.pdf_brdf = b.pdf_solid_angle;
         if (last) {
-            // Only the environment can still be met: whether it is takes less than finding what hides it.
-            if (const float seen = visibility(s, direction, rays); seen > 0) {
-                p.throughput = p.throughput * seen;
-                p.ray.direction = direction;
-                escape(p, bounce + 1);
-            }
+            room.endings.push_back({&p, direction});
             return false;
         }
         if (bounce >= k_roulette_from) {
@@ -360,91 +370,11 @@ class Tracer {
     bool passages_;
 };
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 }  // namespace
 
-EnvironmentSamplerOptions reference_sampler_options(LightStrategy strategy, int threads) {
-    EnvironmentSamplerOptions options;
-    options.method = DistributionMethod::bilinear;
-    options.compensate = strategy == LightStrategy::mis;
-    options.threads = threads;
-    return options;
-}
-
-Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSampler& sampler,
-                                      const RenderOptions& o) {
-    if (auto fine = check_size(o.width, o.height); !fine) return fine.error();
-    if (o.strategy == LightStrategy::environment && sampler.compensation() > 0)
-        return Error{"a sampler with MIS compensation leaves out light that this strategy has no other way to find", "",
-                     "Build it with reference_sampler_options(strategy)."};
-    const auto start = std::chrono::steady_clock::now();
-    const Tracer tracer(scene, sampler, o);
-    Film film(o.width, o.height);
-    std::atomic<std::int64_t> rays{0};
-    std::atomic<bool> cancelled{false};
-    std::atomic<int> tiles_done{0};
-    std::mutex progress_mutex;
-
-    // One round: wanted(x, y) more samples for each pixel.
-    const auto round = [&](const auto& wanted, double from, double to) {
-        tiles_done = 0;
-        parallel_for(film.tiles(), o.threads, [&](int t) {
-            if (cancelled) return;
-            const int columns = film.columns(t);
-            std::vector<int> count(film.tile(t).size());
-            for (int i = 0; i < int(count.size()); ++i)
-                count[i] = wanted(film.x0(t) + i % columns, film.y0(t) + i / columns);
-            rays += tracer.trace(film.x0(t), film.y0(t), columns, count, film.tile(t));
-            const int done = ++tiles_done;
-            if (o.progress) {
-                const std::lock_guard lock(progress_mutex);
-                if (!o.progress("render", from + (to - from) * done / film.tiles())) cancelled = true;
-            }
-        });
-    };
-
-    if (o.seconds > 0) {
-        // Rounds that double, as long as the next one is likely to fit.
-        int total = 0;
-        for (int add = 1; !cancelled; add = std::max(1, total)) {
-            const double spent = seconds_since(start), left = o.seconds - spent;
-            if (total > 0) {
-                if (left <= 0 || total >= o.most_samples) break;
-                add = std::min({add, o.most_samples - total, std::max(1, int(left / spent * total))});
-                if (left < spent / total) break;
-            }
-            round([&](int, int) { return add; }, std::min(1.0, spent / o.seconds),
-                  std::min(1.0, 2 * spent / o.seconds));
-            total += add;
-        }
-    } else {
-        round([&](int, int) { return std::max(1, o.samples); }, 0, o.noise > 0 ? 0.3 : 1);
-        for (int k = 0; o.noise > 0 && !cancelled && k < 24; ++k) {
-            // Decided for all pixels before any is changed.
-            ImageF wanted(o.width, o.height, 1);
-            bool any = false;
-            parallel_ranges(o.height, 8, o.threads, [&](int begin, int end) {
-                for (int y = begin; y < end; ++y)
-                    for (int x = 0; x < o.width; ++x) {
-                        const int count = film.at(x, y).count;
-                        if (count < o.most_samples && film.noise_about(x, y) > o.noise)
-                            *wanted.at(x, y) = float(std::min(count, o.most_samples - count));
-                    }
-            });
-            for (const float w : wanted.pixels()) any |= w > 0;
-            if (!any) break;
-            round([&](int x, int y) { return int(*wanted.at(x, y)); }, 0.3 + 0.7 * k / (k + 1.0),
-                  0.3 + 0.7 * (k + 1.0) / (k + 2.0));
-        }
-    }
-    if (cancelled) return Error{"cancelled", "", ""};
-    RenderResult out = develop(film, o.width, o.height);
-    out.rays = rays;
-    out.seconds = seconds_since(start);
-    return out;
+std::unique_ptr<TileTracer> make_path_tracer(const RayScene& scene, const EnvironmentSampler& sampler,
+                                             const RenderOptions& options) {
+    return std::make_unique<Tracer>(scene, sampler, options);
 }
 
 }  // namespace domelight

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -111,6 +112,18 @@ Result<RayScene> RayScene::build(Scene scene) {
     return out;
 }
 
+Hit RayScene::Impl::hit_of(unsigned geometry, unsigned instance_id, unsigned triangle, float distance, float u, float v,
+                           const Vec3f& Ng) const {
+    if (geometry == RTC_INVALID_GEOMETRY_ID) return {};
+    const bool instanced = instance_id != RTC_INVALID_GEOMETRY_ID;
+    const int instance = instance_of[instanced ? instance_id : geometry];
+    const Affine& m = scene.instances[instance].to_world;
+    Vec3f normal = instanced ? m.normal(Ng) : Ng;
+    // A mirror turns triangles round (as corners and by their cofactors alike); glTF's front stays the front.
+    if (m.determinant() < 0) normal = -normal;
+    return {distance, instance, int(triangle), u, v, normal};
+}
+
 Hit RayScene::Impl::intersect(const Ray& ray, bool coherent) const {
     RTCRayHit r;
     r.ray.org_x = ray.origin.x, r.ray.org_y = ray.origin.y, r.ray.org_z = ray.origin.z;
@@ -125,15 +138,8 @@ Hit RayScene::Impl::intersect(const Ray& ray, bool coherent) const {
     rtcInitIntersectContext(&context);
     context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcIntersect1(world, &context, &r);
-    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    const bool instanced = r.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
-    const int instance = instance_of[instanced ? r.hit.instID[0] : r.hit.geomID];
-    Vec3f normal{r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z};
-    const Affine& m = scene.instances[instance].to_world;
-    if (instanced) normal = m.normal(normal);
-    // A mirror turns triangles round (as corners and by their cofactors alike); glTF's front stays the front.
-    if (m.determinant() < 0) normal = -normal;
-    return {r.ray.tfar, instance, int(r.hit.primID), r.hit.u, r.hit.v, normal};
+    return hit_of(r.hit.geomID, r.hit.instID[0], r.hit.primID, r.ray.tfar, r.hit.u, r.hit.v,
+                  {r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z});
 }
 
 bool RayScene::Impl::occluded(const Ray& ray) const {
@@ -149,6 +155,51 @@ bool RayScene::Impl::occluded(const Ray& ray) const {
     rtcInitIntersectContext(&context);
     rtcOccluded1(world, &context, &r);
     return r.tfar < 0;
+}
+
+namespace {
+
+/// Embree's layout of a packet; lanes past the last ray are switched off.
+void fill(RTCRay16& r, int (&valid)[16], std::span<const Ray* const> rays) {
+    for (int i = 0; i < 16; ++i) {
+        valid[i] = i < int(rays.size()) ? -1 : 0;
+        const Ray& ray = *rays[std::min<std::size_t>(std::size_t(i), rays.size() - 1)];
+        r.org_x[i] = ray.origin.x, r.org_y[i] = ray.origin.y, r.org_z[i] = ray.origin.z;
+        r.dir_x[i] = ray.direction.x, r.dir_y[i] = ray.direction.y, r.dir_z[i] = ray.direction.z;
+        r.tnear[i] = ray.near;
+        r.tfar[i] = std::numeric_limits<float>::infinity();
+        r.time[i] = 0;
+        r.mask[i] = ~0u;
+        r.flags[i] = 0;
+    }
+}
+
+}  // namespace
+
+void RayScene::Impl::intersect(std::span<const Ray* const> rays, std::span<Hit> hits) const {
+    alignas(64) RTCRayHit16 r;
+    alignas(64) int valid[16];
+    fill(r.ray, valid, rays);
+    for (int i = 0; i < 16; ++i) r.hit.geomID[i] = r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid, world, &context, &r);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        hits[i] = hit_of(r.hit.geomID[i], r.hit.instID[0][i], r.hit.primID[i], r.ray.tfar[i], r.hit.u[i], r.hit.v[i],
+                         {r.hit.Ng_x[i], r.hit.Ng_y[i], r.hit.Ng_z[i]});
+}
+
+std::uint32_t RayScene::Impl::occluded(std::span<const Ray* const> rays) const {
+    alignas(64) RTCRay16 r;
+    alignas(64) int valid[16];
+    fill(r, valid, rays);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded16(valid, world, &context, &r);
+    std::uint32_t hidden = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) hidden |= std::uint32_t(r.tfar[i] < 0) << i;
+    return hidden;
 }
 
 }  // namespace domelight

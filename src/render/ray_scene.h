@@ -6,6 +6,7 @@
 #include <embree3/rtcore.h>
 
 #include <cmath>
+#include <span>
 
 namespace domelight {
 
@@ -41,6 +42,16 @@ struct RayScene::Impl {
     Hit intersect(const Ray& ray, bool coherent) const;
     /// Whether anything lies between.
     bool occluded(const Ray& ray) const;
+
+    /// Up to k_packet rays that go much the same way, together: several times as fast for those of a camera.
+    static constexpr int k_packet = 16;
+    void intersect(std::span<const Ray* const> rays, std::span<Hit> hits) const;
+    /// Bit i: whether anything hides ray i.
+    std::uint32_t occluded(std::span<const Ray* const> rays) const;
+
+  private:
+    Hit hit_of(unsigned geometry, unsigned instance_id, unsigned triangle, float distance, float u, float v,
+               const Vec3f& normal) const;
 };
 
 }  // namespace domelight

@@ -92,6 +92,13 @@ Result<void> check(ImageView<const float> image, int threads) {
     return {};
 }
 
+std::array<float, 9> floats_of(const Mat3& m) {
+    std::array<float, 9> out;
+    for (int i = 0; i < 3; ++i)
+        out[3 * i] = float(m.row[i].x), out[3 * i + 1] = float(m.row[i].y), out[3 * i + 2] = float(m.row[i].z);
+    return out;
+}
+
 }  // namespace
 
 Result<EnvironmentSampler> EnvironmentSampler::build(EnvironmentSampler sampler) {
@@ -202,11 +209,7 @@ void EnvironmentSampler::sample(std::span<const UnitPoint> points, const LightSa
         return;
     }
     const simd::LightImage image{image_.data, image_.stride, image_.width, image_.height, distribution_->continuous()};
-    const Mat3 to_world = world_to_source_.transposed();
-    float turn[9];
-    for (int i = 0; i < 3; ++i)
-        turn[3 * i] = float(to_world.row[i].x), turn[3 * i + 1] = float(to_world.row[i].y),
-                 turn[3 * i + 2] = float(to_world.row[i].z);
+    const auto turn = floats_of(world_to_source_.transposed());
     constexpr std::size_t block = 512;  // what lies between the two steps stays in the nearest cache
     for (std::size_t i = 0; i < points.size(); i += block) {
         const std::size_t n = std::min(block, points.size() - i);
@@ -227,6 +230,23 @@ LightSample EnvironmentSampler::look_up(const Vec3f& direction) const {
     const double length = std::sqrt(dot(d, d)), sine = std::hypot(d.x, d.z) / length;
     const double pdf_uv = options_.uniform_share < 1 ? distribution_->pdf_uv(u, v) : 0;
     return {u, v, Vec3f(Vec3d(direction) / length), texel(u, v), density(pdf_uv, float(sine))};
+}
+
+void EnvironmentSampler::look_up(const LightSampleSpans& out) const {
+    const simd::LightImage image{image_.data, image_.stride, image_.width, image_.height, distribution_->continuous()};
+    const auto turn = floats_of(world_to_source_);
+    constexpr std::size_t block = 256;
+    float sines[block];
+    for (std::size_t i = 0; i < out.x.size(); i += block) {
+        const std::size_t n = std::min(block, out.x.size() - i);
+        simd::look_up_light_samples(image, turn, int(n), {out.x.data() + i, out.y.data() + i, out.z.data() + i},
+                                    out.u.data() + i, out.v.data() + i, sines,
+                                    {out.r.data() + i, out.g.data() + i, out.b.data() + i});
+        if (out.pdf_solid_angle.empty()) continue;
+        const std::span<float> pdf = out.pdf_solid_angle.subspan(i, n);
+        distribution_->pdfs_uv(out.u.subspan(i, n), out.v.subspan(i, n), pdf);
+        for (std::size_t k = 0; k < n; ++k) pdf[k] = density(pdf[k], sines[k]);
+    }
 }
 
 float EnvironmentSampler::pdf_solid_angle(const Vec3f& direction) const {

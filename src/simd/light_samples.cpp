@@ -48,7 +48,7 @@ HWY_INLINE void turn_cosine_sine(V t, V& cosine, V& sine) {
 constexpr int k_block = 64;
 
 /// Directions and densities of a block.
-HWY_INLINE void turn_block(const float (&m)[9], int count, float least_sine, const float* u, const float* v, float* pdf,
+HWY_INLINE void turn_block(const std::array<float, 9>& m, int count, float least_sine, const float* u, const float* v, float* pdf,
                            float* x, float* y, float* z) {
     const D d;
     const int lanes = int(hn::Lanes(d));
@@ -121,7 +121,7 @@ HWY_INLINE void look_up_block(const LightImage& image, int count, const float* u
         }
 }
 
-void complete_light_samples(const LightImage& image, const float (&to_world)[9], int count, float least_sine,
+void complete_light_samples(const LightImage& image, const std::array<float, 9>& to_world, int count, float least_sine,
                             const float* u, const float* v, float* pdf, const std::array<float*, 3>& direction,
                             const std::array<float*, 3>& radiance) {
     for (int i = 0; i < count; i += k_block) {
@@ -129,6 +129,63 @@ void complete_light_samples(const LightImage& image, const float (&to_world)[9],
         look_up_block(image, n, u + i, v + i, radiance[0] + i, radiance[1] + i, radiance[2] + i);
         turn_block(to_world, n, least_sine, u + i, v + i, pdf + i, direction[0] + i, direction[1] + i,
                    direction[2] + i);
+    }
+}
+
+/// atan(q) / (2 pi q) on [0, 1] in powers of q^2, error 1e-8.
+constexpr float k_atan[9] = {0.159154922f, -0.0530504733f, 0.031808544f, -0.0225382168f, 0.0167093556f, -0.0115142232f, 0.00633096695f, -0.00229182513f, 0.000390949979f};
+
+/// atan2(y, x) / 2 pi, within 3e-8; 0 where both are 0.
+HWY_INLINE V turn_of(V y, V x) {
+    const D d;
+    const V ax = hn::Abs(x), ay = hn::Abs(y), larger = hn::Max(hn::Max(ax, ay), hn::Set(d, 1e-30f));
+    const V q = hn::Div(hn::Min(ax, ay), larger), q2 = hn::Mul(q, q);
+    V p = hn::Set(d, k_atan[8]);
+    for (int i = 7; i >= 0; --i) p = hn::MulAdd(p, q2, hn::Set(d, k_atan[i]));
+    V a = hn::Mul(p, q);
+    a = hn::IfThenElse(hn::Gt(ay, ax), hn::Sub(hn::Set(d, 0.25f), a), a);
+    a = hn::IfThenElse(hn::Lt(x, hn::Zero(d)), hn::Sub(hn::Set(d, 0.5f), a), a);
+    return hn::CopySign(a, y);
+}
+
+/// Points and sines of a block.
+HWY_INLINE void place_block(const std::array<float, 9>& m, int count, const std::array<const float*, 3>& direction,
+                            float* u, float* v, float* sine) {
+    const D d;
+    const int lanes = int(hn::Lanes(d));
+    alignas(64) float in[3][k_block], out[3][k_block];
+    for (int c = 0; c < 3; ++c) {
+        std::copy_n(direction[c], count, in[c]);
+        std::fill(in[c] + count, in[c] + k_block, 1.f);
+    }
+    for (int i = 0; i < count; i += lanes) {
+        const V x = hn::Load(d, in[0] + i), y = hn::Load(d, in[1] + i), z = hn::Load(d, in[2] + i);
+        const auto turned = [&](int r) HWY_ATTR {
+            return hn::MulAdd(hn::Set(d, m[r]), x,
+                              hn::MulAdd(hn::Set(d, m[r + 1]), y, hn::Mul(hn::Set(d, m[r + 2]), z)));
+        };
+        const V sx = turned(0), sy = turned(3), sz = turned(6);
+        const V across2 = hn::MulAdd(sx, sx, hn::Mul(sz, sz)), across = hn::Sqrt(across2);
+        const V under_one = hn::Set(d, 0x1.fffffep-1f), least = hn::Set(d, 1e-30f);
+        V tu = hn::Add(turn_of(sz, sx), hn::Set(d, 0.5f));
+        tu = hn::IfThenElse(hn::Ge(tu, hn::Set(d, 1.f)), hn::Zero(d), tu);
+        const V tv = hn::Mul(turn_of(across, sy), hn::Set(d, 2.f));
+        hn::Store(tu, d, out[0] + i);
+        hn::Store(hn::Min(tv, under_one), d, out[1] + i);
+        hn::Store(hn::Div(across, hn::Max(hn::Sqrt(hn::MulAdd(sy, sy, across2)), least)), d, out[2] + i);
+    }
+    std::copy_n(out[0], count, u);
+    std::copy_n(out[1], count, v);
+    std::copy_n(out[2], count, sine);
+}
+
+void look_up_light_samples(const LightImage& image, const std::array<float, 9>& to_source, int count,
+                           const std::array<const float*, 3>& direction, float* u, float* v, float* sine,
+                           const std::array<float*, 3>& radiance) {
+    for (int i = 0; i < count; i += k_block) {
+        const int n = std::min(k_block, count - i);
+        place_block(to_source, n, {direction[0] + i, direction[1] + i, direction[2] + i}, u + i, v + i, sine + i);
+        look_up_block(image, n, u + i, v + i, radiance[0] + i, radiance[1] + i, radiance[2] + i);
     }
 }
 
@@ -140,10 +197,18 @@ namespace domelight::simd {
 
 HWY_EXPORT(complete_light_samples);
 
-void complete_light_samples(const LightImage& image, const float (&to_world)[9], int count, float least_sine,
+void complete_light_samples(const LightImage& image, const std::array<float, 9>& to_world, int count, float least_sine,
                             const float* u, const float* v, float* pdf, const std::array<float*, 3>& direction,
                             const std::array<float*, 3>& radiance) {
     HWY_DYNAMIC_DISPATCH(complete_light_samples)(image, to_world, count, least_sine, u, v, pdf, direction, radiance);
+}
+
+HWY_EXPORT(look_up_light_samples);
+
+void look_up_light_samples(const LightImage& image, const std::array<float, 9>& to_source, int count,
+                           const std::array<const float*, 3>& direction, float* u, float* v, float* sine,
+                           const std::array<float*, 3>& radiance) {
+    HWY_DYNAMIC_DISPATCH(look_up_light_samples)(image, to_source, count, direction, u, v, sine, radiance);
 }
 
 }  // namespace domelight::simd

@@ -321,6 +321,42 @@ TEST_CASE("environment_sampler: of a cube it draws what the cube holds") {
     CHECK(near > 800);
 }
 
+TEST_CASE("environment_sampler: looking up many directions at once is looking up each, at poles and seam too") {
+    std::vector<Vec3f> directions = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},         {0, -1, 0},         {0, 0, 1},
+                                     {0, 0, -1}, {-1, 0, 0}, {-1, 0.3f, 1e-7f}, {-1, 0.3f, -1e-7f}, {1e-6f, 1, 0}};
+    for (int i = 0; i < 500; ++i) {
+        const LightSample s = make(environments().front().second, {}).sample(random_point(5, i));
+        directions.push_back(s.direction * (i % 3 ? 1.f : 7.f));
+    }
+    for (const auto& [name, image] : environments())
+        for (const DistributionMethod method : {DistributionMethod::bilinear, DistributionMethod::guided})
+            for (const double share : {0.0, 0.3}) {
+                EnvironmentSamplerOptions options;
+                options.method = method;
+                options.uniform_share = share;
+                const EnvironmentSampler sampler = make(image, options);
+                Batch batch(directions.size());
+                const LightSampleSpans out = batch.spans();
+                for (std::size_t i = 0; i < directions.size(); ++i)
+                    out.x[i] = directions[i].x, out.y[i] = directions[i].y, out.z[i] = directions[i].z;
+                sampler.look_up(out);
+                INFO(name << ", " << method_name(method));
+                int far = 0;
+                for (std::size_t i = 0; i < directions.size(); ++i) {
+                    const LightSample one = sampler.look_up(directions[i]);
+                    const float du = std::abs(out.u[i] - one.u);
+                    const bool pole = one.v < 1e-5f || one.v > 1 - 1e-5f;
+                    CHECK((pole || std::min(du, 1 - du) < 3e-7f));
+                    CHECK(std::abs(out.v[i] - one.v) < 3e-7f);
+                    CHECK((out.u[i] >= 0 && out.u[i] < 1 && out.v[i] >= 0 && out.v[i] < 1));
+                    // A texel's edge may be met from the other side.
+                    far += !(std::abs(out.r[i] - one.radiance.x) <= 1e-4f * (1 + one.radiance.x)) ||
+                           !(std::abs(out.pdf_solid_angle[i] - one.pdf_solid_angle) <= 1e-4f * one.pdf_solid_angle);
+                }
+                CHECK(far <= 12);
+            }
+}
+
 TEST_CASE("environment_sampler: the textures give a shader the same texels") {
     const ImageF image = noise(16, 8, 30);
     EnvironmentSamplerOptions options;

@@ -1,0 +1,114 @@
+#pragma once
+// A path tracer's samples on their way, and the room that a batch of them needs.
+
+#include "domelight/environment_sampler.h"
+#include "domelight/sequences.h"
+
+#include "render/film.h"
+#include "render/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace domelight {
+
+constexpr int k_path_batch = 256;  ///< samples that go through the steps together
+
+inline float largest(const Vec3f& c) {
+    return std::max({c.x, c.y, c.z});
+}
+
+/// One sample of a pixel on its way.
+struct Path {
+    int pixel = 0;            ///< in the tile
+    std::uint32_t index = 0;  ///< of the pixel's samples
+    std::uint64_t key = 0;    ///< of the pixel
+    Ray ray;
+    Vec3f throughput{1, 1, 1};
+    float pdf_brdf = 0;  ///< with which the ray was drawn; 0: by the camera
+    Hit hit;
+    SurfacePoint surface;
+    Vec3f V;  ///< local
+    /// Of what arrives along the path: the share of the first surface's diffuse lobe.
+    Vec3f diffuse_share;
+
+    Vec3f radiance, direct, indirect, diffuse, specular;
+    Vec3f albedo, normal;
+    float depth = 0;
+    int object = 0;
+    bool covered = false;
+
+    UnitPoint point(int pair) const { return sobol_owen(derive_key(key, std::uint64_t(pair)), index); }
+    /// Light that arrives after `bounce` bounces, parted among the layers.
+    void add(const Vec3f& light, int bounce) {
+        radiance = radiance + light;
+        (bounce == 0 ? direct : indirect) = (bounce == 0 ? direct : indirect) + light;
+        const Vec3f below = product(light, diffuse_share);
+        diffuse = diffuse + below;
+        specular = specular + (light - below);
+    }
+    /// The same by lobe of the surface that it falls on; they matter at the first only.
+    void add(const Vec3f& d, const Vec3f& s, int bounce) {
+        if (bounce > 0) return add(d + s, bounce);
+        radiance = radiance + d + s;
+        direct = direct + d + s;
+        diffuse = diffuse + d;
+        specular = specular + s;
+    }
+};
+
+/// The pairs of dimensions of a path.
+inline constexpr int k_pixel_pair = 0, k_pairs_a_bounce = 3;
+constexpr int light_pair(int bounce) {
+    return 1 + k_pairs_a_bounce * bounce;
+}
+constexpr int brdf_pair(int bounce) {
+    return 2 + k_pairs_a_bounce * bounce;
+}
+constexpr int chance_pair(int bounce) {
+    return 3 + k_pairs_a_bounce * bounce;
+}
+
+/// Light that arrives at a path's surface unless something hides it.
+struct Shadow {
+    Path* path;
+    Ray ray;
+    Vec3f diffuse, specular;  ///< of it, as far as it is the first surface's
+};
+
+/// A path whose last ray can only meet the environment.
+struct Ending {
+    Path* path;
+    Vec3f direction;
+};
+
+/// Light samples of a batch.
+struct LightBatch {
+    LightBatch() : values(9 * k_path_batch), points(k_path_batch) {}
+    LightSampleSpans spans(int n) {
+        const auto part = [&](int k) { return std::span<float>(values.data() + k * k_path_batch, std::size_t(n)); };
+        return {part(0), part(1), part(2), part(3), part(4), part(5), part(6), part(7), part(8)};
+    }
+    Vec3f direction(int i) const {
+        return {values[2 * k_path_batch + i], values[3 * k_path_batch + i], values[4 * k_path_batch + i]};
+    }
+    Vec3f radiance(int i) const {
+        return {values[5 * k_path_batch + i], values[6 * k_path_batch + i], values[7 * k_path_batch + i]};
+    }
+    float pdf(int i) const { return values[8 * k_path_batch + i]; }
+    std::vector<float> values;
+    std::vector<UnitPoint> points;
+};
+
+/// A tile's room to work in.
+struct Workspace {
+    Workspace() : hits(k_path_batch) { paths.reserve(k_path_batch); }
+    std::vector<Path> paths;
+    LightBatch light;  ///< drawn, or looked up
+    std::vector<Shadow> shadows;
+    std::vector<Ending> endings;
+    std::vector<Hit> hits;
+};
+
+}  // namespace domelight
