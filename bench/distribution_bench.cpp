@@ -13,6 +13,7 @@
 #include "domelight/projection.h"
 #include "domelight/sky.h"
 
+#include "measure.h"
 #include "simd/instruction_set.h"
 
 #include <fmt/core.h>
@@ -29,17 +30,6 @@
 using namespace domelight;
 
 namespace {
-
-double cpu_seconds() {
-    timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return t.tv_sec + 1e-9 * t.tv_nsec;
-}
-
-double median(std::vector<double> v) {
-    std::sort(v.begin(), v.end());
-    return v[v.size() / 2];
-}
 
 /// Luminance x sin theta of an environment brought to `height` rows: means of blocks, or neighbours' bilinear mix where
 /// it must grow.

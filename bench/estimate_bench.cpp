@@ -13,6 +13,8 @@
 #include "domelight/reflection_estimate.h"
 #include "domelight/sky.h"
 
+#include "measure.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -24,12 +26,6 @@
 using namespace domelight;
 
 namespace {
-
-double cpu_seconds() {
-    timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
 
 struct Samplers {
     EnvironmentSampler plain, compensated;
