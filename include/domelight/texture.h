@@ -13,14 +13,23 @@
 
 namespace domelight {
 
-/// How a texel is stored on the GPU.
-enum class Encoding { rgba16f, rgba32f, rgb9e5, r11g11b10f, rg16f, rg32f };
+/// How texels are stored on the GPU: one by one, or (bc6h) in blocks.
+enum class Encoding { rgba16f, rgba32f, rgb9e5, r11g11b10f, rg16f, rg32f, bc6h };
 
-/// "rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "rg16f", "rg32f".
+/// "rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "rg16f", "rg32f", "bc6h".
 std::string encoding_name(Encoding encoding);
 Result<Encoding> encoding_from_name(const std::string& name);  ///< the error lists the accepted names
-int encoding_bytes(Encoding encoding);                         ///< per texel
+int encoding_block(Encoding encoding);                         ///< texels along a side of a block; 1: single texels
+int encoding_bytes(Encoding encoding);                         ///< of a block
+int encoding_channels(Encoding encoding);                      ///< that carry data: 3, or 2 (red and green)
 double encoding_max(Encoding encoding);                        ///< largest value a channel can hold
+
+/// How hard the encodings that have to search for the best block (bc6h) try; the others take no notice.
+/// fast: a few candidates. standard: nearly all that can be had. high: the last tenths of a decibel. exhaustive: every
+/// mode and partition there is, a yardstick for the others.
+enum class EncodingQuality { fast, standard, high, exhaustive };
+std::string encoding_quality_name(EncodingQuality quality);  ///< "fast", "default", "high", "exhaustive"
+Result<EncodingQuality> encoding_quality_from_name(const std::string& name);
 
 /// What an encoding did to a level.
 struct EncodingReport {
@@ -34,22 +43,32 @@ struct EncodingReport {
 using TexelBytes = std::vector<std::uint8_t, LargeAllocator<std::uint8_t>>;
 
 /// A GPU texture in memory: levels, each of all faces (cube: 6, +X -X +Y -Y +Z -Z, OpenGL's orientation; else 1),
-/// texels tightly packed.
+/// rows of texels or of blocks tightly packed. A level that is no whole number of blocks wide or high takes one more.
 struct Texture {
     Encoding encoding = Encoding::rgba16f;
     int width = 0, height = 0;
     int faces = 1;
-    std::vector<TexelBytes> levels;  ///< level l: faces one after the other, (width >> l) x (height >> l) texels each
+    std::vector<TexelBytes> levels;               ///< level l: faces one after the other, of face_bytes(l) bytes each
     std::map<std::string, std::string> metadata;  ///< key/value data, UTF-8 without terminator
     int level_width(int l) const { return std::max(1, width >> l); }
     int level_height(int l) const { return std::max(1, height >> l); }
+    /// Blocks (where texels stand alone: texels) in a row of a level, and rows of them.
+    int level_columns(int l) const { return in_blocks(level_width(l)); }
+    int level_rows(int l) const { return in_blocks(level_height(l)); }
+    std::size_t face_bytes(int l) const {
+        return std::size_t(level_columns(l)) * std::size_t(level_rows(l)) * std::size_t(encoding_bytes(encoding));
+    }
+
+  private:
+    int in_blocks(int texels) const { return (texels + encoding_block(encoding) - 1) / encoding_block(encoding); }
 };
 
 /// Encodes float RGB maps (each level half the size of the one before) as a texture. Clips what the encoding cannot
 /// hold and says so, one report a level. Deterministic on any number of threads.
 Texture encode_texture(std::span<const FilteredMap> levels, Encoding encoding, int threads,
-                       std::vector<EncodingReport>* reports = nullptr);
-/// An RG or RGB float image (a BRDF table) as a texture of one level.
+                       std::vector<EncodingReport>* reports = nullptr,
+                       EncodingQuality quality = EncodingQuality::standard);
+/// An RG or RGB float image (a BRDF table) as a texture of one level, in an encoding of single texels.
 Texture encode_table(ImageView<const float> table, Encoding encoding);
 /// Float texels of one face of a level: RGB, or RG for two-channel encodings.
 ImageF decode_texture(const Texture& texture, int level, int face);

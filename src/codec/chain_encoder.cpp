@@ -1,8 +1,10 @@
 #include "codec/chain_encoder.h"
 
+#include "codec/block_codec.h"
 #include "simd/encode_row.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -36,7 +38,8 @@ EncodingReport report_from(const EncodeSums& sums) {
 }  // namespace
 
 ChainEncoder::ChainEncoder(std::span<const FilteredMap> levels, Encoding encoding,
-                           std::map<std::string, std::string> metadata) {
+                           std::map<std::string, std::string> metadata, EncodingQuality quality)
+    : quality_(quality) {
     assert(!levels.empty());
     const bool cube = !levels[0].cube.empty();
     head_.encoding = encoding;
@@ -49,7 +52,7 @@ ChainEncoder::ChainEncoder(std::span<const FilteredMap> levels, Encoding encodin
         level.pixels = map.pixels().data();
         level.width = cube ? map.cube.size() : map.latlong.width();
         level.height = cube ? map.cube.size() : map.latlong.height();
-        level.sums.resize(std::size_t(level.height) * head_.faces);
+        level.sums.resize(std::size_t(rows(level_count() - 1)) * head_.faces);
         if (!cube) continue;
         const int half = (level.height + 1) / 2;
         level.weights.resize(std::size_t(half) * level.width);
@@ -59,41 +62,49 @@ ChainEncoder::ChainEncoder(std::span<const FilteredMap> levels, Encoding encodin
 }
 
 std::size_t ChainEncoder::row_bytes(int level) const {
-    return std::size_t(levels_[level].width) * std::size_t(encoding_bytes(head_.encoding));
+    return std::size_t(in_blocks(levels_[level].width)) * std::size_t(encoding_bytes(head_.encoding));
 }
 
 std::vector<std::uint64_t> ChainEncoder::level_bytes() const {
     std::vector<std::uint64_t> bytes;
-    for (int l = 0; l < level_count(); ++l)
-        bytes.push_back(std::uint64_t(row_bytes(l)) * levels_[l].height * head_.faces);
+    for (int l = 0; l < level_count(); ++l) bytes.push_back(std::uint64_t(row_bytes(l)) * rows(l) * head_.faces);
     return bytes;
+}
+
+const float* ChainEncoder::row_weights(const Level& level, int y, std::vector<float>& scratch) const {
+    if (!level.weights.empty())
+        return level.weights.data() + std::size_t(level.width) * std::size_t(std::min(y, level.height - 1 - y));
+    scratch.assign(std::size_t(level.width), float(std::sin(k_pi * (y + 0.5) / level.height)));
+    return scratch.data();
 }
 
 void ChainEncoder::encode(int level_index, int first, int count, std::uint8_t* out) {
     Level& level = levels_[level_index];
-    const std::size_t bytes = row_bytes(level_index), width = std::size_t(level.width);
-    std::vector<float> latlong_weight(level.weights.empty() ? width : 0);
-    for (int row = first; row < first + count; ++row, out += bytes) {
-        const int y = row % level.height;
-        const float* weight = latlong_weight.data();
-        if (level.weights.empty()) {
-            latlong_weight.assign(width, float(std::sin(k_pi * (y + 0.5) / level.height)));
-        } else {
-            weight = level.weights.data() + width * std::size_t(std::min(y, level.height - 1 - y));
-        }
+    constexpr int k_largest_block = 16;
+    const int side = encoding_block(head_.encoding), face_rows = rows(level_index);
+    assert(side <= k_largest_block);
+    std::array<std::vector<float>, k_largest_block> scratch;
+    std::array<const float*, k_largest_block> weight;
+    for (int row = first; row < first + count; ++row, out += row_bytes(level_index)) {
+        const int face = row / face_rows, y = row % face_rows * side, texel_rows = std::min(side, level.height - y);
+        for (int i = 0; i < texel_rows; ++i)
+            weight[std::size_t(i)] = row_weights(level, y + i, scratch[std::size_t(i)]);
+        const float* rgb = level.pixels + 3 * std::size_t(level.width) * (std::size_t(level.height) * face + y);
         level.sums[row] =
-            simd::encode_row(head_.encoding, level.pixels + 3 * width * std::size_t(row), level.width, weight, out);
+            side == 1 ? simd::encode_row(head_.encoding, rgb, level.width, weight[0], out)
+                      : encode_block_row(head_.encoding, quality_, rgb, level.width, texel_rows, weight.data(), out);
     }
 }
 
 std::vector<EncodingReport> ChainEncoder::reports() const {
     std::vector<EncodingReport> reports;
-    for (const Level& level : levels_) {
+    for (int l = 0; l < level_count(); ++l) {
+        const int face_rows = rows(l);
         EncodeSums total;
-        for (int begin = 0; begin < level.height; begin += k_rows_per_sum) {
+        for (int begin = 0; begin < face_rows; begin += k_rows_per_sum) {
             EncodeSums part;
-            for (int y = begin; y < std::min(begin + k_rows_per_sum, level.height); ++y)
-                for (int face = 0; face < head_.faces; ++face) part += level.sums[face * level.height + y];
+            for (int y = begin; y < std::min(begin + k_rows_per_sum, face_rows); ++y)
+                for (int face = 0; face < head_.faces; ++face) part += levels_[l].sums[face * face_rows + y];
             total += part;
         }
         reports.push_back(report_from(total));

@@ -13,18 +13,19 @@
 namespace domelight {
 
 /// Encodes the levels of a chain piece by piece, in any order and on any number of threads, so that texels can be
-/// stored while they are still in the processor's cache. The levels must stay as they are.
+/// stored while they are still in the processor's cache. The levels must stay as they are. A row is one of texels, or
+/// of blocks where the encoding has them.
 class ChainEncoder {
   public:
     /// `levels`: at least one. For a texture each must have half the size of the one before, rounded down.
     ChainEncoder(std::span<const FilteredMap> levels, Encoding encoding,
-                 std::map<std::string, std::string> metadata = {});
+                 std::map<std::string, std::string> metadata = {}, EncodingQuality quality = EncodingQuality::standard);
 
     /// The texture that the levels make, its own levels left empty.
     const Texture& head() const { return head_; }
     int level_count() const { return int(levels_.size()); }
     /// Rows of one face, and bytes of a row.
-    int height(int level) const { return levels_[level].height; }
+    int rows(int level) const { return in_blocks(levels_[level].height); }
     std::size_t row_bytes(int level) const;
     /// Bytes of each level, all faces together.
     std::vector<std::uint64_t> level_bytes() const;
@@ -43,8 +44,14 @@ class ChainEncoder {
         std::vector<float> weights;    ///< cube: of the upper half of a face's rows; the lower half is its reflection
         std::vector<EncodeSums> sums;  ///< of each row of each face
     };
+    int in_blocks(int texels) const {
+        return (texels + encoding_block(head_.encoding) - 1) / encoding_block(head_.encoding);
+    }
+    /// Solid angles, up to a factor, of the texels in row `y` of a face.
+    const float* row_weights(const Level& level, int y, std::vector<float>& scratch) const;
 
     Texture head_;
+    EncodingQuality quality_;
     std::vector<Level> levels_;
 };
 

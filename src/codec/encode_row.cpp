@@ -26,11 +26,6 @@ T load(const std::uint8_t* in) {
     return value;
 }
 
-float clamp_to(float v, float low, float high) {
-    if (v != v) return 0;
-    return v < low ? low : v > high ? high : v;
-}
-
 /// One coder an encoding: whether it keeps every float, its range per channel, and the conversion of one texel (already
 /// inside the range, never NaN) to bytes and back.
 struct HalfCoder {
@@ -110,6 +105,7 @@ auto with_coder(Encoding encoding, Use use) {
         case Encoding::rg16f:
             return use(Rg16f{});
         case Encoding::rg32f:
+        case Encoding::bc6h:
             break;
     }
     return use(Rg32f{});
@@ -117,33 +113,20 @@ auto with_coder(Encoding encoding, Use use) {
 
 template <typename Coder>
 Vec3f clamp_to_range(const Vec3f& v) {
-    return {clamp_to(v.x, Coder::k_min[0], Coder::k_max[0]), clamp_to(v.y, Coder::k_min[1], Coder::k_max[1]),
-            clamp_to(v.z, Coder::k_min[2], Coder::k_max[2])};
+    return {limit_to(v.x, Coder::k_min[0], Coder::k_max[0]), limit_to(v.y, Coder::k_min[1], Coder::k_max[1]),
+            limit_to(v.z, Coder::k_min[2], Coder::k_max[2])};
 }
 
 template <typename Coder>
 EncodeSums encode_row_with(const float* rgb, int count, const float* weight, std::uint8_t* out) {
-    constexpr Vec3d k_luminance{0.2126, 0.7152, 0.0722};
-    const auto number = [](float v) { return v == v ? v : 0.0f; };
     EncodeSums sums;
     for (int i = 0; i < count; ++i, rgb += 3, out += Coder::k_bytes) {
         const Vec3f read{rgb[0], rgb[1], Coder::k_channels == 3 ? rgb[2] : 0.0f};
-        const Vec3f v{number(read.x), number(read.y), number(read.z)};
-        const Vec3f inside = clamp_to_range<Coder>(v);
+        const Vec3f inside = clamp_to_range<Coder>(read);
         Coder::encode(inside, out);
-        const double w = weight[i];
-        sums.power += w * dot(k_luminance, Vec3d(v));
-        if (!(read == inside)) {
-            ++sums.clipped;
-            const Vec3d above = Vec3d(v) - Vec3d(inside);
-            sums.lost +=
-                w * dot(k_luminance, Vec3d{std::max(above.x, 0.0), std::max(above.y, 0.0), std::max(above.z, 0.0)});
-        } else if (!Coder::k_exact) {
-            const Vec3d difference = Vec3d(Coder::decode(out)) - Vec3d(v);
-            sums.error += w * dot(difference, difference);
-            sums.norm += w * dot(Vec3d(v), Vec3d(v));
-        }
+        sums.add(read, inside, Coder::decode(out), weight[i]);
     }
+    if (Coder::k_exact) sums.error = sums.norm = 0;
     return sums;
 }
 

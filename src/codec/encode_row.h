@@ -1,7 +1,9 @@
 #pragma once
 
 #include "domelight/texture.h"
+#include "domelight/vec.h"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace domelight {
@@ -14,6 +16,9 @@ struct EncodeSums {
     double error = 0;          ///< sum w |stored - v|^2 over texels that were not clipped
     double norm = 0;           ///< sum w |v|^2 over the same; 0 for encodings that keep every float
 
+    /// One texel: as read, brought into the encoding's range, as it will be decoded.
+    void add(const Vec3f& read, const Vec3f& inside, const Vec3f& stored, double weight);
+
     void operator+=(const EncodeSums& b) {
         clipped += b.clipped;
         power += b.power;
@@ -23,8 +28,32 @@ struct EncodeSums {
     }
 };
 
+/// NaN becomes 0.
+inline float limit_to(float v, float low, float high) {
+    if (v != v) return 0;
+    return v < low ? low : v > high ? high : v;
+}
+
+inline void EncodeSums::add(const Vec3f& read, const Vec3f& inside, const Vec3f& stored, double weight) {
+    constexpr Vec3d k_luminance{0.2126, 0.7152, 0.0722};
+    const auto number = [](float v) { return v == v ? v : 0.0f; };
+    const Vec3d v = Vec3d(Vec3f{number(read.x), number(read.y), number(read.z)});
+    power += weight * dot(k_luminance, v);
+    if (!(read == inside)) {
+        ++clipped;
+        const Vec3d above = v - Vec3d(inside);
+        lost +=
+            weight * dot(k_luminance, Vec3d{std::max(above.x, 0.0), std::max(above.y, 0.0), std::max(above.z, 0.0)});
+    } else {
+        const Vec3d difference = Vec3d(stored) - v;
+        error += weight * dot(difference, difference);
+        norm += weight * dot(v, v);
+    }
+}
+
 /// Encodes `count` RGB float texels into `out` (count * encoding_bytes(encoding) bytes) and adds up what that did;
-/// `weight` has one entry a texel. Alpha is 1; two-channel encodings take red and green. NaN is stored as 0.
+/// `weight` has one entry a texel. For encodings of single texels; block_codec.h has the others. Alpha is 1;
+/// two-channel encodings take red and green. NaN is stored as 0.
 EncodeSums encode_row_scalar(Encoding encoding, const float* rgb, int count, const float* weight, std::uint8_t* out);
 
 /// The same from one to three interleaved channels (missing ones are 0), without sums.

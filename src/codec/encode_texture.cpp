@@ -2,6 +2,7 @@
 #include "domelight/parallel.h"
 #include "domelight/texture.h"
 
+#include "codec/block_codec.h"
 #include "codec/chain_encoder.h"
 #include "codec/encode_row.h"
 
@@ -12,29 +13,29 @@ namespace domelight {
 
 namespace {
 
-/// Rows that one task encodes.
+/// Rows of texels that one task encodes.
 constexpr int k_rows_a_piece = 96;
 
 }  // namespace
 
 Texture encode_texture(std::span<const FilteredMap> levels, Encoding encoding, int threads,
-                       std::vector<EncodingReport>* reports) {
+                       std::vector<EncodingReport>* reports, EncodingQuality quality) {
     if (reports) reports->assign(levels.size(), {});
     if (levels.empty()) {
         Texture texture;
         texture.encoding = encoding;
         return texture;
     }
-    ChainEncoder encoder(levels, encoding);
+    ChainEncoder encoder(levels, encoding, {}, quality);
     Texture texture = encoder.head();
     struct Piece {
         int level, first, rows;
     };
     std::vector<Piece> pieces;
     for (int l = 0; l < encoder.level_count(); ++l) {
-        const int rows = encoder.height(l) * texture.faces;
+        const int rows = encoder.rows(l) * texture.faces, step = k_rows_a_piece / encoding_block(encoding);
         texture.levels.emplace_back(encoder.row_bytes(l) * std::size_t(rows));
-        for (int y = 0; y < rows; y += k_rows_a_piece) pieces.push_back({l, y, std::min(k_rows_a_piece, rows - y)});
+        for (int y = 0; y < rows; y += step) pieces.push_back({l, y, std::min(step, rows - y)});
     }
     parallel_for(int(pieces.size()), threads, [&](int i) {
         const Piece& piece = pieces[i];
@@ -46,6 +47,7 @@ Texture encode_texture(std::span<const FilteredMap> levels, Encoding encoding, i
 }
 
 Texture encode_table(ImageView<const float> table, Encoding encoding) {
+    assert(encoding_block(encoding) == 1);
     Texture texture;
     texture.encoding = encoding;
     texture.width = table.width;
@@ -58,21 +60,23 @@ Texture encode_table(ImageView<const float> table, Encoding encoding) {
 }
 
 ImageF decode_texture(const Texture& texture, int level, int face) {
-    const bool two_channels = texture.encoding == Encoding::rg16f || texture.encoding == Encoding::rg32f;
     const int width = texture.level_width(level), height = texture.level_height(level);
-    ImageF image(width, height, two_channels ? 2 : 3);
-    const std::size_t face_bytes = std::size_t(width) * height * encoding_bytes(texture.encoding);
+    ImageF image(width, height, encoding_channels(texture.encoding));
+    const std::size_t face_bytes = texture.face_bytes(level);
     assert(texture.levels[level].size() == face_bytes * texture.faces);
-    decode_texels(texture.encoding, texture.levels[level].data() + face_bytes * face, width * height,
-                  image.pixels().data());
+    const std::uint8_t* bytes = texture.levels[level].data() + face_bytes * face;
+    if (encoding_block(texture.encoding) > 1) {
+        decode_blocks(texture.encoding, bytes, width, height, image.pixels().data());
+    } else {
+        decode_texels(texture.encoding, bytes, width * height, image.pixels().data());
+    }
     return image;
 }
 
 Result<std::vector<Cubemap>> decode_cubes(const Texture& texture) {
     if (texture.faces != 6)
         return Error{"texture is not a cube", "", "Wanted is a specular cube, as `bake` writes it."};
-    if (texture.encoding == Encoding::rg16f || texture.encoding == Encoding::rg32f)
-        return Error{"texture has two channels, not a colour", "", ""};
+    if (encoding_channels(texture.encoding) != 3) return Error{"texture has two channels, not a colour", "", ""};
     std::vector<Cubemap> levels;
     for (int l = 0; l < int(texture.levels.size()); ++l) {
         Cubemap cube(texture.level_width(l));

@@ -35,7 +35,7 @@ Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_
             file.string(), ""};
     const Result<Texture> texture = read_texture(file);
     if (!texture) return texture.error().at(file.string());
-    if (texture->encoding == Encoding::rg16f || texture->encoding == Encoding::rg32f)
+    if (encoding_channels(texture->encoding) != 3)
         return Error{"texture has two channels, not a colour", file.string(), ""};
 
     Cubemap cube(texture->width);

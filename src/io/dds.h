@@ -16,6 +16,7 @@ enum : std::uint32_t {
     k_ddsd_pitch = 0x8,
     k_ddsd_pixel_format = 0x1000,
     k_ddsd_mip_map_count = 0x20000,
+    k_ddsd_linear_size = 0x80000,
     k_ddsd_depth = 0x800000,
     k_ddpf_four_cc = 0x4,
     k_ddscaps_complex = 0x8,

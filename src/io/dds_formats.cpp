@@ -155,6 +155,8 @@ std::optional<StoredTexels> dxgi_texels(std::uint32_t number) {
             return StoredTexels{Encoding::rg16f, 1, 2};
         case 67:
             return StoredTexels{Encoding::rgb9e5};
+        case 95:
+            return StoredTexels{Encoding::bc6h};
         default:
             return std::nullopt;
     }
@@ -235,6 +237,8 @@ std::uint32_t dxgi_number(Encoding encoding) {
             return 26;
         case Encoding::rg16f:
             return 34;
+        case Encoding::bc6h:
+            return 95;
         case Encoding::rg32f:
             break;
     }

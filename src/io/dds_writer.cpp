@@ -13,12 +13,14 @@ Result<TextureLayout> dds_layout(const Texture& texture, std::span<const std::ui
     ByteBuffer head;
     head.text("DDS ");
     head.u32(124);
-    head.u32(k_ddsd_caps | k_ddsd_height | k_ddsd_width | k_ddsd_pitch | k_ddsd_pixel_format |
-             (mips ? k_ddsd_mip_map_count : 0u));
+    const bool blocks = encoding_block(texture.encoding) > 1;
+    head.u32(k_ddsd_caps | k_ddsd_height | k_ddsd_width | (blocks ? k_ddsd_linear_size : k_ddsd_pitch) |
+             k_ddsd_pixel_format | (mips ? k_ddsd_mip_map_count : 0u));
     head.u32(std::uint32_t(texture.height));
     head.u32(std::uint32_t(texture.width));
-    head.u32(std::uint32_t(texture.width * encoding_bytes(texture.encoding)));  // pitch
-    head.u32(0);                                                                // depth
+    // Bytes of a row of texels, or of the whole finest level of a face where there are blocks.
+    head.u32(std::uint32_t(blocks ? texture.face_bytes(0) : texture.face_bytes(0) / std::size_t(texture.height)));
+    head.u32(0);  // depth
     head.u32(std::uint32_t(level_bytes.size()));
     for (int i = 0; i < 11; ++i) head.u32(0);
     head.u32(32);  // pixel format: what it is stands in the DX10 header

@@ -66,7 +66,7 @@ constexpr Name k_names[] = {
     {0x8e8c, "COMPRESSED_RGBA_BPTC_UNORM"},
     {0x8e8d, "COMPRESSED_SRGB_ALPHA_BPTC_UNORM"},
     {0x8e8e, "COMPRESSED_RGB_BPTC_SIGNED_FLOAT"},
-    {0x8e8f, "COMPRESSED_RGB_BPTC_UNSIGNED_FLOAT"},
+    {k_gl_bptc_unsigned_float, "COMPRESSED_RGB_BPTC_UNSIGNED_FLOAT"},
     {0x8d64, "ETC1_RGB8"},
     {0x8c00, "COMPRESSED_RGB_PVRTC_4BPPV1"},
     {0x8c01, "COMPRESSED_RGB_PVRTC_2BPPV1"},
@@ -134,6 +134,10 @@ std::optional<StoredTexels> gl_format_texels(std::uint32_t internal_format, std:
         case k_gl_r32f:
             if (half) return StoredTexels{Encoding::rg16f, 1, 2};
             if (single) return StoredTexels{Encoding::rg32f, 1, 4};
+            return std::nullopt;
+        case k_gl_bptc_unsigned_float:
+            // Compressed formats come with type 0; with any other OpenGL would compress texels on upload.
+            if (type == 0) return StoredTexels{Encoding::bc6h};
             return std::nullopt;
         default:
             return std::nullopt;

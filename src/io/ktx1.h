@@ -23,6 +23,7 @@ enum : std::uint32_t {
     k_gl_rg32f = 0x8230,
     k_gl_r11f_g11f_b10f = 0x8c3a,
     k_gl_rgb9_e5 = 0x8c3d,
+    k_gl_bptc_unsigned_float = 0x8e8f,
 };
 
 }  // namespace domelight

@@ -100,24 +100,25 @@ Result<Ktx1> parse(ByteSource& source) {
 }
 
 /// Bytes of a number that a swap of ends turns round: the packed formats are one 32-bit number, whatever the header's
-/// type size says.
+/// type size says; blocks are bytes.
 std::size_t swap_unit(const StoredTexels& texels) {
     if (texels.channels > 0) return std::size_t(texels.channel_bytes);
+    if (encoding_block(texels.encoding) > 1) return 1;
     return texels.encoding == Encoding::rgba16f || texels.encoding == Encoding::rg16f ? 2 : 4;
 }
 
-/// One face of a level: rows padded to 4 bytes become tight ones.
-void append_face(const Ktx1& file, int width, int height, Bytes& stored, Bytes& out) {
+/// One face of a level: rows of texels or blocks padded to 4 bytes become tight ones.
+void append_face(const Ktx1& file, int columns, int rows, Bytes& stored, Bytes& out) {
     if (file.swapped) {
         const std::size_t unit = swap_unit(*file.texels);
         for (std::size_t i = 0; i + unit <= stored.size(); i += unit)
             std::reverse(stored.begin() + std::ptrdiff_t(i), stored.begin() + std::ptrdiff_t(i + unit));
     }
-    const std::size_t tight = std::size_t(width) * std::size_t(file.texels->bytes()), padded = (tight + 3) / 4 * 4;
-    const std::size_t wide = std::size_t(width) * std::size_t(encoding_bytes(file.texels->encoding));
-    for (int y = 0; y < height; ++y) {
+    const std::size_t tight = std::size_t(columns) * std::size_t(file.texels->bytes()), padded = (tight + 3) / 4 * 4;
+    const std::size_t wide = std::size_t(columns) * std::size_t(encoding_bytes(file.texels->encoding));
+    for (int y = 0; y < rows; ++y) {
         out.resize(out.size() + wide);
-        widen_texels(*file.texels, stored.data() + padded * std::size_t(y), std::size_t(width),
+        widen_texels(*file.texels, stored.data() + padded * std::size_t(y), std::size_t(columns),
                      out.data() + out.size() - wide);
     }
 }
@@ -137,26 +138,25 @@ Result<Texture> ktx1_texture(ByteSource& source) {
     if (!texture) return texture;
     std::uint64_t at = file->data_offset;
     for (int l = 0; l < file->info.levels; ++l) {
-        const int width = texture->level_width(l), height = texture->level_height(l);
+        const int columns = texture->level_columns(l), rows = texture->level_rows(l);
         const auto size = source.take(at, 4, "level's size");
         if (!size) return size.error();
         std::uint64_t face_bytes = Words{*size, file->swapped}.at(0);
         // Some writers count all faces of a cube that is an array of one.
         if (file->info.layers == 1 && file->info.faces == 6) face_bytes /= 6;
-        const std::uint64_t row = (std::uint64_t(width) * std::uint64_t(file->texels->bytes()) + 3) / 4 * 4;
-        if (face_bytes != row * std::uint64_t(height)) {
+        const std::uint64_t row = (std::uint64_t(columns) * std::uint64_t(file->texels->bytes()) + 3) / 4 * 4;
+        if (face_bytes != row * std::uint64_t(rows)) {
             return Error{"level " + std::to_string(l) + " has " + std::to_string(face_bytes) +
-                             " bytes a face, but its size needs " + std::to_string(row * std::uint64_t(height)),
+                             " bytes a face, but its size needs " + std::to_string(row * std::uint64_t(rows)),
                          "", "the file is damaged"};
         }
         at += 4;
         Bytes level;
-        level.reserve(std::size_t(width) * std::size_t(height) * std::size_t(texture->faces) *
-                      std::size_t(encoding_bytes(texture->encoding)));
+        level.reserve(texture->face_bytes(l) * std::size_t(texture->faces));
         for (int face = 0; face < texture->faces; ++face, at += face_bytes) {
             auto stored = source.take(at, face_bytes, "level");
             if (!stored) return stored.error();
-            append_face(*file, width, height, *stored, level);
+            append_face(*file, columns, rows, *stored, level);
         }
         texture->levels.push_back(std::move(level));
     }

@@ -13,28 +13,30 @@ namespace {
 
 /// How OpenGL is told of an encoding.
 struct GlFormat {
-    std::uint32_t internal_format, type, type_bytes, format;
+    std::uint32_t internal_format, type, type_bytes, format, base_format;
 };
 
 GlFormat gl_format(Encoding encoding) {
     constexpr std::uint32_t k_half = 0x140b, k_float = 0x1406, k_rgba = 0x1908, k_rgb = 0x1907, k_rg = 0x8227;
     switch (encoding) {
         case Encoding::rgba16f:
-            return {k_gl_rgba16f, k_half, 2, k_rgba};
+            return {k_gl_rgba16f, k_half, 2, k_rgba, k_rgba};
         case Encoding::rgba32f:
-            return {k_gl_rgba32f, k_float, 4, k_rgba};
+            return {k_gl_rgba32f, k_float, 4, k_rgba, k_rgba};
         case Encoding::rg16f:
-            return {k_gl_rg16f, k_half, 2, k_rg};
+            return {k_gl_rg16f, k_half, 2, k_rg, k_rg};
         case Encoding::rg32f:
-            return {k_gl_rg32f, k_float, 4, k_rg};
+            return {k_gl_rg32f, k_float, 4, k_rg, k_rg};
         case Encoding::rgb9e5:
-            return {k_gl_rgb9_e5, 0x8c3e, 4, k_rgb};  // UNSIGNED_INT_5_9_9_9_REV
+            return {k_gl_rgb9_e5, 0x8c3e, 4, k_rgb, k_rgb};  // UNSIGNED_INT_5_9_9_9_REV
+        case Encoding::bc6h:
+            return {k_gl_bptc_unsigned_float, 0, 1, 0, k_rgb};  // compressed: neither type nor format
         case Encoding::r11g11b10f:
             break;
     }
     // The type should be UNSIGNED_INT_10F_11F_11F_REV, 0x8c3b. Filament, the format's one consumer, writes and expects
     // the internal format here and refuses the right value; readers that go by the internal format take either.
-    return {k_gl_r11f_g11f_b10f, k_gl_r11f_g11f_b10f, 4, k_rgb};
+    return {k_gl_r11f_g11f_b10f, k_gl_r11f_g11f_b10f, 4, k_rgb, k_rgb};
 }
 
 bool is_reserved(const std::string& key) {
@@ -62,7 +64,7 @@ Result<TextureLayout> ktx1_layout(const Texture& texture, std::span<const std::u
     head.u32(gl.type_bytes);
     head.u32(gl.format);
     head.u32(gl.internal_format);
-    head.u32(gl.format);  // base internal format
+    head.u32(gl.base_format);
     head.u32(std::uint32_t(texture.width));
     head.u32(std::uint32_t(texture.height));
     head.u32(0);  // depth

@@ -88,6 +88,17 @@ Result<void> read_key_values(ByteSource& source, std::uint64_t offset, std::uint
     return {};
 }
 
+/// Whether a level's stated sizes are those that its texels need.
+Result<void> check_level_size(const Ktx2& file, const Texture& texture, int l) {
+    const Level& level = file.levels[std::size_t(l)];
+    const std::uint64_t needed = stored_level_bytes(texture, *file.texels, l);
+    if (level.uncompressed_bytes == needed && (file.scheme != 0 || level.bytes == needed)) return {};
+    return Error{"level " + std::to_string(l) + " has " +
+                     std::to_string(file.scheme == 0 ? level.bytes : level.uncompressed_bytes) +
+                     " bytes, but its size needs " + std::to_string(needed),
+                 "", "the file is damaged"};
+}
+
 Result<Ktx2> parse(ByteSource& source) {
     const auto head = source.take(0, k_ktx2_header_bytes, "header");
     if (!head) return head.error();
@@ -126,7 +137,10 @@ Result<Ktx2> parse(ByteSource& source) {
         if (level.bytes == 0) return Error{"level " + std::to_string(l) + " is empty", "", "the file is damaged"};
         file.levels.push_back(level);
     }
-    file.info.decodable = (file.scheme == 0 || file.scheme == 2) && texture_for(file.info, file.texels);
+    const auto texture = texture_for(file.info, file.texels);
+    file.info.decodable = (file.scheme == 0 || file.scheme == 2) && texture;
+    for (int l = 0; file.info.decodable && l < file.info.levels; ++l)
+        file.info.decodable = bool(check_level_size(file, *texture, l));
     return file;
 }
 
@@ -169,11 +183,7 @@ Result<Texture> ktx2_texture(ByteSource& source) {
         const auto at_level = [&](const Error& e) {
             return Error{"level " + std::to_string(l) + " " + e.what, "", e.hint};
         };
-        if (level.uncompressed_bytes != bytes || (file->scheme == 0 && level.bytes != bytes)) {
-            return at_level({"has " + std::to_string(file->scheme == 0 ? level.bytes : level.uncompressed_bytes) +
-                                 " bytes, but its size needs " + std::to_string(bytes),
-                             "", "the file is damaged"});
-        }
+        if (const auto sized = check_level_size(*file, *texture, l); !sized) return sized.error();
         auto stored = source.take(level.offset, level.bytes, "level");
         if (!stored) return stored.error();
         if (file->scheme == 2) {

@@ -53,6 +53,8 @@ std::vector<Sample> samples_of(Encoding encoding) {
             return {{0, 11, k_red | k_float, 0, k_one},
                     {11, 11, k_green | k_float, 0, k_one},
                     {22, 10, k_blue | k_float, 0, k_one}};
+        case Encoding::bc6h:
+            return {{0, 128, k_red | k_float, 0, k_one}};  // channel 0 of this model is its colour
         case Encoding::rgb9e5:
             break;
     }
@@ -67,6 +69,11 @@ std::vector<Sample> samples_of(Encoding encoding) {
     return samples;
 }
 
+/// Colour model of an encoding (Khronos Data Format Specification 1.3, section 5.6).
+unsigned colour_model(Encoding encoding) {
+    return encoding == Encoding::bc6h ? 133 : 1;  // KHR_DF_MODEL_BC6H, KHR_DF_MODEL_RGBSDA
+}
+
 /// The data format descriptor: its total size and one basic block.
 void append_descriptor(ByteBuffer& out, Encoding encoding) {
     const std::vector<Sample> samples = samples_of(encoding);
@@ -75,11 +82,12 @@ void append_descriptor(ByteBuffer& out, Encoding encoding) {
     out.u32(0);  // vendor Khronos, type basic
     out.u16(2);  // version 1.3
     out.u16(block_size);
-    out.u8(1);   // colour model RGBSDA
-    out.u8(1);   // primaries BT.709
-    out.u8(1);   // transfer function linear
-    out.u8(0);   // straight alpha
-    out.u32(0);  // texel block of 1 x 1 x 1 x 1
+    out.u8(colour_model(encoding));
+    out.u8(1);  // primaries BT.709
+    out.u8(1);  // transfer function linear
+    out.u8(0);  // straight alpha
+    const unsigned side = unsigned(encoding_block(encoding)) - 1;
+    out.u32(side | side << 8);  // texel block, each dimension less one
     // bytesPlane[0]. Revisions of the specification before 2025 wanted 0 where levels are supercompressed; the current
     // one keeps the bytes, warns of 0, and readers take both ("DFD for Supercompressed Data").
     out.u8(unsigned(encoding_bytes(encoding)));
@@ -92,6 +100,12 @@ void append_descriptor(ByteBuffer& out, Encoding encoding) {
         out.u32(s.lower);
         out.u32(s.upper);
     }
+}
+
+/// Bytes of what a swap of ends swaps.
+std::uint32_t type_bytes(Encoding encoding) {
+    if (encoding_block(encoding) > 1) return 1;
+    return encoding == Encoding::rgba16f || encoding == Encoding::rg16f ? 2 : 4;
 }
 
 /// Key/value data, sorted by key (std::map's order is that of the bytes), each padded to 4 bytes; values are text with
@@ -144,7 +158,7 @@ Result<TextureLayout> ktx2_layout(const Texture& texture, std::span<const std::u
     const std::uint64_t descriptor_at = k_ktx2_header_bytes + k_ktx2_level_bytes * level_count,
                         key_values_at = descriptor_at + descriptor.size();
 
-    // Levels lie from the smallest to the largest, each on a multiple of lcm(texel bytes, 4); packed ones without gaps
+    // Levels lie from the smallest to the largest, each on a multiple of lcm(block bytes, 4); packed ones without gaps
     // (section 3.9.7).
     const std::uint64_t alignment =
         compression == Supercompression::none ? std::uint64_t(encoding_bytes(texture.encoding)) : 1;
@@ -158,9 +172,7 @@ Result<TextureLayout> ktx2_layout(const Texture& texture, std::span<const std::u
     ByteBuffer head;
     for (std::uint8_t byte : k_ktx2_identifier) head.u8(byte);
     head.u32(vulkan_format(texture.encoding));
-    head.u32(texture.encoding == Encoding::rgba16f || texture.encoding == Encoding::rg16f
-                 ? 2
-                 : 4);  // bytes of what a swap of ends swaps
+    head.u32(type_bytes(texture.encoding));
     head.u32(std::uint32_t(texture.width));
     head.u32(std::uint32_t(texture.height));
     head.u32(0);  // depth

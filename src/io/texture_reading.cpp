@@ -44,7 +44,7 @@ Result<void> set_shape(TextureInfo& info, std::uint64_t width, std::uint64_t hei
 Result<Texture> texture_for(const TextureInfo& info, const std::optional<StoredTexels>& texels) {
     if (!texels)
         return Error{"cannot decode " + info.format, "",
-                     "readable: half and float RGBA, RGB, RG and R, RGB9E5, R11G11B10"};
+                     "readable: half and float RGBA, RGB, RG and R, RGB9E5, R11G11B10, BC6H (unsigned)"};
     if (info.depth > 1) return Error{"is a three-dimensional texture, which is not supported", "", ""};
     if (info.layers > 1)
         return Error{"is an array of " + std::to_string(info.layers) + " textures, which is not supported", "", ""};
@@ -55,9 +55,7 @@ Result<Texture> texture_for(const TextureInfo& info, const std::optional<StoredT
     texture.faces = info.faces;
     texture.metadata = info.metadata;
     std::uint64_t total = 0;  // at most 21 levels of 6 * 2^40 texels of 16 bytes: no overflow
-    for (int l = 0; l < info.levels; ++l)
-        total += std::uint64_t(texture.level_width(l)) * std::uint64_t(texture.level_height(l)) *
-                 std::uint64_t(info.faces) * std::uint64_t(encoding_bytes(texels->encoding));
+    for (int l = 0; l < info.levels; ++l) total += std::uint64_t(texture.face_bytes(l)) * std::uint64_t(info.faces);
     if (total > k_max_texture_bytes) {
         return Error{"needs " + std::to_string(total) + " bytes of memory, more than the limit of " +
                          std::to_string(k_max_texture_bytes),
@@ -67,7 +65,7 @@ Result<Texture> texture_for(const TextureInfo& info, const std::optional<StoredT
 }
 
 std::uint64_t stored_level_bytes(const Texture& texture, const StoredTexels& texels, int l) {
-    return std::uint64_t(texture.level_width(l)) * std::uint64_t(texture.level_height(l)) *
+    return std::uint64_t(texture.level_columns(l)) * std::uint64_t(texture.level_rows(l)) *
            std::uint64_t(texture.faces) * std::uint64_t(texels.bytes());
 }
 

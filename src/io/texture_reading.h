@@ -19,12 +19,13 @@ inline constexpr std::uint32_t k_max_texture_side = 1u << 20;
 /// The most key/value data that is read.
 inline constexpr std::uint64_t k_max_metadata_bytes = std::uint64_t(16) << 20;
 
-/// Texels as a file stores them and the encoding that holds them without loss: the same, or with the missing channels
-/// filled in.
+/// Texels or blocks as a file stores them and the encoding that holds them without loss: the same, or (texels) with the
+/// missing channels filled in.
 struct StoredTexels {
     Encoding encoding = Encoding::rgba16f;
-    int channels = 0;       ///< stored; 0: exactly the encoding's texels
+    int channels = 0;       ///< stored; 0: exactly the encoding's texels or blocks
     int channel_bytes = 0;  ///< of a stored channel, where channels > 0
+    /// Of a texel or block.
     int bytes() const { return channels > 0 ? channels * channel_bytes : encoding_bytes(encoding); }
 };
 
@@ -43,7 +44,7 @@ Result<Texture> texture_for(const TextureInfo& info, const std::optional<StoredT
 /// Bytes of level `l` as stored without padding, all faces. Cannot overflow after texture_for().
 std::uint64_t stored_level_bytes(const Texture& texture, const StoredTexels& texels, int l);
 
-/// Turns `count` stored texels into the encoding's, filling missing colours with 0 and alpha with 1.
+/// Turns `count` stored texels or blocks into the encoding's, filling missing colours with 0 and alpha with 1.
 void widen_texels(const StoredTexels& texels, const std::uint8_t* in, std::size_t count, std::uint8_t* out);
 
 /// Stored bytes of one level to a Texture's (in place where nothing changes).

@@ -17,6 +17,8 @@ namespace {
 
 /// Bytes of texels that are encoded, written and hashed at once: they stay in a core's cache in between.
 constexpr std::size_t k_piece_bytes = std::size_t(128) << 10;
+/// Rows of blocks take much longer than rows of texels: few at once, so that all threads have some.
+constexpr int k_piece_block_rows = 8;
 
 /// A part of the file: bytes that are there already, or rows to encode.
 struct Piece {
@@ -31,8 +33,10 @@ std::vector<Piece> list_pieces(const ChainEncoder& encoder, const TextureLayout&
     for (const TextureLayout::Frame& frame : layout.frame) pieces.push_back({frame.offset, frame.bytes});
     for (const TextureLayout::Block& block : layout.blocks) {
         const std::size_t row_bytes = encoder.row_bytes(block.level);
-        const int height = encoder.height(block.level), begin = block.first_face * height,
-                  end = begin + block.faces * height, step = int(std::max<std::size_t>(1, k_piece_bytes / row_bytes));
+        const int rows = encoder.rows(block.level), begin = block.first_face * rows, end = begin + block.faces * rows,
+                  step = encoding_block(encoder.head().encoding) > 1
+                             ? k_piece_block_rows
+                             : int(std::max<std::size_t>(1, k_piece_bytes / row_bytes));
         for (int row = begin; row < end; row += step)
             pieces.push_back({block.offset + row_bytes * std::uint64_t(row - begin),
                               {},

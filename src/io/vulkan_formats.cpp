@@ -140,6 +140,8 @@ std::optional<StoredTexels> vulkan_format_texels(std::uint32_t format) {
             return StoredTexels{Encoding::r11g11b10f};  // B10G11R11_UFLOAT_PACK32
         case 123:
             return StoredTexels{Encoding::rgb9e5};  // E5B9G9R9_UFLOAT_PACK32
+        case 143:
+            return StoredTexels{Encoding::bc6h};  // BC6H_UFLOAT_BLOCK
         default:
             return std::nullopt;
     }

@@ -50,6 +50,21 @@ TEST_CASE("dds: faces one after the other, each with all its levels") {
     CHECK(at == bytes.size());
 }
 
+TEST_CASE("dds: blocks state the size of the finest level, and every level has at least one") {
+    const TemporaryFolder folder;
+    const auto file = folder / "a.dds";
+    const Texture texture = sample_texture(Encoding::bc6h, 10, 6, 4);
+    CHECK(texture.levels[0].size() == 6 * 9 * 16);
+    CHECK(texture.levels[1].size() == 6 * 4 * 16);
+    CHECK(texture.levels[3].size() == 6 * 16);
+    REQUIRE(write_dds(file, texture));
+    const auto bytes = file_bytes(file);
+    CHECK(u32_at(bytes, 128) == 95);     // DXGI_FORMAT_BC6H_UF16
+    CHECK(u32_at(bytes, 20) == 9 * 16);  // linear size
+    CHECK((u32_at(bytes, 8) & 0x80008) == 0x80000);
+    CHECK(bytes.size() == 148 + 6 * (9 + 4 + 1 + 1) * 16);
+}
+
 TEST_CASE("dds: truncations and changed headers give one error") {
     const TemporaryFolder folder;
     const auto file = folder / "a.dds";

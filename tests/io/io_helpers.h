@@ -21,8 +21,8 @@ inline void write_bytes(const std::filesystem::path& file, const std::vector<std
     out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
 }
 
-inline constexpr Encoding k_encodings[] = {Encoding::rgba16f,    Encoding::rgba32f, Encoding::rgb9e5,
-                                           Encoding::r11g11b10f, Encoding::rg16f,   Encoding::rg32f};
+inline constexpr Encoding k_encodings[] = {Encoding::rgba16f, Encoding::rgba32f, Encoding::rgb9e5, Encoding::r11g11b10f,
+                                           Encoding::rg16f,   Encoding::rg32f,   Encoding::bc6h};
 
 /// A texture of distinct bytes with some metadata.
 inline Texture sample_texture(Encoding encoding, int size, int faces, int levels) {
@@ -33,8 +33,7 @@ inline Texture sample_texture(Encoding encoding, int size, int faces, int levels
     texture.faces = faces;
     std::uint32_t state = 1;
     for (int l = 0; l < levels; ++l) {
-        auto& level = texture.levels.emplace_back(
-            std::size_t(texture.level_width(l) * texture.level_height(l) * faces * encoding_bytes(encoding)));
+        auto& level = texture.levels.emplace_back(texture.face_bytes(l) * std::size_t(faces));
         for (auto& byte : level) byte = std::uint8_t((state = state * 1664525u + 1013904223u) >> 24);
     }
     texture.metadata = {{"domelight.roughness", "0 0.5 1"}, {"a", ""}, {"name", "H\xc3\xa4user"}};

@@ -45,6 +45,20 @@ TEST_CASE("ktx1: imageSize is that of one face, and the file holds nothing else"
     CHECK(bytes.size() == 64 + pair + 4 + 6 * 8 * 8 * 4 + 4 + 6 * 4 * 4 * 4);
 }
 
+TEST_CASE("ktx1: blocks are announced as compressed and counted in whole ones") {
+    const TemporaryFolder folder;
+    const auto file = folder / "a.ktx";
+    Texture texture = sample_texture(Encoding::bc6h, 6, 6, 3);
+    texture.metadata = {};
+    REQUIRE(write_ktx1(file, texture));
+    const auto bytes = file_bytes(file);
+    // type, type size, format, internal format, base format
+    const std::uint32_t expected[] = {0, 1, 0, 0x8e8f, 0x1907};
+    for (std::size_t i = 0; i < 5; ++i) CHECK(u32_at(bytes, 16 + 4 * i) == expected[i]);
+    CHECK(u32_at(bytes, 64) == 4 * 16);
+    CHECK(bytes.size() == 64 + 3 * 4 + 6 * (4 + 1 + 1) * 16);
+}
+
 TEST_CASE("ktx1: a file of the other endianness and padded RGB16F rows") {
     // One level of 3 x 1 RGB16F: 18 bytes a row, padded to 20. All numbers big-endian.
     std::vector<std::uint8_t> bytes{0xab, 'K', 'T', 'X', ' ', '1', '1', 0xbb, '\r', '\n', 0x1a, '\n', 4, 3, 2, 1};

@@ -102,6 +102,9 @@ TEST_CASE("ktx2: the data format descriptors, word for word") {
     CHECK(descriptor(Encoding::r11g11b10f) == Words{76, 0, 2 | 72 << 16, 0x00010101, 0, 4, 0, 0x800a0000, 0, 0,
                                                     0x3f800000, 0x810a000b, 0, 0, 0x3f800000, 0x82090016, 0, 0,
                                                     0x3f800000});
+    // Block-compressed: the model's own number, 4 x 4 texels, 16 bytes, one sample of 128 bits.
+    CHECK(descriptor(Encoding::bc6h) ==
+          Words{44, 0, 2 | 40 << 16, 0x00010185, 0x0303, 16, 0, 0x807f0000, 0, 0, 0x3f800000});
     CHECK(descriptor(Encoding::rgb9e5) ==
           Words{124, 0, 2 | 120 << 16, 0x00010101, 0, 4,  0,  0x00080000, 0, 0, 8448, 0x2004001b, 0, 15, 31, 0x01080009,
                 0,   0, 8448,          0x2104001b, 0, 15, 31, 0x02080012, 0, 0, 8448, 0x2204001b, 0, 15, 31});

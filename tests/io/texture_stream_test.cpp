@@ -62,7 +62,7 @@ TEST_CASE(
         {plain_ktx2_layout, plain_write_ktx2}, {ktx1_layout, write_ktx1}, {dds_layout, write_dds}};
     for (const bool cube : {true, false}) {
         const auto chain = noise_chain(cube, 192, 4);
-        for (const Encoding encoding : {Encoding::rgba16f, Encoding::rgb9e5, Encoding::rgba32f}) {
+        for (const Encoding encoding : {Encoding::rgba16f, Encoding::rgb9e5, Encoding::rgba32f, Encoding::bc6h}) {
             std::vector<EncodingReport> reports;
             Texture texture = encode_texture(chain, encoding, 1, &reports);
             texture.metadata = metadata;
@@ -105,7 +105,7 @@ TEST_CASE("chain encoder: rows in any pieces give the same bytes and sums") {
     const Texture texture = encode_texture(chain, Encoding::r11g11b10f, 1, &reports);
     ChainEncoder encoder(chain, Encoding::r11g11b10f);
     for (int l = 1; l >= 0; --l) {
-        const int rows = 6 * encoder.height(l);
+        const int rows = 6 * encoder.rows(l);
         std::vector<std::uint8_t> out(encoder.row_bytes(l) * std::size_t(rows));
         for (int row = rows; row > 0;) {  // from the back, in pieces of growing size
             const int count = std::min(row, 1 + (rows - row) / 2);
