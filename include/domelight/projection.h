@@ -2,7 +2,8 @@
 
 #include "domelight/vec.h"
 
-#include <numbers>
+#include <algorithm>
+#include <cmath>
 
 namespace domelight {
 
@@ -61,5 +62,69 @@ CubePoint cube_point(const Vec3d& d);
 /// Solid angle (sr) of texel (x, y) of a face of `size`^2 texels, in double (in float the formula is 11 % off at
 /// 1024^2).
 double cube_solid_angle(int x, int y, int size);
+
+/// A point of a disc that fills a square picture, |p| <= 1 inside: x to the right, y up.
+struct DiscPoint {
+    double x = 0, y = 0;
+    double squared() const { return x * x + y * y; }
+};
+inline DiscPoint disc_point(UV uv) {
+    return {2 * uv.u - 1, 1 - 2 * uv.v};
+}
+inline UV disc_uv(DiscPoint p) {
+    return {0.5 + 0.5 * p.x, 0.5 - 0.5 * p.y};
+}
+
+/// OpenGL's sphere map, which is the picture of a mirror ball by a camera far away on +Z: uv = h.xy with
+/// h = normalize(d + e_z). The centre shows +Z, right +X, up +Y, and the rim all around -Z alone (which is put at its
+/// right end). `d` need not be of unit length. (OpenGL 2.1 specification, 2.11.4; its t runs up.)
+inline UV sphere_map_uv(const Vec3d& d) {
+    const Vec3d n = d / length(d), h{n.x, n.y, n.z + 1};
+    const double side = std::hypot(n.x, n.y);
+    // Behind, z + 1 has lost its digits: h_z / |h_xy| = (1 + z) / side = side / (1 - z).
+    if (n.z >= 0) return disc_uv({h.x / length(h), h.y / length(h)});
+    if (side == 0) return disc_uv({1, 0});
+    const double slope = side / (1 - n.z), r = 1 / std::sqrt(1 + slope * slope);
+    return disc_uv({r * n.x / side, r * n.y / side});
+}
+/// Inverse of sphere_map_uv: d = 2 h_z h - e_z with h_z = sqrt(1 - |uv|^2); outside the disc -Z. Of unit length.
+inline Vec3d sphere_map_direction(UV uv) {
+    const DiscPoint p = disc_point(uv);
+    const double hz2 = std::max(0.0, 1 - p.squared()), hz = std::sqrt(hz2);
+    return {2 * hz * p.x, 2 * hz * p.y, 2 * hz2 - 1};
+}
+/// d omega / (du dv) of a sphere map: it keeps areas, 4 pi over the disc's pi / 4.
+inline constexpr double k_sphere_map_jacobian = 16;
+
+/// The two halves of a dual paraboloid map, each a disc in a square picture of its own.
+enum class ParaboloidHalf { front, back };
+struct ParaboloidPoint {
+    ParaboloidHalf half = ParaboloidHalf::front;
+    UV uv;
+};
+
+/// A half's point for a direction: front xy / (1 + z), back xy / (1 - z). Within the disc where z has the half's sign;
+/// around it the picture goes on (to infinity at the half's far pole), so that a linear lookup needs no seam.
+/// `d` need not be of unit length. (Heidrich and Seidel 1998.)
+inline UV paraboloid_uv(ParaboloidHalf half, const Vec3d& d) {
+    const double depth = length(d) + (half == ParaboloidHalf::front ? d.z : -d.z);
+    return disc_uv({d.x / depth, d.y / depth});
+}
+/// The half that holds a direction, +Z the front (z = 0 too), and the point.
+inline ParaboloidPoint dual_paraboloid_point(const Vec3d& d) {
+    const ParaboloidHalf half = d.z < 0 ? ParaboloidHalf::back : ParaboloidHalf::front;
+    return {half, paraboloid_uv(half, d)};
+}
+/// Inverse of paraboloid_uv for any point: (2 p, +-(1 - |p|^2)) / (1 + |p|^2), of unit length.
+inline Vec3d paraboloid_direction(ParaboloidHalf half, UV uv) {
+    const DiscPoint p = disc_point(uv);
+    const double s = p.squared(), z = (1 - s) / (1 + s);
+    return {2 * p.x / (1 + s), 2 * p.y / (1 + s), half == ParaboloidHalf::front ? z : -z};
+}
+/// d omega / (du dv) of either half: 16 / (1 + |p|^2)^2, from 16 in the middle to 4 at the rim.
+inline double paraboloid_jacobian(UV uv) {
+    const double s = 1 + disc_point(uv).squared();
+    return 16 / (s * s);
+}
 
 }  // namespace domelight
