@@ -30,6 +30,30 @@ Vec3f neutral(Vec3f v) {
     return v * (1 - g) + Vec3f{new_peak, new_peak, new_peak} * g;
 }
 
+/// ACES 1.0's reference rendering and sRGB output transforms (RRT + ODT), by S. Hill's fit: into a desaturated AP1, one
+/// rational curve a channel, and back to Rec. 709. Middle grey 0.18 becomes 0.106, as darkly as the original has it.
+Vec3f aces(const Vec3f& v) {
+    const auto curve = [](float x) {
+        return (x * (x + 0.0245786f) - 0.000090537f) / (x * (0.983729f * x + 0.4329510f) + 0.238081f);
+    };
+    // The curve tends to 1 / 0.983729; beyond this, squares would leave float's range.
+    const auto bounded = [&](float x) { return curve(std::min(x, 1e15f)); };
+    const float r = bounded(0.59719f * v.x + 0.35458f * v.y + 0.04823f * v.z),
+                g = bounded(0.07600f * v.x + 0.90834f * v.y + 0.01566f * v.z),
+                b = bounded(0.02840f * v.x + 0.13383f * v.y + 0.83777f * v.z);
+    return {1.60475f * r - 0.53108f * g - 0.07367f * b, -0.10208f * r + 1.10813f * g - 0.00605f * b,
+            -0.00327f * r - 0.07276f * g + 1.07602f * b};
+}
+
+/// Reinhard et al. 2002, eq. 4, on luminance, so that hue and saturation stay: L (1 + L / white^2) / (1 + L). What is
+/// as bright as `white` becomes 1; the paper takes the picture's largest luminance for it, which here would make every
+/// picture of a series another.
+Vec3f reinhard(const Vec3f& v) {
+    constexpr float white = k_reinhard_white;
+    const float l = luminance(v);
+    return v * ((1 + l / (white * white)) / (1 + l));
+}
+
 }  // namespace
 
 Vec3f tonemap(const Vec3f& rgb, Tonemap method) {
@@ -42,12 +66,27 @@ Vec3f tonemap(const Vec3f& rgb, Tonemap method) {
         const auto linear = [](float x) { return std::pow(std::clamp(x, 0.0f, 1.0f), 2.2f); };
         return {linear(out.x), linear(out.y), linear(out.z)};
     }
-    const Vec3f out = method == Tonemap::neutral ? neutral(v) : v;
+    const Vec3f out = method == Tonemap::neutral    ? neutral(v)
+                      : method == Tonemap::aces     ? aces(v)
+                      : method == Tonemap::reinhard ? reinhard(v)
+                                                    : v;
     return {std::clamp(out.x, 0.0f, 1.0f), std::clamp(out.y, 0.0f, 1.0f), std::clamp(out.z, 0.0f, 1.0f)};
+}
+
+std::span<const TonemapName> tonemap_names() {
+    static constexpr TonemapName names[] = {{"agx", Tonemap::agx},           {"agx-punchy", Tonemap::agx_punchy},
+                                            {"neutral", Tonemap::neutral},   {"aces", Tonemap::aces},
+                                            {"reinhard", Tonemap::reinhard}, {"gamma22", Tonemap::gamma22},
+                                            {"none", Tonemap::none}};
+    return names;
 }
 
 float srgb_encode(float v) {
     return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
+}
+
+float srgb_decode(float v) {
+    return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
 }
 
 double log_average_luminance(ImageView<const float> image) {

@@ -5,7 +5,9 @@
 #include "domelight/vec.h"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <span>
 
 namespace domelight {
 
@@ -16,27 +18,46 @@ enum class Tonemap {
               ///< hue
     agx,      ///< AgX (Sobotka 2022), by Wrensch's polynomial: a film's contrast, bright colours towards white
     agx_punchy,  ///< AgX with its "punchy" look: more contrast and saturation
+    aces,        ///< ACES 1.0's RRT and sRGB ODT, by Hill's fit (2016)
+    reinhard,    ///< Reinhard et al. 2002, eq. 4, on luminance: `k_reinhard_white` becomes white
+    gamma22,     ///< clipped, and shown by the power 1 / 2.2 in place of the sRGB curve
 };
+
+/// The luminance that `reinhard` makes white.
+inline constexpr float k_reinhard_white = 4;
+
+/// As on the command line.
+struct TonemapName {
+    const char* name;
+    Tonemap method;
+};
+std::span<const TonemapName> tonemap_names();
 
 /// Tone maps linear Rec. 709 (already exposed); the result is display-linear Rec. 709 in 0..1. NaN gives 0.
 Vec3f tonemap(const Vec3f& rgb, Tonemap method);
 
 /// The sRGB transfer function (IEC 61966-2-1) of 0..1.
 float srgb_encode(float linear);
+/// Its inverse.
+float srgb_decode(float encoded);
 
 /// 0..1 to 0..255, rounded.
 inline std::uint8_t to_byte(float v) {
     return std::uint8_t(v * 255 + 0.5f);
 }
 
-/// Exposure, tone map and the sRGB curve.
+/// Exposure, tone map and the display's curve.
 struct Display {
     Tonemap method = Tonemap::agx;
     float exposure = 1;
-    /// sRGB values, 0..1.
+    /// Display values, 0..1.
     Vec3f encoded(const Vec3f& radiance) const {
         const Vec3f c = tonemap(radiance * exposure, method);
-        return {srgb_encode(c.x), srgb_encode(c.y), srgb_encode(c.z)};
+        return {curve(c.x), curve(c.y), curve(c.z)};
+    }
+    /// Of display-linear 0..1: sRGB's, or gamma22's own.
+    float curve(float linear) const {
+        return method == Tonemap::gamma22 ? std::pow(linear, 1 / 2.2f) : srgb_encode(linear);
     }
     std::array<std::uint8_t, 3> rgb8(const Vec3f& radiance) const {
         const Vec3f c = encoded(radiance);

@@ -34,7 +34,8 @@ TEST_CASE("AgxDisplay: within one code of the plain tone map and transfer functi
 }
 
 TEST_CASE("tonemap: greys stay grey and rise, colours below the shoulder are PBR Neutral's, anything is in 0..1") {
-    for (Tonemap method : {Tonemap::none, Tonemap::neutral, Tonemap::agx, Tonemap::agx_punchy}) {
+    for (const auto& [name, method] : tonemap_names()) {
+        INFO(name);
         float before = -1;
         for (int i = -40; i < 30; ++i) {
             const float g = std::exp2(float(i) / 3);
@@ -57,10 +58,46 @@ TEST_CASE("tonemap: greys stay grey and rise, colours below the shoulder are PBR
     CHECK(v.z == doctest::Approx(0.16));
 }
 
+TEST_CASE("tonemap aces: Hill's published curve, middle grey and white as the ACES transforms have them") {
+    // ACES 1.0 RRT + sRGB ODT shows 0.18 as 0.10 of the display's white; the matrices' rows sum to 1, so greys pass
+    // through the curve alone: (0.18^2 + 0.0245786 x 0.18 - 9.0537e-5) / (0.983729 x 0.18^2 + 0.432951 x 0.18 +
+    // 0.238081).
+    CHECK(tonemap({0.18f, 0.18f, 0.18f}, Tonemap::aces).y == doctest::Approx(0.036733611 / 0.347885).epsilon(1e-4));
+    CHECK(tonemap({1, 1, 1}, Tonemap::aces).y == doctest::Approx(1.024488 / 1.654761).epsilon(1e-4));
+    CHECK(tonemap({100, 100, 100}, Tonemap::aces).y == 1);
+    // A saturated blue leans to white as it brightens, and a red one too.
+    const Vec3f blue = tonemap({0, 0, 20}, Tonemap::aces), red = tonemap({20, 0, 0}, Tonemap::aces);
+    CHECK(blue.x > 0.02);
+    CHECK(blue.z == 1);
+    CHECK(red.y > 0.02);
+    // The fit dips below zero at black; the display does not.
+    CHECK(tonemap({0, 0, 0}, Tonemap::aces).x == 0);
+}
+
+TEST_CASE("tonemap reinhard: luminance by eq. 4, hue as it was, white at its white point") {
+    const Vec3f in{0.4f, 0.2f, 0.1f}, out = tonemap(in, Tonemap::reinhard);
+    const float l = luminance(in);
+    CHECK(luminance(out) == doctest::Approx(l * (1 + l / 16) / (1 + l)));
+    CHECK(out.x / out.y == doctest::Approx(2));
+    CHECK(out.y / out.z == doctest::Approx(2));
+    CHECK(tonemap({4, 4, 4}, Tonemap::reinhard).y == doctest::Approx(1));
+    CHECK(tonemap({3.9f, 3.9f, 3.9f}, Tonemap::reinhard).y < 1);
+}
+
+TEST_CASE("tonemap gamma22 and none: clipped, and shown by the one curve or the other") {
+    const Display gamma{Tonemap::gamma22, 2}, plain{Tonemap::none, 2};
+    CHECK(gamma.encoded({0.109f, 1, 0}).x == doctest::Approx(std::pow(0.218, 1 / 2.2)));
+    CHECK(gamma.encoded({0.109f, 1, 0}).y == 1);
+    CHECK(plain.encoded({0.107021f, 1, 0}).x == doctest::Approx(0.5).epsilon(1e-4));
+    CHECK(gamma.rgb8({0, 0.5f, 9})[1] == 255);
+}
+
 TEST_CASE("srgb_encode: the standard's fixed points") {
     CHECK(srgb_encode(0) == 0);
     CHECK(srgb_encode(1) == doctest::Approx(1));
     CHECK(srgb_encode(0.214041f) == doctest::Approx(0.5).epsilon(1e-4));
+    for (int i = 0; i <= 255; ++i)
+        CHECK(srgb_encode(srgb_decode(float(i) / 255)) == doctest::Approx(i / 255.0).epsilon(1e-5));
 }
 
 TEST_CASE("log_average_luminance: a constant's is the constant, two halves' the geometric mean, black's 0") {
