@@ -1,6 +1,7 @@
 #include "console.h"
 
 #include <fmt/core.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -44,8 +45,16 @@ void print_warnings(const std::vector<std::string>& warnings, const CommonOption
         fmt::print(stderr, "warning: {}{}{}\n", place, place.empty() ? "" : ": ", warning);
 }
 
+std::string clock_text(double seconds) {
+    const auto s = std::int64_t(std::clamp(seconds, 0.0, 1e9) + 0.5);
+    if (s < 3600) return fmt::format("{}:{:02}", s / 60, s % 60);
+    return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+}
+
 ProgressBar::ProgressBar(std::string title, const CommonOptions& options)
-    : title_(std::move(title)), on_(!options.quiet && !options.json && isatty(STDERR_FILENO)) {}
+    : title_(std::move(title)),
+      start_(std::chrono::steady_clock::now()),
+      on_(!options.quiet && !options.json && isatty(STDERR_FILENO)) {}
 
 ProgressBar::~ProgressBar() {
     if (!shown_.empty()) fmt::print(stderr, "\r\033[K");
@@ -57,9 +66,23 @@ Progress ProgressBar::callback() {
 }
 
 bool ProgressBar::update(std::string_view stage, double done) {
+    using Seconds = std::chrono::duration<double>;
+    const auto now = std::chrono::steady_clock::now();
+    // Ten times a second, or the terminal is what takes the time.
+    if (!on_ || (stage == stage_ && done < 1 && Seconds(now - drawn_).count() < 0.1)) return true;
+    if (stage != stage_) start_ = now;
+    stage_ = stage;
+    drawn_ = now;
     const int full = int(std::clamp(done, 0.0, 1.0) * 24);
-    const std::string line = fmt::format("{}  {:<8} [{}{}] {:3.0f} %", title_, stage, std::string(full, '#'),
-                                         std::string(24 - full, '.'), 100 * done);
+    std::string line = fmt::format("{}  {:<8} [{}{}] {:3.0f} %", title_, stage, std::string(full, '#'),
+                                   std::string(24 - full, '.'), 100 * done);
+    if (!detail_.empty()) line += "  " + detail_;
+    // By what has been done so far; too early it would jump about.
+    const double spent = Seconds(now - start_).count();
+    if (spent > 1 && done > 0.01 && done < 1) line += fmt::format("  {} left", clock_text(spent / done * (1 - done)));
+    // A line that wraps could not be taken back.
+    if (winsize window{}; ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 1)
+        line.resize(std::min(line.size(), std::size_t(window.ws_col) - 1));
     if (line == shown_) return true;
     shown_ = line;
     fmt::print(stderr, "\r{}\033[K", line);

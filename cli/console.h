@@ -5,6 +5,7 @@
 
 #include "arguments.h"
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -32,16 +33,23 @@ std::optional<int> begin_command(Arguments& arguments, const std::vector<std::st
 void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options,
                     const std::string& place = "");
 
-/// Long work's bar on stderr: drawn only on a terminal, never with --quiet or --json, removed at the end.
+/// "0:07", "12:30", "3:05:00".
+std::string clock_text(double seconds);
+
+/// Long work's bar on stderr, with the time left: drawn only on a terminal, never with --quiet or --json, removed at
+/// the end.
 class ProgressBar {
   public:
     ProgressBar(std::string title, const CommonOptions& options);
     ~ProgressBar();
     Progress callback();
+    /// What is shown behind the bar from the next update on: "22 samples, noise 0.012".
+    void detail(std::string text) { detail_ = std::move(text); }
+    bool update(std::string_view stage, double done);
 
   private:
-    bool update(std::string_view stage, double done);
-    std::string title_, shown_;
+    std::string title_, detail_, stage_, shown_;
+    std::chrono::steady_clock::time_point start_, drawn_;
     bool on_ = false;
 };
 

@@ -9,7 +9,7 @@ build_packages=(
     libhwy-dev          # SIMD chosen at run time
     libzstd-dev         # KTX2 supercompression
     libdraco-dev libmeshoptimizer-dev  # compressed glTF
-    libwebp-dev         # WebP textures
+    libwebp-dev         # WebP textures, animations
     libssl-dev          # SHA-256 (libcrypto only)
     libembree-dev       # rays; brings oneTBB
     libfmt-dev nlohmann-json3-dev libcli11-dev

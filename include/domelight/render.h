@@ -10,6 +10,7 @@
 #include "domelight/progress.h"
 #include "domelight/scene.h"
 
+#include <functional>
 #include <map>
 #include <memory>
 
@@ -43,8 +44,24 @@ enum class LightStrategy {
     brdf,         ///< by the surface
 };
 
-/// What shows where no surface is.
-enum class Background { environment, transparent };
+class LightMaps;
+
+/// What shows where no surface is. It does not light the scene.
+enum class Background {
+    environment,
+    blurred,      ///< the environment prefiltered for a roughness: RenderOptions::background_maps
+    colour,       ///< RenderOptions::background_colour
+    transparent,  ///< nothing: radiance is black there, opacity 0
+};
+
+/// How far a render is.
+struct RenderStatus {
+    double samples = 0;  ///< of a pixel, mean
+    double noise = 0;    ///< standard error of L / (1 + L), rms over the pixels that have two samples or more
+    double seconds = 0;  ///< since the start
+};
+
+struct RenderResult;
 
 struct RenderOptions {
     int width = 512, height = 512;
@@ -60,9 +77,19 @@ struct RenderOptions {
         true;  ///< false: no shadows, and no indirect light: what a shader without them must be compared with
     bool multiple_scattering = false;  ///< GGX's lost energy given back (Turquin 2019); glTF's own model does not
     Background background = Background::environment;
+    Vec3f background_colour;                     ///< linear radiance
+    float background_roughness = 0.35f;          ///< blurred: of the level that shows
+    const LightMaps* background_maps = nullptr;  ///< blurred: must be set, and outlive the call
     std::uint64_t seed = 0;
     int threads = 0;
     Progress progress;
+    /// Reference: told before each call of `progress`, and as seldom.
+    std::function<void(const RenderStatus&)> status;
+    /// Reference: where it is set, the picture as it stands (complete, with fewer samples) is handed over between
+    /// rounds whenever `checkpoint_wanted` says so, and once when `progress` has cancelled the rest. The final result
+    /// is the same.
+    std::function<void(const RenderResult&)> checkpoint;
+    std::function<bool()> checkpoint_wanted;  ///< empty: always
 };
 
 /// Layers, each width x height; RGB radiance unless said otherwise. Means over the pixel's samples.
@@ -90,6 +117,21 @@ EnvironmentSamplerOptions reference_sampler_options(LightStrategy strategy = Lig
 /// Same bits on any number of threads (unless stopped by the clock). Errors: "cancelled".
 Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSampler& sampler,
                                       const RenderOptions& options);
+
+/// Light that falls on an invisible ground under the scene, with it and without it: what a picture of the scene put
+/// into a photograph darkens it by.
+struct ShadowCatcher {
+    float height = 0;  ///< of the ground, +Y
+    int samples = 64;  ///< of each pixel
+};
+/// Puts the scene's shadow and the background into a picture that was rendered with Background::transparent and the
+/// same options. Where a camera ray passes the scene and meets the ground, the background is multiplied by E with the
+/// scene over E without it, E the irradiance of the environment and the scene's lights on the ground, each channel on
+/// its own, both from the same light directions, so that ground without shadow stays as it was to the last bit. Ground
+/// gives no light back to the scene. With a transparent background opacity becomes 1 - (1 - opacity) (E with / E
+/// without), of luminance, and radiance stays: a black shadow. Errors: "cancelled".
+Result<void> catch_shadow(RenderResult& picture, const RayScene& scene, const EnvironmentSampler& sampler,
+                          const ShadowCatcher& catcher, const RenderOptions& options);
 
 /// What of a scene's materials the renderers do not know: "clearcoat of 2 materials are left out", for a warning.
 std::vector<std::string> not_rendered(const Scene& scene);

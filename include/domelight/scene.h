@@ -174,5 +174,7 @@ Result<Scene> load_scene(const std::filesystem::path& file, const SceneOptions& 
 /// Scenes for when there is none: "spheres" (roughness from left to right, metal above dielectric), "ball" (a material
 /// ball on a plinth), "furnace" (one white sphere). Errors: another name.
 Result<Scene> built_in_scene(const std::string& name);
+/// The names that built_in_scene knows.
+std::vector<std::string> built_in_scene_names();
 
 }  // namespace domelight

@@ -170,14 +170,26 @@ Scene furnace() {
     return scene;
 }
 
+struct BuiltInScene {
+    const char* name;
+    Scene (*make)();
+};
+constexpr BuiltInScene k_scenes[] = {{"spheres", spheres}, {"ball", ball}, {"furnace", furnace}};
+
 }  // namespace
 
+std::vector<std::string> built_in_scene_names() {
+    std::vector<std::string> names;
+    for (const BuiltInScene& scene : k_scenes) names.emplace_back(scene.name);
+    return names;
+}
+
 Result<Scene> built_in_scene(const std::string& name) {
-    if (name == "spheres") return spheres();
-    if (name == "ball") return ball();
-    if (name == "furnace") return furnace();
-    return Error{fmt::format("there is no built-in scene '{}'", name.substr(0, 40)), "",
-                 "There are spheres, ball and furnace."};
+    for (const BuiltInScene& scene : k_scenes)
+        if (name == scene.name) return scene.make();
+    std::string names;
+    for (const BuiltInScene& scene : k_scenes) names += (names.empty() ? "" : ", ") + std::string(scene.name);
+    return Error{fmt::format("there is no built-in scene '{}'", name.substr(0, 40)), "", "There are " + names + "."};
 }
 
 }  // namespace domelight

@@ -20,6 +20,26 @@ Vec3d PixelSums::variance_of_mean() const {
     return {of(squares.x, radiance.x), of(squares.y, radiance.y), of(squares.z, radiance.z)};
 }
 
+RenderStatus StatusSums::after(int t, double seconds) {
+    Tile now;
+    for (const PixelSums& s : film_.tile(t)) {
+        now.samples += s.count;
+        ++now.pixels;
+        if (s.count < 2) continue;
+        const double noise = s.noise();
+        now.squared_noise += noise * noise;
+        ++now.with_noise;
+    }
+    Tile& old = tiles_[std::size_t(t)];
+    sum_.samples += now.samples - old.samples;
+    sum_.squared_noise += now.squared_noise - old.squared_noise;
+    sum_.pixels += now.pixels - old.pixels;
+    sum_.with_noise += now.with_noise - old.with_noise;
+    old = now;
+    return {sum_.samples / std::max(1, sum_.pixels),
+            std::sqrt(std::max(0.0, sum_.squared_noise) / std::max(1, sum_.with_noise)), seconds};
+}
+
 Result<void> check_size(int width, int height) {
     if (width >= 1 && height >= 1 && width <= 16384 && height <= 16384) return {};
     return Error{fmt::format("{} x {} is no size of a picture", width, height), "",

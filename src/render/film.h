@@ -60,6 +60,24 @@ class Film {
     std::vector<std::vector<PixelSums>> tiles_;
 };
 
+/// How far all is, kept up to date tile by tile. A tile's own sums may only be written by others before or after its
+/// call.
+class StatusSums {
+  public:
+    explicit StatusSums(Film& film) : film_(film), tiles_(std::size_t(film.tiles())) {}
+    /// After tile t was added to.
+    RenderStatus after(int t, double seconds);
+
+  private:
+    struct Tile {
+        double samples = 0, squared_noise = 0;
+        int pixels = 0, with_noise = 0;
+    };
+    Film& film_;
+    std::vector<Tile> tiles_;
+    Tile sum_;
+};
+
 /// Errors: a size that is no picture's.
 Result<void> check_size(int width, int height);
 /// The layers from the sums.

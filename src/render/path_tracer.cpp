@@ -4,8 +4,10 @@
 
 #include "render/path_tracer.h"
 
+#include "render/background.h"
 #include "render/camera.h"
 #include "render/path.h"
+#include "render/punctual.h"
 
 #include <algorithm>
 #include <cmath>
@@ -222,6 +224,9 @@ class Tracer final : public TileTracer {
                 look_up(room, false);
                 for (std::size_t i = 0; i < room.endings.size(); ++i)
                     room.endings[i].path->radiance = room.light.radiance(int(i));
+            } else {
+                for (const auto& ending : room.endings)
+                    ending.path->radiance = background_radiance(options_, sampler_, ending.direction);
             }
         } else if (options_.strategy != LightStrategy::environment) {
             look_up(room, options_.strategy == LightStrategy::mis);
@@ -281,26 +286,10 @@ class Tracer final : public TileTracer {
     /// A light of the scene's own.
     void light_up(Path& p, const Frame<float>& frame, const PunctualLight& light, int bounce,
                   std::int64_t& rays) const {
-        Vec3f direction = -light.direction;
-        float distance = std::numeric_limits<float>::infinity(), strength = 1;
-        if (light.kind != PunctualLight::Kind::directional) {
-            const Vec3f to = light.position - p.surface.position;
-            const float squared = dot(to, to);
-            distance = std::sqrt(squared);
-            if (!(distance > 0)) return;
-            direction = to / distance;
-            // KHR_lights_punctual, "Range property": falls to nothing at the range.
-            const float part = distance / light.range, fall = std::clamp(1 - part * part * part * part, 0.f, 1.f);
-            strength = fall / squared;
-            if (light.kind == PunctualLight::Kind::spot) {
-                const float cosine = -dot(direction, light.direction);
-                const float edge = std::clamp(
-                    (cosine - light.cos_outer) / std::max(0.001f, light.cos_inner - light.cos_outer), 0.f, 1.f);
-                strength *= edge * edge;
-            }
-        }
+        const auto [direction, distance, strength] = arrival_at(light, p.surface.position);
+        if (strength <= 0) return;
         const Vec3f L = frame.to_local(direction);
-        if (!(L.z > 0) || strength <= 0) return;
+        if (!(L.z > 0)) return;
         const Bsdf::Value f = p.surface.bsdf.evaluate(p.V, L);
         if (largest(f.sum()) <= 0) return;
         const Vec3f arriving = product(p.throughput, light.intensity) *

@@ -2,6 +2,7 @@
 
 #include "domelight/parallel.h"
 
+#include "render/background.h"
 #include "render/film.h"
 #include "render/path_tracer.h"
 
@@ -30,6 +31,7 @@ EnvironmentSamplerOptions reference_sampler_options(LightStrategy strategy, int 
 Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSampler& sampler,
                                       const RenderOptions& o) {
     if (auto fine = check_size(o.width, o.height); !fine) return fine.error();
+    if (auto fine = check_background(o); !fine) return fine.error();
     if (o.strategy == LightStrategy::environment && sampler.compensation() > 0)
         return Error{"a sampler with MIS compensation leaves out light that this strategy has no other way to find", "",
                      "Build it with reference_sampler_options(strategy)."};
@@ -41,8 +43,18 @@ Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSa
     std::atomic<int> tiles_done{0};
     std::mutex progress_mutex;
 
+    const auto picture = [&] {
+        RenderResult out = develop(film, o.width, o.height);
+        out.rays = rays;
+        out.seconds = seconds_since(start);
+        return out;
+    };
+    StatusSums status(film);
+    int rounds = 0;  // that were completed
+
     // One round: wanted(x, y) more samples for each pixel.
     const auto round = [&](const auto& wanted, double from, double to) {
+        if (rounds > 0 && o.checkpoint && (!o.checkpoint_wanted || o.checkpoint_wanted())) o.checkpoint(picture());
         tiles_done = 0;
         parallel_for(film.tiles(), o.threads, [&](int t) {
             if (cancelled) return;
@@ -54,10 +66,14 @@ Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSa
             const int done = ++tiles_done;
             if (o.progress) {
                 const std::lock_guard lock(progress_mutex);
+                if (o.status) o.status(status.after(t, seconds_since(start)));
                 if (!o.progress("render", from + (to - from) * done / film.tiles())) cancelled = true;
             }
         });
+        if (!cancelled) ++rounds;
     };
+    // A round adds no more than this, so that `progress` is asked now and then; with checkpoints, that little is lost.
+    const auto longest_round = [&](int total) { return o.checkpoint ? std::clamp(total / 4, 8, 1024) : 1024; };
 
     if (o.seconds > 0) {
         // Rounds that double, as long as the next one is likely to fit.
@@ -66,7 +82,7 @@ Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSa
             const double spent = seconds_since(start), left = o.seconds - spent;
             if (total > 0) {
                 if (left <= 0 || total >= o.most_samples) break;
-                add = std::min({add, o.most_samples - total, std::max(1, int(left / spent * total))});
+                add = std::min({add, longest_round(total), o.most_samples - total, std::max(1, int(left / spent * total))});
                 if (left < spent / total) break;
             }
             round([&](int, int) { return add; }, std::min(1.0, spent / o.seconds),
@@ -74,7 +90,14 @@ Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSa
             total += add;
         }
     } else {
-        round([&](int, int) { return std::max(1, o.samples); }, 0, o.noise > 0 ? 0.3 : 1);
+        const int wanted = std::max(1, o.samples);
+        const double end = o.noise > 0 ? 0.3 : 1;
+        int total = 0;
+        while (!cancelled && total < wanted) {
+            const int add = std::min(longest_round(total), wanted - total);
+            round([&](int, int) { return add; }, end * total / wanted, end * (total + add) / wanted);
+            total += add;
+        }
         for (int k = 0; o.noise > 0 && !cancelled && k < 24; ++k) {
             // Decided for all pixels before any is changed.
             ImageF wanted(o.width, o.height, 1);
@@ -93,11 +116,12 @@ Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSa
                   0.3 + 0.7 * (k + 1.0) / (k + 2.0));
         }
     }
-    if (cancelled) return Error{"cancelled", "", ""};
-    RenderResult out = develop(film, o.width, o.height);
-    out.rays = rays;
-    out.seconds = seconds_since(start);
-    return out;
+    if (cancelled) {
+        // Every pixel has samples, some tiles more of them: a picture too.
+        if (rounds > 0 && o.checkpoint) o.checkpoint(picture());
+        return Error{"cancelled", "", ""};
+    }
+    return picture();
 }
 
 }  // namespace domelight

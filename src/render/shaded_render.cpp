@@ -3,6 +3,7 @@
 #include "domelight/parallel.h"
 #include "domelight/sequences.h"
 
+#include "render/background.h"
 #include "render/camera.h"
 #include "render/film.h"
 #include "render/shading_models.h"
@@ -37,8 +38,7 @@ class ShadedTracer {
         for (int layer = 0; layer < most_layers && rest > 0; ++layer) {
             const Hit hit = rays_.intersect(ray, true);
             if (hit.instance < 0) {
-                if (options_.background == Background::environment)
-                    light = light + environment_.radiance(ray.direction) * rest;
+                light = light + background_radiance(options_, environment_, ray.direction) * rest;
                 break;
             }
             const SurfacePoint s = surface_at(scene_, hit, ray.origin, ray.direction, false);
@@ -114,6 +114,7 @@ std::string shading_model_name(ShadingModel model) {
 Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment,
                                    const ShadingOptions& shading, const RenderOptions& o) {
     if (auto fine = check_size(o.width, o.height); !fine) return fine.error();
+    if (auto fine = check_background(o); !fine) return fine.error();
     const auto start = std::chrono::steady_clock::now();
     const ShadedTracer tracer(scene, maps, environment, shading, o);
     Film film(o.width, o.height);

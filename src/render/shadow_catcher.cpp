@@ -1,0 +1,160 @@
+// The ground of a photograph under a scene that is not in it: only the shadow that the scene throws there is drawn.
+
+#include "domelight/colour.h"
+#include "domelight/parallel.h"
+#include "domelight/sequences.h"
+#include "domelight/warps.h"
+
+#include "render/background.h"
+#include "render/camera.h"
+#include "render/punctual.h"
+#include "render/surface.h"
+
+#include <atomic>
+#include <cmath>
+#include <mutex>
+
+namespace domelight {
+namespace {
+
+constexpr int k_most_passages = 64;
+constexpr int k_pixel_pair = 0, k_light_pair = 1, k_cosine_pair = 2;
+
+/// What one pixel's samples add up to.
+struct GroundSums {
+    Vec3d with, without;     ///< irradiance on the ground
+    Vec3d ground, beyond;    ///< background behind the ground, and where the ray meets none
+    double ground_part = 0;  ///< of the samples, transparent surfaces' share taken off
+};
+
+class ShadowTracer {
+  public:
+    ShadowTracer(const RayScene& scene, const EnvironmentSampler& sampler, const ShadowCatcher& catcher,
+                 const RenderOptions& options)
+        : rays_(scene.impl()),
+          scene_(scene.scene()),
+          sampler_(sampler),
+          options_(options),
+          height_(catcher.height),
+          camera_(options.camera, options.width, options.height),
+          passages_(has_passages(scene_)) {}
+
+    /// The same camera samples as render_reference's and render_shaded's, so that edges fit.
+    void sample(int x, int y, std::uint32_t index, GroundSums& sums) const {
+        const std::uint64_t key =
+            derive_key(options_.seed, std::uint64_t(y) * std::uint64_t(options_.width) + std::uint64_t(x));
+        const auto point = [&](int pair) { return sobol_owen(derive_key(key, std::uint64_t(pair)), index); };
+        const Ray ray = camera_.through(x, y, point(k_pixel_pair));
+        const float rest = transmittance(ray);
+        if (rest <= 0) return;
+        const Vec3d behind = Vec3d(background_radiance(options_, sampler_, ray.direction)) * double(rest);
+        const float distance = (height_ - ray.origin.y) / ray.direction.y;
+        // From below, the ground is not there.
+        if (!(distance > 0) || !(ray.direction.y < 0) || !std::isfinite(distance)) {
+            sums.beyond = sums.beyond + behind;
+            return;
+        }
+        sums.ground = sums.ground + behind;
+        sums.ground_part += rest;
+        const Vec3f p = ray.origin + ray.direction * distance;
+        light_ground({p.x, height_, p.z}, point(k_light_pair), point(k_cosine_pair), rest, sums);
+    }
+
+  private:
+    /// E with and without the scene at a point of the ground, one sample of each strategy by the balance heuristic.
+    void light_ground(const Vec3f& p, UnitPoint light_point, UnitPoint cosine_point, float weight,
+                      GroundSums& sums) const {
+        const auto add = [&](const Vec3f& direction, const Vec3f& light, float distance) {
+            const Vec3d all = Vec3d(light) * double(weight);
+            if (!(luminance(all) > 0)) return;
+            sums.without = sums.without + all;
+            sums.with = sums.with + all * double(visibility(p, direction, distance));
+        };
+        constexpr float far = std::numeric_limits<float>::infinity();
+        const LightSample light = sampler_.sample(light_point);
+        if (light.direction.y > 0) {
+            const float cosine = light.direction.y, pdf = light.pdf_solid_angle + cosine / float(k_pi);
+            add(light.direction, light.radiance * (cosine / pdf), far);
+        }
+        const Vec3f up = cosine_hemisphere(cosine_point), direction{up.x, up.z, up.y};
+        if (direction.y > 0) {
+            const LightSample there = sampler_.look_up(direction);
+            const float pdf = there.pdf_solid_angle + direction.y / float(k_pi);
+            add(direction, there.radiance * (direction.y / pdf), far);
+        }
+        for (const PunctualLight& l : scene_.lights) {
+            const PunctualArrival a = arrival_at(l, p);
+            if (a.strength > 0 && a.direction.y > 0)
+                add(a.direction, l.intensity * (a.strength * a.direction.y), a.distance);
+        }
+    }
+
+    float visibility(const Vec3f& p, const Vec3f& direction, float distance) const {
+        const Ray ray{p, direction, 0};
+        if (!passages_ && std::isinf(distance)) return rays_.occluded(ray) ? 0 : 1;
+        return transmittance(ray, distance);
+    }
+
+    float transmittance(Ray ray, float distance = std::numeric_limits<float>::infinity()) const {
+        float rest = 1;
+        for (int passage = 0; passage < k_most_passages && rest > 0; ++passage) {
+            const Hit hit = rays_.intersect(ray, false);
+            if (hit.instance < 0 || hit.distance >= distance) break;
+            if (!passages_) return 0;
+            rest *= 1 - opacity_at(scene_, hit);
+            pass(ray, hit);
+        }
+        return rest;
+    }
+
+    const RayScene::Impl& rays_;
+    const Scene& scene_;
+    const EnvironmentSampler& sampler_;
+    const RenderOptions& options_;
+    float height_;
+    CameraRays camera_;
+    bool passages_;
+};
+
+double ratio(double with, double without) {
+    return without > 0 ? with / without : 1;
+}
+
+}  // namespace
+
+Result<void> catch_shadow(RenderResult& picture, const RayScene& scene, const EnvironmentSampler& sampler,
+                          const ShadowCatcher& catcher, const RenderOptions& o) {
+    if (auto fine = check_background(o); !fine) return fine;
+    const ShadowTracer tracer(scene, sampler, catcher, o);
+    const int width = picture.radiance.width(), height = picture.radiance.height(),
+              samples = std::max(1, catcher.samples);
+    std::atomic<bool> cancelled{false};
+    std::atomic<int> done{0};
+    std::mutex progress_mutex;
+    parallel_for(height, o.threads, [&](int y) {
+        if (cancelled) return;
+        for (int x = 0; x < width; ++x) {
+            float& opacity = *picture.opacity.at(x, y);
+            if (opacity >= 1) continue;
+            GroundSums s;
+            for (int i = 0; i < samples; ++i) tracer.sample(x, y, std::uint32_t(i), s);
+            const Vec3d left{ratio(s.with.x, s.without.x), ratio(s.with.y, s.without.y), ratio(s.with.z, s.without.z)};
+            if (o.background == Background::transparent) {
+                opacity += float(s.ground_part / samples * (1 - ratio(luminance(s.with), luminance(s.without))));
+            } else {
+                const Vec3f behind((product(s.ground, left) + s.beyond) / double(samples));
+                float* p = picture.radiance.at(x, y);
+                p[0] += behind.x, p[1] += behind.y, p[2] += behind.z;
+            }
+        }
+        ++done;
+        if (o.progress) {
+            const std::lock_guard lock(progress_mutex);
+            if (!o.progress("shadow", double(done) / height)) cancelled = true;
+        }
+    });
+    if (cancelled) return Error{"cancelled", "", ""};
+    return {};
+}
+
+}  // namespace domelight
