@@ -75,13 +75,15 @@ Result<void> check_company(const RenderWords& w, const Arguments& a) {
         const char* option;
         bool fine;
         const char* what;
-    } rules[] = {{"--background-color", colour, "--background colour"},
-                 {"--background-roughness", blurred, "--background blurred"},
+    } rules[] = {{"--background-roughness", blurred, "--background blurred"},
                  {"--camera-target", !w.camera_position.empty(), "--camera-position"},
                  {"--fps", w.frames.has_value(), "--frames"},
                  {"--turn", w.frames.has_value(), "--frames"},
                  {"--resume", w.frames.has_value(), "--frames"},
                  {"--save-every", w.reference() && !w.frames && !w.study, "a single picture of --shading reference"}};
+    // (Its first spelling is not what Arguments::given looks for.)
+    if (!w.background_color.empty() && !colour)
+        return Error{"goes with --background colour only", "--background-color", ""};
     for (const auto& rule : rules)
         if (auto ok = needs(rule.option, rule.fine, rule.what); !ok) return ok;
     if (!w.camera.empty() && !w.camera_position.empty())

@@ -88,5 +88,5 @@ TEST_CASE("built-in scenes: seven roughnesses in metal above dielectric; a white
     CHECK(off < 1e-6f);
     const auto none = built_in_scene("teapot");
     REQUIRE(!none);
-    CHECK(none.error().format().find("spheres, ball and furnace") != std::string::npos);
+    CHECK(none.error().format().find("spheres, ball, furnace") != std::string::npos);
 }
