@@ -5,6 +5,7 @@
 #include "interruption.h"
 #include "preview/tonemap.h"
 #include "render_outputs.h"
+#include "render_study_command.h"
 #include "render_turntable.h"
 
 #include <fmt/core.h>
@@ -172,14 +173,23 @@ int run_render(const std::vector<std::string>& words) {
     scene_options.threads = w.threads();
     const std::string name = w.scene_name();
     const auto built_in = built_in_scene_names();
-    auto scene = std::ranges::count(built_in, name) ? built_in_scene(name) : load_scene(name, scene_options);
-    if (!scene) return print_error(scene.error());
-    print_warnings(scene->warnings, w.common, name);
-    print_warnings(not_rendered(*scene), w.common, name);
+    std::optional<Scene> scene;
+    if (!name.empty()) {
+        auto loaded = std::ranges::count(built_in, name) ? built_in_scene(name) : load_scene(name, scene_options);
+        if (!loaded) return print_error(loaded.error());
+        scene = std::move(*loaded);
+        print_warnings(scene->warnings, w.common, name);
+        print_warnings(not_rendered(*scene), w.common, name);
+    }
+    w.environment.threads = w.threads();
+    const auto open = [&] { return open_environment_or_sky(w.environment_files, w.environment); };
+    if (w.study) {
+        auto environment = open();
+        return environment ? run_study(w, std::move(scene), *environment) : print_error(environment.error());
+    }
     auto options = render_options(w, *scene);
     if (!options) return print_error(options.error());
-    w.environment.threads = w.threads();
-    auto environment = open_environment_or_sky(w.environment_files, w.environment);
+    auto environment = open();
     if (!environment) return print_error(environment.error());
 
     auto traced = RayScene::build(std::move(*scene));
