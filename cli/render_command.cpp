@@ -164,7 +164,8 @@ int run_render(const std::vector<std::string>& words) {
          "domelight render helmet.glb --env sunset.hdr -o truth.exr,truth.png --spp 256",
          "domelight render ball --env sunset.hdr --shading split-sum -o engine.png",
          "domelight render helmet.glb --background transparent --shadow-catcher -o cut-out.png",
-         "domelight render ball --frames 60 --spp 32 -o turn/ball.png"});
+         "domelight render ball --frames 60 --spp 32 -o ball.png",
+         "domelight render --study --env sunset.hdr -o study"});
     declare(arguments, w);
     if (const auto code = begin_command(arguments, words, w.common)) return *code;
     if (auto ok = check_words(w, arguments); !ok) return print_error(ok.error(), exit_usage);

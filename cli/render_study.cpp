@@ -30,13 +30,19 @@ ImageF round_light(double diameter_deg) {
     ImageF image(width, height, 3);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            int inside = 0;
-            for (int k = 0; k < points * points; ++k) {
-                const double u = (x + (k % points + 0.5) / points) / width,
-                             v = (y + (k / points + 0.5) / points) / height;
-                const double phi = 2 * k_pi * (u - 0.5), theta = k_pi * v;
-                const Vec3d d{std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
-                inside += dot(d, towards) >= cosine;
+            // How far the texel's middle is from the edge decides for most.
+            const auto direction = [&](double i, double j) {
+                const double phi = 2 * k_pi * (i / width - 0.5), theta = k_pi * j / height;
+                return Vec3d{std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
+            };
+            const double off = std::acos(std::clamp(dot(direction(x + 0.5, y + 0.5), towards), -1.0, 1.0)) - radius;
+            if (off > k_pi / height) continue;
+            int inside = points * points;
+            if (off > -k_pi / height) {
+                inside = 0;
+                for (int k = 0; k < points * points; ++k)
+                    inside += dot(direction(x + (k % points + 0.5) / points, y + (k / points + 0.5) / points),
+                                  towards) >= cosine;
             }
             for (int c = 0; c < 3; ++c) image.at(x, y)[c] += float(radiance * inside / double(points * points));
         }
@@ -180,6 +186,16 @@ Result<StrategyFigure> study_light_strategies(const StudyScene& study, StudyLigh
     figure.reference_samples = 16 * o.samples;
     const double cells = double(figure.roughness.size() * figure.lights.size()) * 2;
     Work work(o.progress, cells * (figure.reference_samples + 3.0 * o.samples));
+    // Of each light: with the whole density, and with the compensated one that goes with MIS.
+    std::vector<std::vector<EnvironmentSampler>> samplers;
+    for (const StudyLight& light : figure.lights) {
+        samplers.emplace_back();
+        for (const LightStrategy s : {LightStrategy::environment, LightStrategy::mis}) {
+            auto sampler = sampler_for(light, s, o.threads);
+            if (!sampler) return sampler.error();
+            samplers.back().push_back(std::move(*sampler));
+        }
+    }
     for (const double roughness : figure.roughness) {
         const auto scene = RayScene::build(with_roughness(study.scene, roughness));
         if (!scene) return scene.error();
@@ -187,14 +203,11 @@ Result<StrategyFigure> study_light_strategies(const StudyScene& study, StudyLigh
             for (const bool occlusion : {false, true}) {
                 RenderOptions r = base_options(study, o);
                 r.occlusion = occlusion;
-                std::optional<EnvironmentSampler> sampler;
                 const auto draw = [&](LightStrategy strategy, int samples, std::uint64_t seed) -> Result<RenderResult> {
-                    auto made = sampler_for(figure.lights[std::size_t(l)], strategy, o.threads);
-                    if (!made) return made.error();
                     r.strategy = strategy;
                     r.samples = samples;
                     r.seed = seed;
-                    return work.render(*scene, *made, r, samples);
+                    return work.render(*scene, samplers[std::size_t(l)][strategy == LightStrategy::mis], r, samples);
                 };
                 // Another seed: the same points would have the same errors.
                 const auto truth = draw(LightStrategy::mis, figure.reference_samples, derive_key(o.seed, 0x54727574));

@@ -34,7 +34,8 @@ Image<std::uint8_t> page(int width, int height, const std::string& title, const 
     return image;
 }
 
-/// Stops that bring the log-average luminance of several pictures to a little above middle grey.
+/// Stops that bring the log-average luminance of several pictures to a little above middle grey; darkness counts as a
+/// twentieth of the mean, so that a black background does not burn out what it surrounds.
 double common_ev(const std::vector<const ImageF*>& pictures) {
     double mean = 0, sum = 0, n = 0;
     const auto each = [&](const auto& use) {
@@ -44,7 +45,7 @@ double common_ev(const std::vector<const ImageF*>& pictures) {
     };
     each([&](double l) { mean += l, n += 1; });
     if (!(mean > 0)) return 0;
-    each([&](double l) { sum += std::log(std::max(l, 1e-3 * mean / n)); });
+    each([&](double l) { sum += std::log(std::max(l, 0.05 * mean / n)); });
     return std::log2(0.25 / std::exp(sum / n));
 }
 

@@ -18,6 +18,7 @@ import sys
 import tempfile
 import time
 import traceback
+import zlib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -63,7 +64,10 @@ def named_files(value):
 
 
 def test_examples_in_every_help_run(folder):
-    for command in ["bake", "compare", "info", "lights", "sample", "sky"]:
+    shutil.copy(folder / "evening.hdr", folder / "sunset.hdr")
+    (folder / "helmet.glb").write_bytes(make_glb())
+    smaller = {"render": ["--width", "8", "--height", "8", "--spp", "1", "--quiet"]}  # the last of an option counts
+    for command in ["bake", "compare", "info", "lights", "render", "sample", "sky"]:
         text = run(command, "--help", folder=folder).stdout
         assert text.startswith("Examples:\n"), f"{command} --help does not open with examples"
         examples = [line.strip() for line in text.split("\n\n")[0].splitlines()[1:]]
@@ -71,7 +75,7 @@ def test_examples_in_every_help_run(folder):
         for example in examples:
             words = example.split()
             assert words[:2] == ["domelight", command], example
-            run(*words[1:], folder=folder)
+            run(*words[1:], *smaller.get(command, []), *(["--frames", "2"] if "--frames" in words else []), folder=folder)
     overview = run("--help", folder=folder).stdout
     for line in overview.split("\n\n")[0].splitlines()[1:]:
         run(*line.split()[1:], "--quiet", folder=folder)
@@ -173,6 +177,39 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["sample", "--estimate", "--view", "0,-1,0"], "below the surface"),
         (["sample", "--estimate", "--compensate"], "with and without"),
         (["sample", "a.hdr", "b.hdr"], "one environment at a time"),
+        (["render", "-o", "o.png"], "spheres, ball, furnace"),
+        (["render", "spheres"], "-o picture.png"),
+        (["render", "spheres", "-o", "o.jpg"], ".exr, .hdr, .png"),
+        (["render", "spheres", "-o", "o.png", "--nonsense"], "--shading"),
+        (["render", "spheres", "-o", "o.png", "--width", "0"], "from 1 to 16384"),
+        (["render", "spheres", "-o", "o.png", "--tonemap", "film"], "agx, agx-punchy, neutral, aces, reinhard, gamma22, none"),
+        (["render", "spheres", "-o", "o.png", "--ev", "lots"], "number"),
+        (["render", "spheres", "-o", "o.png", "--background", "black"], "environment, blurred, colour, color, transparent"),
+        (["render", "spheres", "-o", "o.png", "--background-color", "red"], "#rrggbb"),
+        (["render", "spheres", "-o", "o.png", "--background-color", "#12345"], "#rrggbb"),
+        (["render", "spheres", "-o", "o.png", "--background-color", "1,2"], "R,G,B"),
+        (["render", "spheres", "-o", "o.png", "--background-color", "1,2,-3"], "R,G,B"),
+        (["render", "spheres", "-o", "o.png", "--background", "blurred", "--background-color", "1,1,1"], "--background colour"),
+        (["render", "spheres", "-o", "o.png", "--background-roughness", "0.5"], "--background blurred"),
+        (["render", "spheres", "-o", "o.png", "--background", "blurred", "--background-roughness", "2"], "from 0 to 1"),
+        (["render", "spheres", "-o", "o.png", "--camera-target", "0,1,0"], "--camera-position"),
+        (["render", "spheres", "-o", "o.png", "--camera-position", "0,1"], "x,y,z"),
+        (["render", "spheres", "-o", "o.png", "--camera-position", "0,1,inf"], "finite"),
+        (["render", "spheres", "-o", "o.png", "--camera", "1", "--camera-position", "0,1,5"], "--camera-position"),
+        (["render", "spheres", "-o", "o.png", "--camera", "side"], "1 \"camera\""),
+        (["render", "spheres", "-o", "o.png", "--frames", "1"], "from 2 to 9999"),
+        (["render", "spheres", "-o", "o.png", "--fps", "10"], "--frames"),
+        (["render", "spheres", "-o", "o.png", "--turn", "environment"], "--frames"),
+        (["render", "spheres", "-o", "o.png", "--frames", "2", "--turn", "scene"], "camera, environment"),
+        (["render", "spheres", "-o", "o.png", "--frames", "2", "--fps", "0"], "from 1 to 1000"),
+        (["render", "spheres", "-o", "o.png", "--frames", "2", "--turn", "environment", "--maps", "baked", "--shading", "split-sum"], "--maps"),
+        (["render", "spheres", "-o", "o.png", "--resume"], "--frames"),
+        (["render", "spheres", "-o", "o.png", "--save-every", "5", "--shading", "split-sum"], "--shading reference"),
+        (["render", "spheres", "-o", "o.png", "--save-every", "-1"], "from 0"),
+        (["render", "--study", "-o", "o.exr"], "a folder nor a .png"),
+        (["render", "--study", "-o", "o", "--frames", "3"], "--study"),
+        (["render", "--study", "-o", "o", "--shading", "phong"], "--study"),
+        (["render", "--study"], "-o picture.png"),
     ]
     for words, text in cases:
         result = run(*words, folder=folder, code=2)
@@ -714,6 +751,257 @@ def test_lights_without_a_light(folder):
 
 
 # --- compare ---
+
+
+TINY = ["--width", "16", "--height", "12", "--spp", "4"]
+
+
+def test_render_writes_each_format_and_tells(folder):
+    said = json.loads(run("render", "ball", "-o", "a.exr,a.png", "-o", "a.hdr", *TINY, "--json", folder=folder).stdout)
+    assert said["files"] == ["a.exr", "a.png", "a.hdr"] and (said["width"], said["height"]) == (16, 12)
+    assert said["samples"] == 4 and said["shading"] == "reference" and said["rays"] > 0 and 0 < said["noise"] < 1 and said["warnings"] == []
+    assert png_of(folder / "a.png")[:3] == (16, 12, 3)
+    for threads in [1, 3]:
+        run("render", "ball", "-o", f"b{threads}.exr,b{threads}.png", *TINY, "--shadow-catcher", "--threads", threads, folder=folder)
+    for extension in ["exr", "png"]:
+        assert (folder / f"b1.{extension}").read_bytes() == (folder / f"b3.{extension}").read_bytes()
+
+
+def test_render_takes_the_camera_that_is_asked_for(folder):
+    (folder / "two.glb").write_bytes(make_glb())
+    sizes = {}
+    for camera in ["1", "2", "front", "wide"]:
+        said = json.loads(run("render", "two.glb", "-o", f"{camera}.png", "--width", 24, "--spp", 1, "--camera", camera, "--json", folder=folder).stdout)
+        sizes[camera] = (said["width"], said["height"])
+    assert sizes == {"1": (24, 24), "front": (24, 24), "2": (24, 12), "wide": (24, 12)}, sizes
+    assert (folder / "1.png").read_bytes() == (folder / "front.png").read_bytes() and (folder / "2.png").read_bytes() == (folder / "wide.png").read_bytes()
+    said = json.loads(run("render", "two.glb", "-o", "h.png", "--height", 10, "--spp", 1, "--camera", "wide", "--json", folder=folder).stdout)
+    assert (said["width"], said["height"]) == (20, 10)
+    error = run("render", "two.glb", "-o", "o.png", "--camera", "3", folder=folder, code=2).stderr
+    assert '1 "front", 2 "wide"' in error
+
+
+def test_render_backgrounds(folder):
+    (folder / "model.glb").write_bytes(make_glb())
+
+    def picture(name, *words):
+        run("render", "model.glb", "-o", f"{name}.png", *TINY, *words, folder=folder)
+        return png_of(folder / f"{name}.png")
+
+    # Shown as it was given, whatever the exposure and the tone map make of the scene.
+    for name, words in {"hex": ["--background-color", "#336699"], "float": ["--background-color", "0.0331047666,0.13286832,0.318546778"],
+                        "word": ["--background", "color", "--background-colour", "#336699", "--tonemap", "aces", "--ev", "3"]}.items():
+        width, _, channels, pixels = picture(name, *words)
+        assert channels == 3 and tuple(pixels[:3]) == (0x33, 0x66, 0x99), (name, tuple(pixels[:3]))
+    assert tuple(picture("white", "--background", "colour")[3][:3]) == (255, 255, 255)
+    _, _, channels, clear = picture("clear", "--background", "transparent")
+    assert channels == 4 and clear[3] == 0 and clear[4 * (6 * 16 + 8) + 3] == 255
+    sharp, blurred = picture("sharp", "--tonemap", "gamma22")[3], picture("blurred", "--background", "blurred", "--tonemap", "gamma22")[3]
+    middle = 3 * (6 * 16 + 8)
+    assert sharp[:3] != blurred[:3]
+    # Exposure is what the surfaces ask for: the same ball, whatever is behind it.
+    ball = slice(3 * (6 * 16 + 7), 3 * (6 * 16 + 9))
+    white, hexed = picture("w2", "--background", "colour")[3][ball], picture("h2", "--background-color", "#000000")[3][ball]
+    assert white == hexed
+    seen, cut = picture("seen", "--background", "environment")[3], clear
+    for c in range(3):
+        # (The edge's pixels have some of the background in them.)
+        assert abs(seen[middle + c] - cut[4 * (6 * 16 + 8) + c]) <= 6, (tuple(seen[middle:middle + 3]), tuple(cut[4 * (6 * 16 + 8):][:3]))
+    looks = {name: bytes(picture(name, "--tonemap", name)[3]) for name in ["agx", "agx-punchy", "neutral", "aces", "reinhard", "gamma22", "none"]}
+    assert len(set(looks.values())) == len(looks)
+
+
+def test_render_catches_the_shadow(folder):
+    view = ["--camera-position", "0,6,8", "--width", "32", "--height", "24", "--spp", "16"]
+    run("render", "furnace", "-o", "bare.png", *view, "--background", "transparent", folder=folder)
+    run("render", "furnace", "-o", "shadow.png", *view, "--background", "transparent", "--shadow-catcher", folder=folder)
+    (_, _, _, bare), (_, _, _, shadow) = png_of(folder / "bare.png"), png_of(folder / "shadow.png")
+    darker = 0
+    for i in range(0, len(bare), 4):
+        assert shadow[i + 3] >= bare[i + 3]
+        if bare[i + 3] == 255:
+            assert shadow[i:i + 4] == bare[i:i + 4]
+        elif bare[i + 3] == 0 and shadow[i + 3]:
+            assert tuple(shadow[i:i + 3]) == (0, 0, 0)
+            darker += shadow[i + 3] > 100
+    assert darker > 10
+    run("render", "furnace", "-o", "white.png", *view, "--background", "colour", "--shadow-catcher", folder=folder)
+    white = png_of(folder / "white.png")[3]
+    assert tuple(white[:3]) == (255, 255, 255) and sum(white[i] < 200 for i in range(0, len(white), 3)) > 30
+
+
+def test_render_turntable(folder):
+    words = ["render", "ball", "-o", "t.png,t.exr", "--width", "16", "--height", "16", "--spp", "1", "--frames", "4", "--fps", "8"]
+    said = json.loads(run(*words, "--json", folder=folder).stdout)
+    names = [f"t_{i:04}" for i in range(1, 5)]
+    assert said["frames"] == [[f"{n}.png", f"{n}.exr"] for n in names] and said["animations"] == ["t.webp"] and said["drawn"] == 4
+    assert {p.name for p in folder.glob("t*")} == {f"{n}.{e}" for n in names for e in ["png", "exr"]} | {"t.webp"}
+    assert webp_frames((folder / "t.webp").read_bytes()) == (16, 16, [125] * 4)
+    whole = files_of(folder)
+    assert len({whole[f"{n}.png"] for n in names}) == 4
+    # What is missing is drawn again, the same; what is there stays as it is.
+    (folder / "t_0003.png").unlink()
+    (folder / "t.webp").unlink()
+    said = json.loads(run(*words, "--resume", "--json", folder=folder).stdout)
+    assert said["drawn"] == 1 and said["kept"] == 3
+    assert files_of(folder) == whole
+    # Frame 1 is the picture itself, and light that goes round changes it.
+    run("render", "ball", "-o", "one.exr", "--width", "16", "--height", "16", "--spp", "1", folder=folder)
+    assert (folder / "one.exr").read_bytes() == (folder / "t_0001.exr").read_bytes()
+    run(*[w.replace("t.png,t.exr", "e.exr") for w in words], "--turn", "environment", folder=folder)
+    assert (folder / "e_0001.exr").read_bytes() == (folder / "t_0001.exr").read_bytes() != (folder / "e_0002.exr").read_bytes()
+    assert not (folder / "e.webp").exists()
+    error = run(*[w.replace("t.png,t.exr", "no/t.png") for w in words], folder=folder, code=1).stderr
+    assert "no/t_0001.png" in error
+
+
+def test_an_interrupted_render_leaves_the_last_complete_file(folder):
+    run("render", "ball", "-o", "o.png", *TINY, folder=folder)
+    before = (folder / "o.png").read_bytes()
+
+    def interrupted(*words, until, number=signal.SIGINT):
+        process = subprocess.Popen([PROGRAM, "render", "ball", *words, "--spp", "1000000"], cwd=folder, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 60
+        while not until() and time.monotonic() < deadline:
+            time.sleep(0.05)
+        process.send_signal(number)
+        error = process.communicate(timeout=60)[1]
+        assert process.returncode == -number and error.startswith("interrupted: "), (process.returncode, error)
+        return error
+
+    start = time.monotonic()
+    later = lambda: time.monotonic() > start + 1.5
+    small = ["--width", "16", "--height", "16"]
+    assert "nothing was written to o.png" in interrupted("-o", "o.png", *small, until=later)
+    assert (folder / "o.png").read_bytes() == before
+    start = time.monotonic()
+    interrupted("-o", "o.png", *small, until=later, number=signal.SIGTERM)
+    assert (folder / "o.png").read_bytes() == before
+    assert "new.png holds the picture of" in interrupted("-o", "new.png", *small, "--save-every", "0.2", until=(folder / "new.png").exists)
+    assert png_of(folder / "new.png")[:3] == (16, 16, 3)
+    # Frames that are complete are named.
+    process = subprocess.Popen([PROGRAM, "render", "ball", "-o", "f.png", *small, "--frames", "2000", "--spp", "64"], cwd=folder,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    while not (folder / "f_0002.png").exists():
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    error = process.communicate(timeout=60)[1]
+    last = len(list(folder.glob("f_*.png")))
+    assert process.returncode == -signal.SIGINT and f"frames 1-{last} of 2000 exist; --resume" in error, error
+    assert not [p for p in folder.iterdir() if p.name.startswith(".")]
+
+
+def test_render_shows_samples_noise_and_time_left_on_a_terminal(folder):
+    import pty
+
+    ours, theirs = pty.openpty()
+    process = subprocess.Popen([PROGRAM, "render", "ball", "-o", "o.png", "--width", "48", "--time", "2.5"], cwd=folder,
+                               stdout=subprocess.DEVNULL, stderr=theirs)
+    os.close(theirs)
+    text = b""
+    try:
+        while piece := os.read(ours, 4096):
+            text += piece
+    except OSError:
+        pass  # its end, on Linux
+    os.close(ours)
+    assert process.wait(60) == 0
+    text = text.decode()
+    assert re.search(r"ball +render +\[#*\.*\] +\d+ %  \d+ samples, noise 0\.\d+  0:0\d left", text), text[-400:]
+    assert text.endswith("\r\x1b[K"), "the bar is not taken back"
+
+
+def test_render_study(folder):
+    small = ["--study", "--width", "12", "--spp", "2", "--env", "evening.hdr"]
+    said = json.loads(run("render", *small, "-o", "study", "--json", folder=folder).stdout)
+    assert said["files"] == ["study/strategies.png", "study/noise.png", "study/split-sum.png", "study/study.json"]
+    assert all((folder / f).is_file() for f in said["files"]) and said["environment"] == "evening"
+    stored = json.loads((folder / "study/study.json").read_text())
+    for key in ["strategies", "noise", "split_sum"]:
+        assert stored[key] == said[key], key
+    cells = stored["strategies"]["cells"]
+    assert len(cells) == 2 * 4 * 5 * 3
+    error = {(c["occlusion"], c["roughness"], c["light_deg"], c["strategy"]): c["tone_mapped_rmse"] for c in cells}
+    for occlusion in [False, True]:
+        # Veach's figure: each of the two fails where the other does well, and MIS is near the better one everywhere.
+        assert error[occlusion, 0.8, 2, "env"] < 0.3 * error[occlusion, 0.8, 2, "brdf"]
+        assert error[occlusion, 0.05, 90, "brdf"] < 0.3 * error[occlusion, 0.05, 90, "env"]
+    lines = stored["noise"]["lines"]
+    assert {(l["occlusion"], l["strategy"]) for l in lines} == {(o, s) for o in [False, True] for s in ["env", "brdf", "mis"]}
+    assert all(l["slope"] < -0.4 for l in lines if l["strategy"] == "mis")
+    parts = stored["split_sum"]["parts"]
+    assert [p["occlusion"] for p in parts] == [False, True] and all(len(p["error"]) == 11 and len(p["error"][0]) == 10 for p in parts)
+    assert parts[0]["tone_mapped_rmse"] < parts[1]["tone_mapped_rmse"]
+    run("render", "spheres", *small, "-o", "sheet.png", "--spp", "1", "--width", "4", folder=folder)
+    assert png_of(folder / "sheet.png")[0] > 800
+    assert not (folder / "sheet").exists()
+    (folder / "file").write_text("mine")
+    run("render", *small, "-o", "file", folder=folder, code=1)
+
+
+def make_glb():
+    """A tetrahedron with two cameras: "front", square, and "wide", twice as wide as high."""
+    corners = [(0, 1, 0), (-1, -1, 1), (1, -1, 1), (0, -1, -1)]
+    faces = [0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2]
+    buffer = b"".join(struct.pack("<3f", *c) for c in corners) + struct.pack("<12H", *faces)
+    document = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
+        "nodes": [{"mesh": 0, "name": "tetrahedron"}, {"camera": 0, "translation": [0, 0, 5], "name": "front"},
+                  {"camera": 1, "translation": [0.5, 0, 6], "name": "wide"}],
+        "cameras": [{"type": "perspective", "name": name, "perspective": {"yfov": 0.8, "aspectRatio": aspect, "znear": 0.1}}
+                    for name, aspect in [("front", 1), ("wide", 2)]],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "buffers": [{"byteLength": len(buffer)}],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-1, -1, -1], "max": [1, 1, 1]},
+                      {"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}],
+    }
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(buffer), 0x004E4942) + buffer
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
+def png_of(file):
+    """(width, height, channels, bytes) of an 8-bit PNG."""
+    data, at, packed = file.read_bytes(), 8, b""
+    while at < len(data):
+        size, kind = struct.unpack(">I4s", data[at:at + 8])
+        body = data[at + 8:at + 8 + size]
+        if kind == b"IHDR":
+            width, height, depth, colour = struct.unpack(">IIBB", body[:10])
+        packed += body if kind == b"IDAT" else b""
+        at += 12 + size
+    channels = {0: 1, 2: 3, 6: 4}[colour]
+    raw, stride, rows, above = zlib.decompress(packed), channels * width, bytearray(), bytearray(channels * width)
+    for y in range(height):
+        kind, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for i in range(stride):
+            a, b, c = line[i - channels] if i >= channels else 0, above[i], above[i - channels] if i >= channels else 0
+            p = a + b - c
+            paeth = a if abs(p - a) <= min(abs(p - b), abs(p - c)) else b if abs(p - b) <= abs(p - c) else c
+            line[i] = (line[i] + [0, a, b, (a + b) // 2, paeth][kind]) & 255
+        rows += line
+        above = line
+    assert depth == 8
+    return width, height, channels, bytes(rows)
+
+
+def webp_frames(data):
+    """(width, height, milliseconds of each frame) of an animated WebP."""
+    assert data[:4] == b"RIFF" and data[8:12] == b"WEBP" and struct.unpack("<I", data[4:8])[0] + 8 == len(data)
+    at, durations, size = 12, [], None
+    while at < len(data):
+        kind, length = struct.unpack("<4sI", data[at:at + 8])
+        body = data[at + 8:at + 8 + length]
+        number = lambda offset: int.from_bytes(body[offset:offset + 3], "little")
+        if kind == b"VP8X":
+            size = (number(4) + 1, number(7) + 1)
+        if kind == b"ANMF":
+            durations.append(number(12))
+        at += 8 + length + (length & 1)
+    return *size, durations
 
 
 def test_compare_tells_and_fails_by_a_limit(folder):
