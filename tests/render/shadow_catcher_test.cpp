@@ -64,6 +64,13 @@ std::optional<Vec3f> ground_at(const RenderOptions& o, int x, int y) {
     return m.translation - d * (m.translation.y / d.y);
 }
 
+/// Looks at the ground beside the ball, where its shadow is deepest.
+void look_close(World& w, int size, int samples) {
+    w.options.width = w.options.height = size;
+    w.options.samples = samples;
+    w.options.camera = look_at({0, 3, 7}, {0, 0, 1.2f}, 0.2f);
+}
+
 ImageF constant(float value) {
     return ImageF(16, 8, 3, value);
 }
@@ -71,9 +78,10 @@ ImageF constant(float value) {
 }  // namespace
 
 TEST_CASE("catch_shadow: under a constant sky a ball takes its form factor from the ground") {
-    const World w = ball_above(constant(0.7f));
+    World w = ball_above(constant(0.7f));
+    look_close(w, 32, 256);
     const RenderResult r = caught(w, Background::transparent);
-    double error = 0;
+    double caught_sum = 0, exact_sum = 0;
     int n = 0;
     for (int y = 0; y < w.options.height; ++y)
         for (int x = 0; x < w.options.width; ++x) {
@@ -83,12 +91,71 @@ TEST_CASE("catch_shadow: under a constant sky a ball takes its form factor from 
             // Of a sphere that is above the horizon as a whole: R^2 cos / d^2 (Howell's catalogue, B-43).
             const float d = length(Vec3f{0, k_high, 0} - *p), factor = k_high / (d * d * d);
             const double difference = *r.opacity.at(x, y) - factor;
-            CHECK(std::abs(difference) < 0.1);  // 64 samples
-            error += difference, ++n;
+            CHECK(std::abs(difference) < 0.06);  // 256 samples
+            caught_sum += *r.opacity.at(x, y), exact_sum += factor, ++n;
             for (int c = 0; c < 3; ++c) CHECK(r.radiance.at(x, y)[c] == 0);
         }
-    REQUIRE(n > 2000);
-    CHECK(std::abs(error / n) < 5e-4);
+    REQUIRE(n > 1000);
+    CHECK(caught_sum / exact_sum == doctest::Approx(1).epsilon(0.008));
+}
+
+TEST_CASE("catch_shadow: under a sky the ground darkens as a white Lambert floor does") {
+    SkyOptions sky;
+    sky.height = 32;
+    sky.sun_elevation_deg = 50;
+    const auto rows = make_sky(sky);
+    auto image = read_latlong(*rows);
+    REQUIRE(image);
+    World w = ball_above(*image);
+    look_close(w, 32, 256);
+    const RenderResult r = caught(w, Background::colour);
+    const auto floor = [&](bool ball) {
+        Scene scene;
+        add(scene, floor_mesh(200, 0), lambert_material(1));
+        if (ball) add(scene, sphere_mesh(48), lambert_material(0), {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, k_high, 0}});
+        const auto traced = RayScene::build(std::move(scene));
+        REQUIRE(traced);
+        RenderOptions o = w.options;
+        o.bounces = 0;
+        o.seed = 1;
+        auto picture = render_reference(*traced, w.sampler, o);
+        REQUIRE(picture);
+        return std::move(*picture);
+    };
+    const RenderResult with = floor(true), without = floor(false);
+    double caught_sum[3] = {}, floor_sum[3] = {};
+    int n = 0;
+    for (int y = 0; y < w.options.height; ++y)
+        for (int x = 0; x < w.options.width; ++x) {
+            if (!ground_at(w.options, x, y) || *r.depth.at(x, y) < 1e9f) continue;
+            const float colour[] = {0.5f, 0.25f, 2};
+            for (int c = 0; c < 3; ++c) {
+                caught_sum[c] += 1 - r.radiance.at(x, y)[c] / colour[c];
+                floor_sum[c] += 1 - with.radiance.at(x, y)[c] / without.radiance.at(x, y)[c];
+            }
+            ++n;
+        }
+    REQUIRE(n > 900);
+    // The light that is taken away, of all there was.
+    for (int c = 0; c < 3; ++c) CHECK(caught_sum[c] / floor_sum[c] == doctest::Approx(1).epsilon(0.012));
+}
+
+TEST_CASE("catch_shadow: with few samples the shadow is noisy, but not too light") {
+    SkyOptions sky;
+    sky.height = 32;
+    const auto rows = make_sky(sky);
+    const auto image = read_latlong(*rows);
+    REQUIRE(image);
+    World w = ball_above(*image);
+    const auto mean = [&](int size, int samples) {
+        look_close(w, size, samples);
+        const RenderResult r = caught(w, Background::transparent);
+        double sum = 0;
+        for (const float o : r.opacity.pixels()) sum += o;
+        return sum / double(r.opacity.pixels().size());
+    };
+    const double many = mean(32, 256);
+    CHECK(mean(128, 4) == doctest::Approx(many).epsilon(0.02));
 }
 
 TEST_CASE("catch_shadow: a lamp's shadow is where the ball stands before it, and nowhere else") {
