@@ -76,15 +76,16 @@ Image<std::uint8_t> strategy_picture(const StrategyFigure& f, const std::string&
     constexpr LightStrategy order[] = {LightStrategy::brdf, LightStrategy::environment, LightStrategy::mis};
     const int size = f.cells.front().picture.width(), step = size + k_gap, row_step = size + 26,
               columns = int(f.lights.size()), rows = int(f.roughness.size());
-    const int gutter = 54, block = columns * step, between = 26, head = 118, section = 72 + rows * row_step;
+    const int gutter = 54, block = columns * step, between = 26, head = 132, section = 72 + rows * row_step;
     const int width = k_margin + gutter + 3 * block + 2 * between + k_margin;
     auto image = page(width, head + 2 * section + k_margin, "Where should light directions come from?",
                       {fmt::format("{}. Rows: roughness. Columns: how wide the one light in the dark is; the last, a "
                                    "whole environment. {} samples a pixel.",
                                    scene, f.samples),
-                       fmt::format("Below each: RMSE of L/(1+L){} against {} samples of MIS. Green: the best of the "
-                                   "three (within 10 %). Orange: more than twice its error. Red: more than five times.",
-                                   f.one_object ? " over the ball" : "", f.reference_samples)});
+                       fmt::format("Below each: RMSE of L/(1+L){} against {} samples of MIS.",
+                                   f.one_object ? " over the ball" : "", f.reference_samples),
+                       "Green: the best of the three (within 10 %). Orange: more than twice its error. Red: more than "
+                       "five times."});
     const auto view = image.view();
     std::vector<double> ev;
     for (int l = 0; l < columns; ++l) {
@@ -216,9 +217,10 @@ void draw_table(ImageView<std::uint8_t> page, int left, int top, const Table& t,
     for (int i = 0; i <= 4; ++i)
         draw_text(page, x0 + i * width / 4, y0 + height + 20, fmt::format("{:g}", i / 4.0), FontSize::small, k_quiet,
                   Align::centre);
-    draw_text(page, x0 + width / 2, y0 + height + 40, "NdotV: grazing to head-on", FontSize::small, k_ink,
+    draw_text(page, x0 + width / 2, y0 + height + 42, "to the right: NdotV, grazing to head-on", FontSize::small, k_ink,
               Align::centre);
-    const int scale = y0 + height + 56;
+    draw_text(page, x0 + width / 2, y0 + height + 62, "upwards: roughness", FontSize::small, k_ink, Align::centre);
+    const int scale = y0 + height + 78;
     for (int x = 0; x < width; ++x) {
         const double part = double(x) / (width - 1);
         fill(page, {x0 + x, scale, 1, 14}, colour_of(t, t.high * (t.is_signed ? 2 * part - 1 : part)));
@@ -241,7 +243,7 @@ Image<std::uint8_t> split_sum_picture(const SplitSumFigure& f, const std::string
     const int size = f.pictures.front().width(), step = size + k_gap, rows = int(f.roughness.size());
     const int table = k_table_gutter + f.bins * k_square + 18, gutter = 210, head = 136;
     const int strips = 28 + 3 * step + 24, width = 2 * k_margin + std::max(4 * table, gutter + rows * step);
-    const int table_height = 30 + rows * k_square + 56 + 44;
+    const int table_height = 30 + rows * k_square + 78 + 44;
     const auto& off = f.parts[0];
     const auto& on = f.parts[1];
     auto image = page(

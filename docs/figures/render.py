@@ -16,7 +16,7 @@ with tempfile.TemporaryDirectory() as folder:
         subprocess.run([PROGRAM, *map(str, words), "--quiet"], cwd=folder, check=True)
 
     domelight("render", "spheres", "-o", HERE / "render_shadow.png", "--width", 640, "--height", 260, "--spp", 128, "--background", "blurred",
-              "--shadow-catcher", "--camera-position", "3,4,9", "--camera-target", "0,-0.1,0", "--fov-deg", 23, "--rotate-y-deg", 60)
+              "--shadow-catcher", "--camera-position", "4,2.2,10", "--camera-target", "0,0.25,0", "--fov-deg", 22, "--rotate-y-deg", 150)
     domelight("render", "--study", "-o", "study", "--width", 56)
     for name in ["strategies", "split-sum"]:
         shutil.copy(pathlib.Path(folder) / f"study/{name}.png", HERE / f"render_{name}.png")
