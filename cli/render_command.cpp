@@ -141,13 +141,18 @@ int run_picture(const RenderWords& w, const RayScene& scene, const EnvironmentSa
 
 }  // namespace
 
+/// For all but "reference".
+ShadingModel shading_model(const RenderWords& w) {
+    for (const ShadingModel m : {ShadingModel::phong, ShadingModel::mirror, ShadingModel::refract})
+        if (shading_model_name(m) == w.shading) return m;
+    return ShadingModel::split_sum;
+}
+
 Result<RenderResult> draw(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler,
                           const LightMaps* maps, const RenderOptions& o) {
     if (w.reference()) return render_reference(scene, sampler, o);
     ShadingOptions shading;
-    for (const ShadingModel m :
-         {ShadingModel::split_sum, ShadingModel::phong, ShadingModel::mirror, ShadingModel::refract})
-        if (shading_model_name(m) == w.shading) shading.model = m;
+    shading.model = shading_model(w);
     shading.sh_irradiance = w.irradiance == "sh";
     shading.bent_lookup = w.bent_lookup;
     shading.multiple_scattering = w.multiple_scattering;
@@ -180,7 +185,7 @@ int run_render(const std::vector<std::string>& words) {
         if (!loaded) return print_error(loaded.error());
         scene = std::move(*loaded);
         print_warnings(scene->warnings, w.common, name);
-        print_warnings(not_rendered(*scene), w.common, name);
+        print_warnings(w.reference() ? not_rendered(*scene) : not_rendered(*scene, shading_model(w)), w.common, name);
     }
     w.environment.threads = w.threads();
     const auto open = [&] { return open_environment_or_sky(w.environment_files, w.environment); };

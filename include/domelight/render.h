@@ -73,8 +73,13 @@ struct RenderOptions {
     int most_samples = 65536;
     double seconds = 0;  ///< > 0: stop after so long; the result then depends on the machine
     int bounces = 0;     ///< of indirect light; 0: direct light with shadows
+    /// How many surfaces a path may go through (KHR_materials_transmission), reflections inside a body counted, before
+    /// they count as bounces: what is seen through glass is direct light. Glass casts a full shadow: what it lets
+    /// through onto other surfaces is indirect light, and needs a bounce.
+    int refractions = 16;
     bool occlusion =
-        true;  ///< false: no shadows, and no indirect light: what a shader without them must be compared with
+        true;  ///< false: no shadows, and no indirect light: what a shader without them must be compared with. Glass
+               ///< then shows the environment in the direction refracted at its first surface, through its `thickness`
     bool multiple_scattering = false;  ///< GGX's lost energy given back (Turquin 2019); glTF's own model does not
     Background background = Background::environment;
     Vec3f background_colour;                     ///< linear radiance
@@ -133,7 +138,7 @@ struct ShadowCatcher {
 Result<void> catch_shadow(RenderResult& picture, const RayScene& scene, const EnvironmentSampler& sampler,
                           const ShadowCatcher& catcher, const RenderOptions& options);
 
-/// What of a scene's materials the renderers do not know: "clearcoat of 2 materials are left out", for a warning.
+/// What of a scene's materials render_reference does not know: "clearcoat of 2 materials is left out", for a warning.
 std::vector<std::string> not_rendered(const Scene& scene);
 
 /// A camera that looks from `eye` at `target`, +Y up.

@@ -56,6 +56,10 @@ struct ShadingOptions {
     bool occlusion = true;  ///< occlusion textures, with specular occlusion (Lagarde and de Rousiers 2014, 4.10.2)
 };
 
+/// What of a scene's materials a model does not know, for a warning; of mirror and refract, which know next to nothing
+/// of materials, not said.
+std::vector<std::string> not_rendered(const Scene& scene, ShadingModel model);
+
 /// Draws with one of them: the same camera, samples and layers (radiance, opacity, diffuse, specular, albedo, normal,
 /// depth, object) as render_reference. No shadows: compare with RenderOptions::occlusion = false. `environment` is the
 /// background and what mirror and refract read.

@@ -19,6 +19,13 @@ inline float largest(const Vec3f& c) {
     return std::max({c.x, c.y, c.z});
 }
 
+/// What only paths in scenes with layered materials need.
+struct PathLayers {
+    LayeredBsdf bsdf;     ///< of the surface, where it has any
+    bool inside = false;  ///< of a body
+    LayeredBsdf body;     ///< the surface where it was entered
+};
+
 /// One sample of a pixel on its way.
 struct Path {
     int pixel = 0;            ///< in the tile
@@ -29,7 +36,10 @@ struct Path {
     float pdf_brdf = 0;  ///< with which the ray was drawn; 0: by the camera
     Hit hit;
     SurfacePoint surface;
-    Vec3f V;  ///< local
+    Vec3f V;                       ///< local
+    PathLayers* layers = nullptr;  ///< null in scenes without
+    int passages = 0;              ///< refractions, and reflections inside bodies: they are no bounces
+    bool passing = false;          ///< the ray is another one
     /// Of what arrives along the path: the share of the first surface's diffuse lobe.
     Vec3f diffuse_share;
 
@@ -43,7 +53,8 @@ struct Path {
     /// Light that arrives after `bounce` bounces, parted among the layers.
     void add(const Vec3f& light, int bounce) {
         radiance = radiance + light;
-        (bounce == 0 ? direct : indirect) = (bounce == 0 ? direct : indirect) + light;
+        const bool first = bounce <= passages;
+        (first ? direct : indirect) = (first ? direct : indirect) + light;
         const Vec3f below = product(light, diffuse_share);
         diffuse = diffuse + below;
         specular = specular + (light - below);
@@ -68,6 +79,11 @@ constexpr int brdf_pair(int bounce) {
 }
 constexpr int chance_pair(int bounce) {
     return 3 + k_pairs_a_bounce * bounce;
+}
+
+/// Beyond any path's bounces, for what few surfaces ask for.
+constexpr int shift_pair(int bounce) {
+    return (1 << 20) + bounce;
 }
 
 /// Light that arrives at a path's surface unless something hides it.

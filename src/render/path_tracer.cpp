@@ -8,6 +8,7 @@
 #include "render/camera.h"
 #include "render/path.h"
 #include "render/punctual.h"
+#include "render/surface_lobes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,11 +28,13 @@ class Tracer final : public TileTracer {
           sampler_(sampler),
           options_(options),
           camera_(options.camera, options.width, options.height),
-          passages_(has_passages(scene_)) {}
+          passages_(has_passages(scene_)),
+          layers_(has_layers(scene_)) {}
 
     std::int64_t trace(int x0, int y0, int columns, std::span<const int> count,
                        std::span<PixelSums> sums) const override {
         Workspace room;
+        std::vector<PathLayers> layers(layers_ ? k_path_batch : 0);
         std::vector<Path>& paths = room.paths;
         std::int64_t rays = 0;
         const auto flush = [&] {
@@ -45,6 +48,10 @@ class Tracer final : public TileTracer {
             for (int i = 0; i < count[pixel]; ++i) {
                 paths.emplace_back();
                 start(paths.back(), pixel, x, y, std::uint32_t(first + i));
+                if (layers_) {
+                    paths.back().layers = &layers[paths.size() - 1];
+                    paths.back().layers->inside = false;
+                }
                 if (int(paths.size()) == k_path_batch) flush();
             }
         }
@@ -84,9 +91,8 @@ class Tracer final : public TileTracer {
     float visibility(const SurfacePoint& s, const Vec3f& direction, std::int64_t& rays,
                      float distance = std::numeric_limits<float>::infinity()) const {
         if (!options_.occlusion) return 1;
-        const float side = dot(direction, s.geometric_normal);
-        if (side <= 0) return 0;
-        Ray ray{s.position + s.geometric_normal * s.error, direction, 0};
+        if (s.blocks(direction)) return 0;
+        Ray ray = s.ray_to(direction);
         if (!passages_ && std::isinf(distance)) {
             ++rays;
             return rays_.occluded(ray) ? 0 : 1;
@@ -110,11 +116,13 @@ class Tracer final : public TileTracer {
         for (int bounce = 0; !alive.empty(); ++bounce) {
             find(alive, bounce, room, rays);
             next.clear();
-            for (Path* p : alive)
+            for (Path* p : alive) {
+                if (p->layers) travel(*p);
                 if (p->hit.instance >= 0) {
                     if (arrive(*p, bounce)) next.push_back(p);
                 } else
                     room.endings.push_back({p, p->ray.direction});
+            }
             escape(room, bounce - 1);
             std::swap(alive, next);
             // A light direction for each, all at once.
@@ -187,8 +195,7 @@ class Tracer final : public TileTracer {
                      Workspace& room, std::int64_t& rays) const {
         const SurfacePoint& s = p.surface;
         if (options_.occlusion && !passages_) {
-            if (dot(direction, s.geometric_normal) <= 0) return;
-            room.shadows.push_back({&p, {s.position + s.geometric_normal * s.error, direction, 0}, diffuse, specular});
+            if (!s.blocks(direction)) room.shadows.push_back({&p, s.ray_to(direction), diffuse, specular});
             return;
         }
         if (const float seen = visibility(s, direction, rays); seen > 0) p.add(diffuse * seen, specular * seen, bounce);
@@ -196,7 +203,15 @@ class Tracer final : public TileTracer {
 
     /// At a surface: adds what it emits. Whether there is one to light.
     bool arrive(Path& p, int bounce) const {
-        p.surface = surface_at(scene_, p.hit, p.ray.origin, p.ray.direction, options_.multiple_scattering);
+        if (p.layers) {
+            const UnitPoint shift = options_.multiple_scattering ? p.point(shift_pair(bounce)) : UnitPoint{};
+            p.surface = surface_at(scene_, p.hit, p.ray.origin, p.ray.direction, options_.multiple_scattering,
+                                   &p.layers->bsdf, shift);
+            // Without shadows there is no side that light cannot come from.
+            if (!options_.occlusion) p.layers->bsdf.geometric_normal = {0, 0, 1};
+        } else {
+            p.surface = surface_at(scene_, p.hit, p.ray.origin, p.ray.direction, options_.multiple_scattering);
+        }
         const SurfacePoint& s = p.surface;
         if (bounce == 0) {
             p.covered = true;
@@ -207,7 +222,8 @@ class Tracer final : public TileTracer {
         }
         if (const Vec3f e = product(p.throughput, s.emission); largest(e) > 0) {
             p.radiance = p.radiance + e;
-            (bounce <= 1 ? p.direct : p.indirect) = (bounce <= 1 ? p.direct : p.indirect) + e;
+            const bool first = bounce - p.passages <= 1;
+            (first ? p.direct : p.indirect) = (first ? p.direct : p.indirect) + e;
             if (bounce > 0) {
                 const Vec3f below = product(e, p.diffuse_share);
                 p.diffuse = p.diffuse + below;
@@ -274,12 +290,12 @@ class Tracer final : public TileTracer {
     void light_up(Path& p, const Frame<float>& frame, const Vec3f& direction, const Vec3f& radiance, float pdf,
                   int bounce, Workspace& room, std::int64_t& rays) const {
         const Vec3f L = frame.to_local(direction);
-        if (!(L.z > 0) || largest(radiance) <= 0) return;
-        const Bsdf::Value f = p.surface.bsdf.evaluate(p.V, L);
+        if (!(L.z > 0 || p.surface.layers) || largest(radiance) <= 0) return;
+        const Bsdf::Value f = p.surface.evaluate_cosine(p.V, L);
         if (largest(f.sum()) <= 0) return;
-        const float other = options_.strategy == LightStrategy::mis ? p.surface.bsdf.pdf_solid_angle(p.V, L) : 0;
+        const float other = options_.strategy == LightStrategy::mis ? p.surface.pdf_solid_angle(p.V, L) : 0;
         // The balance heuristic's weight over the density: 1 / (p_light + p_brdf).
-        const Vec3f light = product(p.throughput, radiance) * (L.z / (pdf + other));
+        const Vec3f light = product(p.throughput, through_sheet(p.surface, L, radiance)) * (1 / (pdf + other));
         add_if_seen(p, direction, product(f.diffuse, light), product(f.specular, light), bounce, room, rays);
     }
 
@@ -289,34 +305,47 @@ class Tracer final : public TileTracer {
         const auto [direction, distance, strength] = arrival_at(light, p.surface.position);
         if (strength <= 0) return;
         const Vec3f L = frame.to_local(direction);
-        if (!(L.z > 0)) return;
-        const Bsdf::Value f = p.surface.bsdf.evaluate(p.V, L);
+        if (!(L.z > 0 || p.surface.layers)) return;
+        const Bsdf::Value f = p.surface.evaluate_cosine(p.V, L);
         if (largest(f.sum()) <= 0) return;
-        const Vec3f arriving = product(p.throughput, light.intensity) *
-                               (strength * L.z * visibility(p.surface, direction, rays, distance));
+        const Vec3f arriving = product(p.throughput, through_sheet(p.surface, L, light.intensity)) *
+                               (strength * visibility(p.surface, direction, rays, distance));
         p.add(product(f.diffuse, arriving), product(f.specular, arriving), bounce);
+    }
+
+    /// Light that reaches the inside of a body's surface, when it can only have come through a sheet: no other side
+    /// hides it, or what hides is left out.
+    static Vec3f through_sheet(const SurfacePoint& s, const Vec3f& L, const Vec3f& light) {
+        if (!s.layers || !s.layers->volume || !s.front || L.z > 0) return light;
+        return product(light, s.layers->through(s.layers->thickness));
     }
 
     /// Sends the path on by the BRDF. Whether there is more to come of it.
     bool scatter(Path& p, const Frame<float>& frame, int bounce, Workspace& room) const {
-        const bool last = bounce >= options_.bounces || !options_.occlusion;
-        // Nothing beyond, and no light that way either.
-        if (last && options_.strategy == LightStrategy::environment) return false;
         const SurfacePoint& s = p.surface;
-        const Bsdf::Sample b = s.bsdf.sample(p.V, p.point(brdf_pair(bounce)));
+        bool last = bounce - p.passages >= options_.bounces || !options_.occlusion;
+        // Nothing beyond, and no light that way either.
+        if (last && options_.strategy == LightStrategy::environment && !s.layers) return false;
+        const UnitPoint u = p.point(brdf_pair(bounce));
+        const Bsdf::Sample b =
+            s.layers ? s.layers->sample(p.V, u, unit_float(p.point(chance_pair(bounce)).x)) : s.bsdf.sample(p.V, u);
         if (!(b.pdf_solid_angle > 0)) return false;
         const Vec3f direction = frame.to_world(b.L);
-        if (options_.occlusion && dot(direction, s.geometric_normal) <= 0) return false;
-        const Bsdf::Value f = s.bsdf.evaluate(p.V, b.L);
+        if (options_.occlusion && s.blocks(direction)) return false;
+        const Bsdf::Value f = s.evaluate_cosine(p.V, b.L);
         const Vec3f sum = f.sum();
         if (bounce == 0) {
             const auto share = [](float part, float all) { return all > 0 ? part / all : 0; };
             p.diffuse_share = {share(f.diffuse.x, sum.x), share(f.diffuse.y, sum.y), share(f.diffuse.z, sum.z)};
         }
-        p.throughput = product(p.throughput, sum) * (b.L.z / b.pdf_solid_angle);
+        p.throughput = product(p.throughput, sum) * (1 / b.pdf_solid_angle);
         if (!(largest(p.throughput) > 0)) return false;
         p.pdf_brdf = b.pdf_solid_angle;
+        if (s.layers && pass_boundary(p, options_.occlusion ? dot(direction, s.geometric_normal) < 0 : b.L.z < 0))
+            last = false;
         if (last) {
+            if (options_.strategy == LightStrategy::environment) return false;
+            if (p.layers) leave(p);
             room.endings.push_back({&p, direction});
             return false;
         }
@@ -325,8 +354,35 @@ class Tracer final : public TileTracer {
             if (unit_float(p.point(chance_pair(bounce)).y) >= survive) return false;
             p.throughput = p.throughput / survive;
         }
-        p.ray = {s.position + s.geometric_normal * s.error, direction, 0};
+        p.ray = s.ray_to(direction);
         return true;
+    }
+
+    /// Keeps track of which body the path is in. Whether it goes on without this being a bounce: through a surface, or
+    /// staying inside a body, while the allowance lasts.
+    bool pass_boundary(Path& p, bool behind) const {
+        const LayeredBsdf& layers = *p.surface.layers;
+        const bool passage = behind || (layers.volume && !p.surface.front);
+        if (layers.volume && behind) {
+            p.layers->inside = p.surface.front;
+            if (p.surface.front) p.layers->body = layers;
+        }
+        p.passing = passage && p.passages < options_.refractions && options_.occlusion;
+        return p.passing;
+    }
+
+    /// Counts the passage that a path's ray was, and what the body that it crossed takes from it (Beer's law).
+    static void travel(Path& p) {
+        p.passages += p.passing;
+        p.passing = false;
+        if (p.hit.instance < 0)
+            leave(p);
+        else if (p.layers->inside)
+            p.throughput = product(p.throughput, p.layers->body.through(p.hit.distance));
+    }
+    /// A body of which no other side was found is a sheet of its stated thickness.
+    static void leave(Path& p) {
+        if (p.layers->inside) p.throughput = product(p.throughput, p.layers->body.through(p.layers->body.thickness));
     }
 
     static void store(const Path& p, PixelSums& s) {
@@ -357,6 +413,7 @@ class Tracer final : public TileTracer {
     const RenderOptions& options_;
     CameraRays camera_;
     bool passages_;
+    bool layers_;
 };
 
 }  // namespace
