@@ -252,11 +252,3 @@ TEST_CASE("render: wrong sizes, empty scenes and a cancelled one are errors") {
     o.strategy = LightStrategy::environment;
     CHECK(!render_reference(scene, *compensated, o));
 }
-
-TEST_CASE("render: says which lobes of a material it does not know") {
-    Scene scene = one(sphere_mesh(8), metal_material(0.5f));
-    CHECK(not_rendered(scene).empty());
-    scene.materials[0].clearcoat = 1;
-    scene.materials[0].sheen_color = {0.1f, 0, 0};
-    CHECK(not_rendered(scene).size() == 2);
-}
