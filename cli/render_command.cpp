@@ -50,7 +50,7 @@ void declare(Arguments& a, RenderWords& w) {
     a.texts("--env", "ENV", w.environment_files, "the environment (the built-in sky)");
     add_environment_options(a, w.environment);
     a.group("How it is computed");
-    a.choice("--shading", w.shading, {"reference", "split-sum", "phong", "mirror", "refract"},
+    a.choice("--shading", w.shading, {"reference", "split-sum", "stretched", "phong", "mirror", "refract"},
              "reference = path tracing; the others as a real-time engine draws them from baked maps (reference)");
     a.choice("--strategy", w.strategy, {"mis", "env", "brdf"}, "reference: where light directions come from (mis)");
     a.integer("--spp", "N", w.spp, "samples of each pixel (64)");
@@ -61,9 +61,14 @@ void declare(Arguments& a, RenderWords& w) {
     a.choice("--occlusion", w.occlusion, {"on", "off"},
              "off: no shadows, no indirect light, no occlusion maps, as a shader without them (on)");
     a.flag("--multiple-scattering", w.multiple_scattering, "gives back what single scattering loses on rough surfaces");
-    a.text("--maps", "DIR", w.maps, "split-sum, phong: what `domelight bake` wrote (baked in memory)");
+    a.text("--maps", "DIR", w.maps, "split-sum, stretched, phong: what `domelight bake` wrote (baked in memory)");
     a.choice("--irradiance", w.irradiance, {"cube", "sh"},
-             "split-sum, phong: the irradiance cube, or nine harmonics (cube)");
+             "split-sum, stretched, phong: the irradiance cube, or nine harmonics (cube)");
+    a.choice("--lookup", w.lookup, {"environment", "cube", "latlong", "sphere-map", "dual-paraboloid"},
+             "mirror, refract: the texture that is read, made from the environment (none: the environment itself)");
+    a.integer("--lookup-size", "N", w.lookup_size, "its size: of a face, its height, or of each disc (512)");
+    a.choice("--brdf", w.brdf, {"scene", "phong"},
+             "phong: modified Phong lobes of matching width instead of GGX, the truth for --shading phong (scene)");
     a.flag("--bent-lookup", w.bent_lookup, "split-sum: the lookup leans towards the normal on rough surfaces");
     a.integer("--seed", "N", w.seed, "another randomisation (0)");
     a.number("--save-every", "SECONDS", w.save_every,
@@ -143,7 +148,8 @@ int run_picture(const RenderWords& w, const RayScene& scene, const EnvironmentSa
 
 /// For all but "reference".
 ShadingModel shading_model(const RenderWords& w) {
-    for (const ShadingModel m : {ShadingModel::phong, ShadingModel::mirror, ShadingModel::refract})
+    for (const ShadingModel m :
+         {ShadingModel::stretched, ShadingModel::phong, ShadingModel::mirror, ShadingModel::refract})
         if (shading_model_name(m) == w.shading) return m;
     return ShadingModel::split_sum;
 }
@@ -153,6 +159,10 @@ Result<RenderResult> draw(const RenderWords& w, const RayScene& scene, const Env
     if (w.reference()) return render_reference(scene, sampler, o);
     ShadingOptions shading;
     shading.model = shading_model(w);
+    for (const MapLookup l : {MapLookup::environment, MapLookup::cube, MapLookup::latlong, MapLookup::sphere_map,
+                              MapLookup::dual_paraboloid})
+        if (map_lookup_name(l) == w.lookup) shading.lookup = l;
+    shading.lookup_size = w.lookup_size.value_or(shading.lookup_size);
     shading.sh_irradiance = w.irradiance == "sh";
     shading.bent_lookup = w.bent_lookup;
     shading.multiple_scattering = w.multiple_scattering;
@@ -184,6 +194,8 @@ int run_render(const std::vector<std::string>& words) {
         auto loaded = std::ranges::count(built_in, name) ? built_in_scene(name) : load_scene(name, scene_options);
         if (!loaded) return print_error(loaded.error());
         scene = std::move(*loaded);
+        if (w.brdf == "phong")
+            for (Material& m : scene->materials) m.phong = true;
         print_warnings(scene->warnings, w.common, name);
         print_warnings(w.reference() ? not_rendered(*scene) : not_rendered(*scene, shading_model(w)), w.common, name);
     }

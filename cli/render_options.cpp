@@ -25,6 +25,7 @@ Result<void> check_numbers(const RenderWords& w) {
         double value, low, high;
     } ranges[] = {{"--spp", double(w.spp.value_or(64)), 1, 1 << 20},
                   {"--bounces", double(w.bounces.value_or(4)), 0, 1000},
+                  {"--lookup-size", double(w.lookup_size.value_or(512)), 1, 8192},
                   {"--fov-deg", w.fov_deg, 0.1, 170},
                   {"--noise", w.noise, 0, 1},
                   {"--time", w.time, 0, 1e6},

@@ -19,8 +19,8 @@ struct RenderWords {
     std::vector<std::string> scenes, environment_files, outputs;
     EnvironmentOptions environment;
     std::string shading = "reference", strategy = "mis", occlusion = "on", background, maps, tonemap = "agx",
-                irradiance = "cube";
-    std::optional<int> width, height, spp, bounces, seed;
+                irradiance = "cube", lookup = "environment", brdf = "scene";
+    std::optional<int> width, height, spp, bounces, seed, lookup_size;
     std::vector<double> camera_position, camera_target;
     std::string camera;
     double fov_deg = 35, noise = 0, time = 0, save_every = 0;

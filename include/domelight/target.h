@@ -74,4 +74,11 @@ Result<const Target*> find_target(const std::string& name);
 /// roughness = level / (levels - 1); 0 for a single level.
 double linear_roughness(int level, int levels, int size);
 
+/// Levels of a target's cube chain whose first has `size`^2 texels a face: down to its smallest.
+int default_levels(const Target& target, int size);
+
+/// Phong's exponents where none are given: the environment itself (infinity), then 2048 and a quarter of that with each
+/// level, as its texels double; at least 1.
+std::vector<double> default_phong_exponents(int levels);
+
 }  // namespace domelight

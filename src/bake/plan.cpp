@@ -20,14 +20,6 @@ bool is_phong(Lobe lobe) {
     return lobe == Lobe::phong_brdf || lobe == Lobe::phong_plain;
 }
 
-/// Phong's exponents where none are given: the environment itself, then 2048 and a quarter of that with each level, as
-/// its texels double.
-std::vector<double> default_exponents(int levels) {
-    std::vector<double> exponents{INFINITY};
-    for (int l = 1; l < levels; ++l) exponents.push_back(std::max(1.0, 2048 * std::pow(0.25, l - 1)));
-    return exponents;
-}
-
 LevelPlan glossy_level(Lobe lobe, int size, double roughness) {
     // Charlie has no mirror: its lobe lies along the horizon.
     if (lobe == Lobe::charlie) roughness = std::max(roughness, k_charlie_least_roughness);
@@ -105,9 +97,7 @@ Result<int> level_count(const Target& target, const BakeOptions& o, int size, La
     if (listed && o.levels && std::size_t(*o.levels) != listed)
         return option_error("--levels", fmt::format("{} levels, but {} names {}", *o.levels, list, listed));
     const int most = layout == Layout::latlong && chain ? most_texture_levels(size) : most_levels(size);
-    int levels = listed ? int(listed) : o.levels ? *o.levels : 1;
-    if (!listed && !o.levels)
-        while (levels < std::min(most_levels(size), most) && (size >> levels) >= target.smallest) ++levels;
+    const int levels = listed ? int(listed) : o.levels ? *o.levels : std::min(most, default_levels(target, size));
     if (levels < 1 || levels > most_levels(size))
         return option_error(listed ? list : "--levels", fmt::format("{} levels, but a map of size {} has from 1 to {}",
                                                                     levels, size, most_levels(size)));
@@ -170,7 +160,7 @@ Result<TargetPlan> plan_target(const Target& target, const BakeOptions& o) {
         const int size = o.size.value_or(scale * target.size);
         const auto levels = level_count(target, o, size, plan.layout, is_chain(plan.container));
         if (!levels) return levels.error();
-        const auto exponents = o.exponents.empty() ? default_exponents(*levels) : o.exponents;
+        const auto exponents = o.exponents.empty() ? default_phong_exponents(*levels) : o.exponents;
         for (int l = 0; l < *levels; ++l) {
             const int level_size = size >> l;
             const double roughness = o.roughness.empty() ? target.roughness(l, *levels, size / scale) : o.roughness[l];

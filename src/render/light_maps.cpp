@@ -2,9 +2,11 @@
 #include "domelight/prefilter.h"
 #include "domelight/projection.h"
 #include "domelight/shading.h"
+#include "domelight/target.h"
 #include "domelight/texture.h"
 
 #include "image/bordered_cube.h"
+#include "render/environment_map.h"
 
 #include <fmt/core.h>
 
@@ -16,8 +18,9 @@
 namespace domelight {
 
 struct LightMaps::Impl {
+    Lobe lobe = Lobe::ggx;
     std::vector<BorderedCube> specular;
-    std::vector<float> roughness;  ///< of each level, rising
+    std::vector<float> roughness;  ///< of each level, rising; of a Phong chain the one that matches its exponent
     std::vector<BorderedCube> irradiance_over_pi;
     std::vector<Vec3d> sh_irradiance;
     ImageF brdf;
@@ -30,20 +33,23 @@ LightMaps& LightMaps::operator=(LightMaps&&) noexcept = default;
 
 namespace {
 
-/// Bilinear, on across the edges.
-Vec3f look_up(const BorderedCube& cube, const Vec3f& direction) {
-    const CubePoint p = cube_point(Vec3d(direction));
-    const int n = cube.size();
-    const float x = float(p.uv.u * n) - 0.5f, y = float(p.uv.v * n) - 0.5f;
-    const int i = std::clamp(int(std::floor(x)), -1, n - 1), j = std::clamp(int(std::floor(y)), -1, n - 1);
-    const float s = x - float(i), t = y - float(j);
-    const float *a = cube.texel(p.face, i, j), *b = cube.texel(p.face, i + 1, j), *c = cube.texel(p.face, i, j + 1),
-                *d = cube.texel(p.face, i + 1, j + 1);
-    const auto mix = [&](int k) {
-        const float upper = a[k] + s * (b[k] - a[k]), lower = c[k] + s * (d[k] - c[k]);
-        return upper + t * (lower - upper);
-    };
-    return {mix(0), mix(1), mix(2)};
+/// The roughness that Beckmann's match gives an exponent, n = 2 / alpha^2 - 2: a coordinate in which a Phong chain's
+/// levels are about evenly spaced, infinity at 0 and 0 at 1.
+float matching_roughness(double exponent) {
+    return float(std::pow(2 / (exponent + 2), 0.25));
+}
+
+Result<Lobe> lobe_of(const std::string& name) {
+    for (const Lobe lobe : {Lobe::ggx, Lobe::phong_brdf, Lobe::phong_plain})
+        if (lobe_name(lobe) == name) return lobe;
+    return Error{fmt::format("tells of a chain of lobe \"{}\"", name), "", "Bake with --lobe ggx or --lobe phong."};
+}
+
+float level_roughness(const nlohmann::json& level, Lobe lobe) {
+    const char* key = lobe == Lobe::ggx ? "roughness" : "exponent";
+    if (!level.is_object() || !level.contains(key) || !level[key].is_number()) return 0;  // "inf": the environment
+    const double value = level[key].get<double>();
+    return lobe == Lobe::ggx ? float(value) : matching_roughness(std::max(0.0, value));
 }
 
 Result<nlohmann::json> read_json(const std::filesystem::path& file) {
@@ -79,13 +85,20 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
     if (!brdf) return brdf.error();
 
     const std::string name = (folder / "manifest.json").string();
-    const auto levels = manifest->value("specular", nlohmann::json::object()).value("levels", nlohmann::json::array());
+    const auto chain = manifest->value("specular", nlohmann::json::object());
+    const auto levels = chain.value("levels", nlohmann::json::array());
     if (levels.size() != specular->size())
         return Error{fmt::format("tells of {} specular levels, specular.ktx2 has {}", levels.size(), specular->size()),
                      name, ""};
-    for (const auto& level : levels) impl.roughness.push_back(level.is_object() ? level.value("roughness", 0.f) : 0);
+    const auto lobe = lobe_of(chain.value("lobe", lobe_name(Lobe::ggx)));
+    if (!lobe) return lobe.error().at(name);
+    impl.lobe = *lobe;
+    for (const auto& level : levels) impl.roughness.push_back(level_roughness(level, impl.lobe));
     if (!std::ranges::is_sorted(impl.roughness))
-        return Error{"has roughness values that do not rise from level to level", name, ""};
+        return Error{fmt::format("has {} that do not {} from level to level",
+                                 impl.lobe == Lobe::ggx ? "roughness values" : "exponents",
+                                 impl.lobe == Lobe::ggx ? "rise" : "fall"),
+                     name, ""};
     for (const Cubemap& c : *specular) impl.specular.emplace_back(c);
 
     // The generic target stores irradiance E, others E / pi.
@@ -110,27 +123,35 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
     return maps;
 }
 
-Result<LightMaps> LightMaps::bake(ImageView<const float> latlong, const Mat3& world_to_source, int threads) {
+Result<LightMaps> LightMaps::bake(ImageView<const float> latlong, const Mat3& world_to_source, int threads, Lobe lobe) {
+    const Target& target = targets().front();  // generic
+    const int levels = default_levels(target, target.size);
+    const auto exponents = default_phong_exponents(levels);
+    LightMaps maps;
+    maps.impl_->lobe = lobe;
     FilterOptions options;
-    constexpr int levels = 7, size = 512;
-    for (int l = 0; l < levels; ++l)
-        options.specular.push_back({size >> l, l == 0, ZonalKernel::ggx(double(l) / (levels - 1))});
-    options.irradiance_size = 64;
+    for (int l = 0; l < levels; ++l) {
+        const double roughness = target.roughness(l, levels, target.size);
+        options.specular.push_back({target.size >> l, l == 0,
+                                    lobe == Lobe::ggx ? ZonalKernel::ggx(roughness) : ZonalKernel{lobe, exponents[l]}});
+        maps.impl_->roughness.push_back(lobe == Lobe::ggx ? float(roughness) : matching_roughness(exponents[l]));
+    }
+    options.irradiance_size = target.irradiance_size;
     options.sh_bands = 3;
     options.world_to_source = world_to_source;
     options.threads = threads;
     ImageRowSource rows(latlong);
     auto filtered = prefilter(rows, options);
     if (!filtered) return filtered.error();
-    LightMaps maps;
-    for (int l = 0; l < levels; ++l) {
-        maps.impl_->specular.emplace_back(filtered->specular[l].cube);
-        maps.impl_->roughness.push_back(float(l) / (levels - 1));
-    }
+    for (const FilteredMap& level : filtered->specular) maps.impl_->specular.emplace_back(level.cube);
     maps.impl_->irradiance_over_pi.emplace_back(filtered->irradiance_over_pi.cube);
     maps.impl_->sh_irradiance = sh_irradiance_over_pi(filtered->sh);
     maps.impl_->brdf = brdf_table_default();
     return maps;
+}
+
+Lobe LightMaps::lobe() const {
+    return impl_->lobe;
 }
 
 Vec3f LightMaps::specular(const Vec3f& direction, float roughness) const {
@@ -142,6 +163,14 @@ Vec3f LightMaps::specular(const Vec3f& direction, float roughness) const {
     const float t = (roughness - r[i - 1]) / (r[i] - r[i - 1]);
     const Vec3f low = look_up(impl_->specular[i - 1], direction);
     return t > 0 ? low + (look_up(impl_->specular[i], direction) - low) * t : low;
+}
+
+Vec3f LightMaps::phong(const Vec3f& direction, float exponent) const {
+    const float roughness = matching_roughness(exponent), last = impl_->roughness.back();
+    const Vec3f light = specular(direction, roughness);
+    // (n + 2) / 2 pi cos^(n + 1) at n = 0 is the cosine itself.
+    if (roughness <= last || last >= 1) return light;
+    return light + (irradiance_over_pi(direction) - light) * ((roughness - last) / (1 - last));
 }
 
 Vec3f LightMaps::irradiance_over_pi(const Vec3f& normal) const {

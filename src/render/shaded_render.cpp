@@ -8,6 +8,8 @@
 #include "render/film.h"
 #include "render/shading_models.h"
 
+#include <fmt/core.h>
+
 #include <atomic>
 #include <chrono>
 #include <mutex>
@@ -23,6 +25,7 @@ class ShadedTracer {
           scene_(scene.scene()),
           maps_(maps),
           environment_(environment),
+          reflected_(environment, shading.lookup, shading.lookup_size, options.threads),
           shading_(shading),
           options_(options),
           camera_(options.camera, options.width, options.height) {}
@@ -75,21 +78,24 @@ class ShadedTracer {
         switch (shading_.model) {
             case ShadingModel::split_sum:
                 return shade_split_sum(s, V, occlusion, maps_, shading_);
+            case ShadingModel::stretched:
+                return shade_stretched(s, V, occlusion, maps_, shading_);
             case ShadingModel::phong:
                 return shade_phong(s, V, occlusion, maps_, shading_);
             case ShadingModel::mirror:
-                return shade_mirror(s, V, environment_);
+                return shade_mirror(s, V, reflected_);
             case ShadingModel::refract:
                 break;
         }
         return shade_refract(s, V, scene_.materials[scene_.meshes[scene_.instances[hit.instance].mesh].material].ior,
-                             environment_);
+                             reflected_);
     }
 
     const RayScene::Impl& rays_;
     const Scene& scene_;
     const LightMaps& maps_;
     const EnvironmentSampler& environment_;
+    const EnvironmentMap reflected_;  ///< what mirror and refract read
     const ShadingOptions& shading_;
     const RenderOptions& options_;
     CameraRays camera_;
@@ -101,6 +107,8 @@ std::string shading_model_name(ShadingModel model) {
     switch (model) {
         case ShadingModel::split_sum:
             return "split-sum";
+        case ShadingModel::stretched:
+            return "stretched";
         case ShadingModel::phong:
             return "phong";
         case ShadingModel::mirror:
@@ -111,10 +119,22 @@ std::string shading_model_name(ShadingModel model) {
     return "refract";
 }
 
+Lobe shading_lobe(ShadingModel model) {
+    return model == ShadingModel::phong ? Lobe::phong_brdf : Lobe::ggx;
+}
+
 Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment,
                                    const ShadingOptions& shading, const RenderOptions& o) {
     if (auto fine = check_size(o.width, o.height); !fine) return fine.error();
     if (auto fine = check_background(o); !fine) return fine.error();
+    if (shading.lookup_size < 1 || shading.lookup_size > 8192)
+        return Error{fmt::format("a map of {} texels is not from 1 to 8192", shading.lookup_size), "", ""};
+    const bool wants_phong = shading_lobe(shading.model) == Lobe::phong_brdf,
+               reads_chain = shading.model < ShadingModel::mirror;
+    if (reads_chain && wants_phong != (maps.lobe() != Lobe::ggx))
+        return Error{fmt::format("has a chain of lobe {}, which {} does not read", lobe_name(maps.lobe()),
+                                 shading_model_name(shading.model)),
+                     "", fmt::format("Bake with --lobe {}.", lobe_name(shading_lobe(shading.model)))};
     const auto start = std::chrono::steady_clock::now();
     const ShadedTracer tracer(scene, maps, environment, shading, o);
     Film film(o.width, o.height);

@@ -4,7 +4,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace domelight {
 
@@ -72,6 +74,18 @@ Result<BrdfForm> brdf_form_from_name(const std::string& name) {
 
 double linear_roughness(int level, int levels, int) {
     return levels > 1 ? double(level) / (levels - 1) : 0;
+}
+
+int default_levels(const Target& target, int size) {
+    int levels = 1;
+    while ((size >> levels) >= std::max(1, target.smallest)) ++levels;
+    return levels;
+}
+
+std::vector<double> default_phong_exponents(int levels) {
+    std::vector<double> exponents{INFINITY};
+    for (int l = 1; l < levels; ++l) exponents.push_back(std::max(1.0, 2048 * std::pow(0.25, l - 1)));
+    return exponents;
 }
 
 std::span<const Target> targets() {

@@ -5,6 +5,7 @@
 #include "domelight/projection.h"
 #include "domelight/reference.h"
 #include "domelight/sky.h"
+
 #include "render/shapes.h"
 #include "test.h"
 
@@ -109,13 +110,15 @@ TEST_CASE("split-sum: a matte sphere is lit by the exact irradiance, from the cu
                 const float* n = r.normal.at(x, y);
                 const Vec3d normal = normalize(Vec3d{n[0], n[1], n[2]});
                 const Vec3d exact = convolve_exactly(light.image, ZonalKernel::cosine(), std::span(&normal, 1))[0];
-                for (const auto& [got, want] : {std::pair{r.radiance.at(x, y)[0], exact.x}, {r.radiance.at(x, y)[2], exact.z}})
+                for (const auto& [got, want] :
+                     {std::pair{r.radiance.at(x, y)[0], exact.x}, {r.radiance.at(x, y)[2], exact.z}})
                     CHECK(got == doctest::Approx(0.7 * want).epsilon(0.01));
             }
     }
 }
 
-TEST_CASE("mirror and refract: the middle of a ball shows what lies behind the viewer, and through it what lies ahead") {
+TEST_CASE(
+    "mirror and refract: the middle of a ball shows what lies behind the viewer, and through it what lies ahead") {
     const Light light(gradient());
     const RayScene ball = sphere(Material{});
     ShadingOptions mirror;
@@ -127,6 +130,62 @@ TEST_CASE("mirror and refract: the middle of a ball shows what lies behind the v
     ShadingOptions refract;
     refract.model = ShadingModel::refract;
     CHECK(light.shade(ball, refract).radiance.at(8, 8)[2] == doctest::Approx(0.96 * 0.5 + 0.04 * 1.5).epsilon(0.03));
+}
+
+TEST_CASE("phong: under an even light from above all is known, and seen from the front it is the Phong BRDF's truth") {
+    const Light light(gradient());
+    auto maps = LightMaps::bake(light.image, {}, 0, Lobe::phong_brdf);
+    REQUIRE(maps);
+    CHECK(maps->lobe() == Lobe::phong_brdf);
+    // Every level, and what lies between and beyond them, against the lobe integrated over the picture.
+    for (const double exponent : {0.0, 1.0, 2.0, 32.0, 2048.0}) {
+        const Vec3d d = normalize(Vec3d{0.3, 0.5, 0.8});
+        const Vec3d exact = convolve_exactly(light.image, {Lobe::phong_brdf, exponent}, std::span(&d, 1))[0];
+        const Vec3f got = maps->phong(Vec3f(d), float(exponent));
+        INFO("exponent " << exponent);
+        CHECK(length(Vec3d(got) - exact) < 0.01);
+    }
+    Material glossy = metal_material(0.5f);
+    glossy.phong = true;
+    const RayScene scene = sphere(glossy);
+    RenderOptions narrow = view();  // the middle of the ball, as seen from the front
+    narrow.camera = look_at({0, 0, 40}, {0, 0, 0}, 0.006f);
+    auto truth = render_reference(scene, *light.sampler, narrow);
+    REQUIRE(truth);
+    ShadingOptions options;
+    options.model = ShadingModel::phong;
+    auto shaded = render_shaded(scene, *maps, *light.sampler, options, narrow);
+    REQUIRE(shaded);
+    for (int c = 0; c < 3; ++c) CHECK(mean_inside(*shaded, c) == doctest::Approx(mean_inside(*truth, c)).epsilon(0.01));
+    // The chain of another lobe is refused, both ways.
+    CHECK(!render_shaded(scene, *light.maps, *light.sampler, options, view()));
+    CHECK(!render_shaded(scene, *maps, *light.sampler, {}, view()));
+}
+
+TEST_CASE("mirror: through a cube, lat-long, sphere map or dual paraboloid it shows what the environment itself does") {
+    const Light light(gradient());
+    const RayScene ball = sphere(Material{});
+    for (const ShadingModel model : {ShadingModel::mirror, ShadingModel::refract}) {
+        ShadingOptions options;
+        options.model = model;
+        const RenderResult plain = light.shade(ball, options);
+        for (const MapLookup lookup :
+             {MapLookup::cube, MapLookup::latlong, MapLookup::sphere_map, MapLookup::dual_paraboloid}) {
+            options.lookup = lookup;
+            options.lookup_size = 64;
+            const RenderResult r = light.shade(ball, options);
+            double largest = 0;
+            for (std::size_t i = 0; i < r.radiance.pixels().size(); ++i)
+                largest = std::max(largest, double(std::abs(r.radiance.pixels()[i] - plain.radiance.pixels()[i])));
+            INFO(map_lookup_name(lookup));
+            // The sphere map's rim is all of -Z, and its last texels hold much of what lies around it.
+            CHECK(largest < (lookup == MapLookup::sphere_map ? 0.1 : 0.02));
+        }
+    }
+    ShadingOptions none;
+    none.model = ShadingModel::mirror;
+    none.lookup_size = 0;
+    CHECK(!render_shaded(ball, *light.maps, *light.sampler, none, view()));
 }
 
 TEST_CASE("light maps: what bake wrote to a folder lights like what was baked in memory") {
@@ -150,4 +209,19 @@ TEST_CASE("light maps: what bake wrote to a folder lights like what was baked in
     }
     CHECK(loaded->brdf(0.5f, 0.3f).scale == doctest::Approx(baked->brdf(0.5f, 0.3f).scale).epsilon(2e-3));
     CHECK(!LightMaps::load(folder / "none"));
+
+    options.lobe = Lobe::phong_brdf;
+    environment = open_environment({folder / "sky.hdr"});
+    REQUIRE(bake(*environment, options, folder / "phong"));
+    auto phong = LightMaps::load(folder / "phong");
+    REQUIRE_MESSAGE(phong, (phong ? "" : phong.error().format()));
+    auto baked_phong = LightMaps::bake(image, {}, 0, Lobe::phong_brdf);
+    REQUIRE(baked_phong);
+    CHECK(phong->lobe() == Lobe::phong_brdf);
+    for (const float exponent : {1.f, 20.f, 600.f})
+        CHECK(length(phong->phong({1, 0.2f, 0.1f}, exponent) - baked_phong->phong({1, 0.2f, 0.1f}, exponent)) < 0.02f);
+    options.lobe = Lobe::charlie;
+    environment = open_environment({folder / "sky.hdr"});
+    REQUIRE(bake(*environment, options, folder / "sheen"));
+    CHECK(!LightMaps::load(folder / "sheen"));
 }
