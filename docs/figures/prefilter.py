@@ -164,5 +164,6 @@ def dropped():
     sheet.save("nvr.png")
 
 
-lobes_and_spectra()
-dropped()
+if __name__ == "__main__":
+    lobes_and_spectra()
+    dropped()

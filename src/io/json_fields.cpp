@@ -122,6 +122,16 @@ bool JsonFields::flag_in(const char* owner, const char* key) const {
     return member != object->end() && member->is_boolean() && member->get<bool>();
 }
 
+std::optional<float> JsonFields::number_in(const char* owner, const char* key) const {
+    const nlohmann::json* members = find(owner);
+    if (!members || !members->is_object()) return std::nullopt;
+    const auto member = members->find(key);
+    if (member == members->end() || !member->is_number()) return std::nullopt;
+    const double value = member->get<double>();
+    if (!(std::abs(value) <= std::numeric_limits<float>::max())) return std::nullopt;
+    return float(value);
+}
+
 std::string JsonFields::text(const char* key, const std::string& fallback) {
     const nlohmann::json* member = find(key);
     if (!member) return fallback;

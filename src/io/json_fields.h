@@ -50,6 +50,8 @@ class JsonFields {
     /// Whether `key` of the object `owner` is true; anything else there, or nothing, is false and no error: extras may
     /// hold what they like.
     bool flag_in(const char* owner, const char* key) const;
+    /// Likewise a finite number there.
+    std::optional<float> number_in(const char* owner, const char* key) const;
     /// The extension of that name.
     JsonFields extension(const char* name) { return object("extensions").object(name); }
 

@@ -132,6 +132,37 @@ TEST_CASE(
     CHECK(light.shade(ball, refract).radiance.at(8, 8)[2] == doctest::Approx(0.96 * 0.5 + 0.04 * 1.5).epsilon(0.03));
 }
 
+TEST_CASE(
+    "reflectance: 0.16 reflectance^2 is the F0 that a dielectric's index of refraction gives, mixed to the base "
+    "colour by metalness") {
+    CHECK(ior_of_reflectance(0.5f) == doctest::Approx(1.5));
+    for (const float reflectance : {0.f, 0.35f, 0.5f, 1.f}) {
+        const float ior = ior_of_reflectance(reflectance), ratio = (ior - 1) / (ior + 1);
+        CHECK(ratio * ratio == doctest::Approx(0.16 * reflectance * reflectance));
+    }
+    // A black plastic ball from the front reflects F0 of an even light, and half of a white metal beside it the rest.
+    const Light light(ImageF(64, 32, 3, 1.f));
+    RenderOptions narrow = view();
+    narrow.camera = look_at({0, 0, 40}, {0, 0, 0}, 0.006f);
+    for (const float metalness : {0.f, 0.5f}) {
+        Material m;
+        m.ior = ior_of_reflectance(1);
+        m.roughness = 0.1f;
+        m.metalness = metalness;
+        m.base_color = {0.f, 0.5f, 1.f};
+        const RayScene ball = sphere(m);
+        auto r = render_shaded(ball, *light.maps, *light.sampler, {}, narrow);
+        REQUIRE(r);
+        for (int c = 0; c < 3; ++c) {
+            double specular = 0;
+            int n = 0;
+            for (std::size_t i = std::size_t(c); i < r->specular.pixels().size(); i += 3, ++n)
+                specular += r->specular.pixels()[i];
+            CHECK(specular / n == doctest::Approx(0.16 + (0.5 * c - 0.16) * metalness).epsilon(0.01));
+        }
+    }
+}
+
 TEST_CASE("phong: under an even light from above all is known, and seen from the front it is the Phong BRDF's truth") {
     const Light light(gradient());
     auto maps = LightMaps::bake(light.image, {}, 0, Lobe::phong_brdf);
