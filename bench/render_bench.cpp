@@ -9,8 +9,9 @@
 //                                      seed of its own; as many of ours are made, of --samples each
 //
 //   [SCENE...]: --scene MODEL.glb, --env ENVIRONMENT, --material lambert:A|metal:R (of every object but the one named
-//   floor), --size N (96), --bounces N (0). Without: a sphere under the built-in sky.
-//   The view is the one of all comparisons: eye (0, 0.8, 4.2), target the origin, 35 degrees.
+//   floor), --size N (96), --bounces N (0), --separable-masking (Smith's G1 G1, as Cycles had it up to 3.4). Without: a
+//   sphere under the built-in sky. The view is the one of all comparisons: eye (0, 0.8, 4.2), target the origin, 35
+//   degrees.
 
 #include "domelight/environment.h"
 #include "domelight/metrics.h"
@@ -41,6 +42,7 @@ namespace {
 struct Words {
     std::string mode = "converge", scene, environment, material;
     int size = 96, bounces = 0, samples = 64;
+    bool separable = false;
     std::vector<std::string> theirs;
 };
 
@@ -54,7 +56,9 @@ std::optional<Words> parse(int argc, char** argv) {
         {"--size", &w.size}, {"--bounces", &w.bounces}, {"--samples", &w.samples}};
     while (i < argc) {
         const std::string option = argv[i++];
-        if (option == "--theirs") {
+        if (option == "--separable-masking") {
+            w.separable = true;
+        } else if (option == "--theirs") {
             while (i < argc && argv[i][0] != '-') w.theirs.push_back(argv[i++]);
         } else if (i < argc && texts.contains(option)) {
             *texts.at(option) = argv[i++];
@@ -87,6 +91,7 @@ Scene make_scene(const Words& w) {
             if (instance.name != "floor")
                 scene.materials[std::size_t(scene.meshes[std::size_t(instance.mesh)].material)] =
                     w.material[0] == 'l' ? test::lambert_material(value) : test::metal_material(value);
+        for (Material& m : scene.materials) m.separable_masking = w.separable;
     }
     return scene;
 }

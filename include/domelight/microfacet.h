@@ -46,6 +46,12 @@ T ggx_visibility(T NdotL, T NdotV, T alpha) {
     return T(0.5) / (NdotV * ggx_smith_root(NdotL, alpha) + NdotL * ggx_smith_root(NdotV, alpha));
 }
 
+/// The same with masking and shadowing independent of each other, G1(l) G1(v): Walter et al. 2007, eq. 23. Always less.
+template <typename T>
+T ggx_visibility_separable(T NdotL, T NdotV, T alpha) {
+    return 1 / ((NdotL + ggx_smith_root(NdotL, alpha)) * (NdotV + ggx_smith_root(NdotV, alpha)));
+}
+
 /// Distribution of normals of the sheen lobe, (2 + 1/alpha) sin^(1/alpha) / (2 pi): Estevez and Kulla 2017, eq. 2.
 ///
 /// sin2_H  squared sine of the microfacet normal's polar angle, [0, 1]

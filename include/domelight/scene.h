@@ -65,6 +65,9 @@ struct Material {
     bool lambert = false;  ///< extras.lambert: a pure Lambert surface of the base colour, no specular
     bool phong =
         false;  ///< a modified Phong surface: base colour diffuse (1 - metalness), specular f0, exponent from roughness
+    /// extras.separableMasking: Smith's masking as G1(l) G1(v), as older renderers have it, instead of the
+    /// height-correlated G2; to compare with them.
+    bool separable_masking = false;
     bool double_sided = false;
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5f;

@@ -168,6 +168,7 @@ Material read_gltf_material(JsonFields fields, const std::vector<SceneTexture>& 
 
     m.lambert = fields.flag_in("extras", "lambert");
     m.phong = fields.flag_in("extras", "phong");
+    m.separable_masking = fields.flag_in("extras", "separableMasking");
     if (const auto reflectance = fields.number_in("extras", "reflectance"); reflectance && m.ior == 1.5f)
         m.ior = ior_of_reflectance(std::clamp(*reflectance, 0.f, 1.f));
     return m;

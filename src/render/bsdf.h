@@ -10,6 +10,7 @@ namespace domelight {
 struct Bsdf {
     enum class Kind : std::uint8_t { lambert, metallic_roughness, phong };
     Kind kind = Kind::lambert;
+    bool separable_masking = false;       ///< G1 G1 instead of G2
     Vec3f diffuse;                        ///< albedo of the lower layer
     Vec3f f0, f90;                        ///< of the microfacets; phong: specular is f0
     Vec3f dielectric_f0, dielectric_f90;  ///< of the layer over `diffuse`
@@ -37,7 +38,9 @@ struct Bsdf {
                 const Vec3f under = dielectric_f0 + (dielectric_f90 - dielectric_f0) * schlick;
                 // glTF 2.0, B.3.4: what the layer above reflects does not reach the one below.
                 value.diffuse = diffuse * ((1 - std::max({under.x, under.y, under.z})) * float(1 / k_pi));
-                const float gloss = ggx_d(H, alpha) * ggx_visibility(L.z, V.z, alpha);
+                const float visibility =
+                    separable_masking ? ggx_visibility_separable(L.z, V.z, alpha) : ggx_visibility(L.z, V.z, alpha);
+                const float gloss = ggx_d(H, alpha) * visibility;
                 const Vec3f fresnel = f0 + (f90 - f0) * schlick;
                 const Vec3f more{1 + f0.x * compensation, 1 + f0.y * compensation, 1 + f0.z * compensation};
                 value.specular = Vec3f{fresnel.x * more.x, fresnel.y * more.y, fresnel.z * more.z} * gloss;

@@ -82,7 +82,8 @@ Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSa
             const double spent = seconds_since(start), left = o.seconds - spent;
             if (total > 0) {
                 if (left <= 0 || total >= o.most_samples) break;
-                add = std::min({add, longest_round(total), o.most_samples - total, std::max(1, int(left / spent * total))});
+                add = std::min(
+                    {add, longest_round(total), o.most_samples - total, std::max(1, int(left / spent * total))});
                 if (left < spent / total) break;
             }
             round([&](int, int) { return add; }, std::min(1.0, spent / o.seconds),

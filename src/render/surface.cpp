@@ -75,6 +75,7 @@ Base make_base(const Scene& scene, const Material& m, const Corners& c, const Ve
     bsdf.kind = m.phong ? Bsdf::Kind::phong : Bsdf::Kind::metallic_roughness;
     bsdf.alpha = std::max(roughness * roughness, k_least_brdf_alpha);
     bsdf.exponent = phong_exponent(bsdf.alpha);
+    bsdf.separable_masking = m.separable_masking;
     out.metalness = metalness;
     out.roughness = roughness;
     out.dielectric_f0 = bsdf.dielectric_f0;
