@@ -1,0 +1,124 @@
+// What each engine loads of a bake, and which level it should read: the tests' own statement of it, apart from src/target/.
+
+import {repaintAtlas, repaintEnv, repaintLevels, repaintUastcHdr} from './files.mjs';
+
+/// Roughness that reaches the shader's lookup, from the material's.
+const asIs = roughness => roughness;
+
+// three.js and Filament read level M r (2 - r).
+const quadratic = (roughness, last) => last * roughness * (2 - roughness);
+const linear = (roughness, last) => last * roughness;
+
+const find = (names, end) => names.find(name => name.endsWith(end));
+
+// What a white metal shows of filtered light, where an engine's formula is simple enough to be said here. L(d, roughness) is the exactly filtered
+// radiance, E(d) the irradiance over pi.
+
+/// Looks along a direction that leans to the normal with roughness^4.
+const leaning = (reflected, normal, roughness) => reflected.map((v, k) => v + (normal[k] - v) * roughness ** 4);
+
+const babylon = {
+    level: (roughness, last, size) => Math.max(0, 0.8 * Math.log2(size * (roughness * roughness + 0.0005))),
+    // Its glTF loader turns specular antialiasing on: alpha + 3/4 of the normal's change across the pixel.
+    roughness: (roughness, step) => Math.sqrt(roughness * roughness + 0.75 * step),
+    // Since version 8 it mixes radiance with irradiance by alpha.
+    shown: (value, {first, alpha}) => value + (first - value) * alpha,
+    metal: ({L, E, normal, reflected, roughness}) => blend(1 - roughness * roughness, L(reflected, roughness), E(normal)),
+    tolerance: 0.01, furnace: 0.01,
+};
+
+/// An entry is one file of one engine.
+///
+/// name, page         of the entry; of the module in pages/ that loads and draws
+/// target, picks      of `domelight bake --for`; the file among the bake's names that the entry is about, if the bake has it
+/// files              (url of the bake's folder, names, url of its source) => the argument of the page's `load`
+/// chain, repaint     the file whose levels are replaced by constants for the test of levels, and by what
+/// roughness          (the material's, step) => what the shader looks up; step: how far the normal turns from a pixel to the next
+/// level              (roughness, last level, size of level 0) => where it looks
+/// shown              (value there, {first, last, alpha, albedo}) => what it makes of it; first, last: the outer levels' values
+/// metal              what a white metal shows: ({L, E, normal, reflected, roughness, albedo}) => radiance
+/// tolerance, furnace of the balls' means under the sky; of white in white light
+/// plastics           false where the engine's plastics are nobody else's
+/// theirs             a bake by the engine's own tool, in DOMELIGHT_DATA, of a picture that we bake too: it must be turned and as bright alike
+/// axesOnly, slow     only its directions are tested; only with --all
+export const consumers = [
+    {
+        // It filters the picture itself, on the GPU.
+        name: 'three-latlong', page: 'three', target: 'three-latlong', picks: names => find(names, '.exr'), slow: true,
+        files: (url, names) => ({latlong: url + find(names, '.exr')}),
+        roughness: (roughness, step) => Math.min(1, Math.max(roughness, 0.045) + step),
+        metal: ({L, E, normal, reflected, roughness, albedo}) => blend(albedo, L(leaning(reflected, normal, roughness), roughness), E(normal)),
+        tolerance: 0.01, furnace: 0.01,
+    },
+    {
+        name: 'three', page: 'three', target: 'three', picks: names => find(names, '.pmrem.ktx2'),
+        files: (url, names) => ({pmrem: url + find(names, '.pmrem.ktx2')}),
+        chain: names => find(names, '.pmrem.ktx2'), repaint: repaintUastcHdr,
+        level: quadratic,
+        // It widens roughness by the normal's change across the pixel, against sparkling.
+        roughness: (roughness, step) => Math.min(1, Math.max(roughness, 0.045) + step),
+        // What single scattering loses comes back as diffuse light, which is the last level.
+        shown: (value, {last, albedo}) => albedo * value + (1 - albedo) * last,
+        metal: ({L, E, normal, reflected, roughness, albedo}) => blend(albedo, L(leaning(reflected, normal, roughness), roughness), E(normal)),
+        tolerance: 0.01, furnace: 0.01,
+    },
+    {
+        name: 'filament', page: 'filament', target: 'filament', picks: names => find(names, '_ibl.ktx'),
+        files: (url, names) => ({ibl: url + find(names, '_ibl.ktx'), skybox: url + find(names, '_skybox.ktx')}),
+        chain: names => find(names, '_ibl.ktx'), repaint: repaintLevels,
+        level: quadratic,
+        // Its least roughness on mobile graphics, and its widening where the normal turns (specular antialiasing, variance 0.15).
+        roughness: (roughness, step) => (Math.max(roughness, 0.089) ** 4 + 2 * 0.15 * 2 * step * step) ** 0.25,
+        metal: ({L, normal, reflected, roughness}) => L(leaning(reflected, normal, roughness), roughness),
+        tolerance: 0.01, furnace: 0.01,
+        theirs: {by: 'cmgen', latlong: 'usd', files: url => ({ibl: `${url}symmetrical_garden_ibl.ktx`, skybox: `${url}symmetrical_garden_skybox.ktx`}),
+                 brightness: 0.01},
+    },
+    {
+        name: 'babylon', page: 'babylon', target: 'babylon', picks: names => find(names, '.dds'),
+        files: (url, names) => ({prefiltered: url + find(names, '.dds')}),
+        chain: names => find(names, '.dds'), repaint: repaintLevels,
+        ...babylon,
+        theirs: {by: 'its own tool', latlong: 'usd', files: url => ({prefiltered: `${url}symmetrical_garden.env`}), brightness: 0.01},
+    },
+    {
+        name: 'babylon-env', page: 'babylon', target: 'babylon', picks: names => find(names, '.env'),
+        files: (url, names) => ({prefiltered: url + find(names, '.env')}),
+        chain: names => find(names, '.env'), repaint: repaintEnv,
+        ...babylon,
+        // The irradiance is the file's own polynomial, which stays the furnace's.
+        shown: (value, {alpha}) => value + (1 - value) * alpha,
+    },
+    {
+        // The same file in Babylon's right-handed world.
+        name: 'babylon-right-handed', page: 'babylon', target: 'babylon', picks: names => find(names, '.dds'), axesOnly: true,
+        files: (url, names) => ({prefiltered: url + find(names, '.dds'), rightHanded: true}),
+    },
+    {
+        name: 'playcanvas', page: 'playcanvas', target: 'playcanvas', picks: names => find(names, '.png'),
+        files: (url, names) => ({atlas: url + find(names, '.png')}),
+        chain: names => find(names, '.png'), repaint: repaintAtlas,
+        level: roughness => 5 * roughness, roughness: asIs,
+        metal: ({L, reflected, roughness}) => L(reflected, roughness),
+        plastics: false,  // it adds F0 whatever the angle and roughness
+        tolerance: 0.02, furnace: 0.01,
+    },
+    {
+        name: 'khronos', page: 'khronos', target: 'khronos', picks: names => find(names, 'specular.ktx2'),
+        files: (url, names, environment) => ({panorama: environment, specular: url + 'ggx/specular.ktx2', sheen: url + 'charlie/sheen.ktx2',
+                                              diffuse: url + 'lambertian/diffuse.ktx2', brdf: url + 'brdf.ktx2', levels: 5}),
+        chain: () => 'ggx/specular.ktx2', repaint: repaintLevels,
+        level: linear, roughness: asIs,
+        metal: ({L, reflected, roughness}) => L(reflected, roughness),
+        tolerance: 0.01, furnace: 0.01,
+    },
+    {
+        // What the viewer makes of the lat-long picture by itself, to which the baked cubes must be turned alike.
+        name: 'khronos-panorama', page: 'khronos', target: 'khronos', picks: names => find(names, 'specular.ktx2'), axesOnly: true, slow: true,
+        files: (url, names, environment) => ({panorama: environment}),
+    },
+];
+
+function blend(part, a, b) {
+    return a.map((v, k) => part * v + (1 - part) * b[k]);
+}
