@@ -114,22 +114,41 @@ constexpr std::array<Layout, k_modes> parse_layouts() {
 }
 constexpr std::array<Layout, k_modes> k_layout = parse_layouts();
 
-/// The block as one number of 128 bits, read from its low end.
-struct BitReader {
-    const std::uint8_t* bytes;
-    int at = 0;
+/// The block as one number of 128 bits, used up from its low end.
+struct Bits {
+    std::uint64_t low = 0, high = 0;
+
+    explicit Bits(const std::uint8_t* bytes) {
+        for (int i = 0; i < 8; ++i) {
+            low |= std::uint64_t(bytes[i]) << 8 * i;
+            high |= std::uint64_t(bytes[8 + i]) << 8 * i;
+        }
+    }
+    /// 1 to 5 bits.
     int take(int count) {
-        int value = 0;
-        for (int i = 0; i < count; ++i, ++at) value |= (bytes[at >> 3] >> (at & 7) & 1) << i;
+        const int value = int(low & ((1u << count) - 1));
+        low = low >> count | high << (64 - count);
+        high >>= count;
         return value;
     }
 };
 
+/// The other way: filled from its low end.
 struct BitWriter {
-    std::uint8_t* bytes;
+    std::uint64_t low = 0, high = 0;
     int at = 0;
     void put(int value, int count) {
-        for (int i = 0; i < count; ++i, ++at) bytes[at >> 3] |= std::uint8_t((value >> i & 1) << (at & 7));
+        const std::uint64_t bits = std::uint64_t(value);
+        if (at < 64) low |= bits << at;
+        if (at >= 64) high |= bits << (at - 64);
+        if (at < 64 && at + count > 64) high |= bits >> (64 - at);
+        at += count;
+    }
+    void store(std::uint8_t* bytes) const {
+        for (int i = 0; i < 8; ++i) {
+            bytes[i] = std::uint8_t(low >> 8 * i);
+            bytes[8 + i] = std::uint8_t(high >> 8 * i);
+        }
     }
 };
 
@@ -156,8 +175,7 @@ int mode_of(int five_bits) {
 
 void pack(const Fields& fields, std::uint8_t* block) {
     const Mode& mode = k_mode[std::size_t(fields.mode)];
-    for (int i = 0; i < k_block_bytes; ++i) block[i] = 0;
-    BitWriter out{block};
+    BitWriter out;
     out.put(mode.code, mode.code_bits);
     const Layout& layout = k_layout[std::size_t(fields.mode)];
     for (int i = 0; i < layout.count; ++i) {
@@ -166,6 +184,7 @@ void pack(const Fields& fields, std::uint8_t* block) {
         out.put(value >> bit & 1, 1);
     }
     for (int t = 0; t < k_texels; ++t) out.put(fields.index[std::size_t(t)], stored_index_bits(fields, t));
+    out.store(block);
 }
 
 bool unpack(const std::uint8_t* block, Fields& fields) {
@@ -173,7 +192,8 @@ bool unpack(const std::uint8_t* block, Fields& fields) {
     fields.mode = mode_of(block[0] & 31);
     if (fields.mode < 0) return false;
     const Mode& mode = k_mode[std::size_t(fields.mode)];
-    BitReader in{block, mode.code_bits};
+    Bits in(block);
+    in.take(mode.code_bits);
     const Layout& layout = k_layout[std::size_t(fields.mode)];
     for (int i = 0; i < layout.count; ++i) {
         const auto [field, bit] = layout.bits[std::size_t(i)];

@@ -8,43 +8,81 @@
 
 namespace domelight::bc6h {
 
-namespace {
+Effort effort_of(EncodingQuality quality) {
+    switch (quality) {
+        case EncodingQuality::fast:
+            return {.partitions = 0, .fits = 1, .refits = 1};
+        case EncodingQuality::standard:
+            return {.partitions = 4, .fits = 2, .refits = 1};
+        case EncodingQuality::high:
+            return {8, 2, 2, 4, 2, 1.2f, false};
+        case EncodingQuality::exhaustive:
+            break;
+    }
+    return {k_partitions, 3, 3, 64, 4, 1e30f, true};
+}
 
-/// Mode 11 from the corners of the box around the texels.
-void encode_block(const float* rgb, std::uint8_t* block) {
-    int low[3], high[3], value[k_texels][3];
-    for (int c = 0; c < 3; ++c) {
-        low[c] = 0xffff, high[c] = 0;
-        for (int t = 0; t < k_texels; ++t) {
-            value[t][c] = (half_from_float(rgb[3 * t + c]) * 64 + 31) / 31;
-            low[c] = std::min(low[c], value[t][c]);
-            high[c] = std::max(high[c], value[t][c]);
-        }
-    }
+void pack_solution(int mode_number, int partition, const int* ends, const int* index, std::uint8_t* block) {
+    const Mode& mode = k_mode[std::size_t(mode_number)];
     Fields fields;
-    fields.mode = 10;
-    double length = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-        fields.endpoint[0][c] = low[c] * 1023 / 0xffff;
-        fields.endpoint[1][c] = high[c] * 1023 / 0xffff;
-        length += double(high[c] - low[c]) * double(high[c] - low[c]);
-    }
-    for (std::size_t t = 0; t < k_texels; ++t) {
-        double along = 0;
-        for (int c = 0; c < 3; ++c) along += double(value[t][c] - low[c]) * double(high[c] - low[c]);
-        fields.index[t] = std::uint8_t(length > 0 ? std::lround(15 * along / length) : 0);
-    }
-    if (fields.index[0] > 7) {
-        std::swap(fields.endpoint[0], fields.endpoint[1]);
-        for (auto& index : fields.index) index = std::uint8_t(15 - index);
-    }
+    fields.mode = mode_number;
+    fields.partition = partition;
+    for (int e = 0; e < 2 * mode.subsets; ++e)
+        for (int c = 0; c < 3; ++c) {
+            const int value = ends[3 * e + c];
+            fields.endpoint[std::size_t(e)][std::size_t(c)] =
+                e > 0 && mode.transformed ? (value - ends[c]) & ((1 << mode.delta_bits[c]) - 1) : value;
+        }
+    for (std::size_t t = 0; t < k_texels; ++t) fields.index[t] = std::uint8_t(index[t]);
     pack(fields, block);
 }
 
+namespace {
+namespace plain {
+
+/// One lane.
+using F = float;
+using M = bool;
+constexpr int k_max_lanes = 1;
+int lane_count() {
+    return 1;
+}
+F splat(float v) {
+    return v;
+}
+F load(const float* p) {
+    return *p;
+}
+void store(F v, float* p) {
+    *p = v;
+}
+F select(M m, F a, F b) {
+    return m ? a : b;
+}
+F smaller(F a, F b) {
+    return b < a ? b : a;
+}
+F larger(F a, F b) {
+    return a < b ? b : a;
+}
+F floor_of(F v) {
+    return std::floor(v);
+}
+bool any(M m) {
+    return m;
+}
+F half_bits_of(F v) {
+    return float(half_from_float(v));
+}
+
+#include "codec/bc6h_search-inl.h"
+
+}  // namespace plain
 }  // namespace
 
-void encode(const float* texels, int count, EncodingQuality, std::uint8_t* blocks) {
-    for (int i = 0; i < count; ++i) encode_block(texels + 48 * i, blocks + k_block_bytes * i);
+void encode_plain(const float* texels, int count, EncodingQuality quality, std::uint8_t* blocks) {
+    const Effort effort = effort_of(quality);
+    for (int i = 0; i < count; ++i) plain::encode_lanes(texels + 48 * i, 1, effort, blocks + k_block_bytes * i);
 }
 
 }  // namespace domelight::bc6h

@@ -6,7 +6,23 @@
 
 namespace domelight::bc6h {
 
-/// Encodes `count` blocks of 16 RGB texels each, every channel from 0 to 65504.
-void encode(const float* texels, int count, EncodingQuality quality, std::uint8_t* blocks);
+/// How much is tried.
+struct Effort {
+    int partitions = 0;       ///< of the 32, the most promising; 0: modes of one subset alone
+    int fits = 1;             ///< rounds of nearest indices and least squares before anything is quantised
+    int refits = 1;           ///< and with each mode's quantised ends
+    int nudges = 0;           ///< the most rounds of moving single ends by steps; 0: none
+    float step = 2;           ///< the longest of them
+    float reach = 1;          ///< only where a mode's error is below this times the best one found without
+    bool neighbours = false;  ///< tries the indices beside a texel's projection on the line, too
+};
+Effort effort_of(EncodingQuality quality);
+
+/// Packs ends given as whole numbers of the mode's precision ([end][channel], not yet as differences).
+void pack_solution(int mode, int partition, const int* ends, const int* index, std::uint8_t* block);
+
+/// Encodes `count` blocks of 16 RGB texels each, every channel from 0 to 65504. The plain form; simd/bc6h_encode.h
+/// gives the same bytes.
+void encode_plain(const float* texels, int count, EncodingQuality quality, std::uint8_t* blocks);
 
 }  // namespace domelight::bc6h

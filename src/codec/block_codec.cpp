@@ -1,8 +1,8 @@
 #include "codec/block_codec.h"
 
 #include "codec/bc6h.h"
-#include "codec/bc6h_encode.h"
 #include "codec/half.h"
+#include "simd/bc6h_encode.h"
 
 #include <algorithm>
 #include <cassert>
@@ -12,18 +12,14 @@ namespace domelight {
 
 namespace {
 
-/// Blocks that are gathered at once: their texels stay in the processor's first cache.
-constexpr int k_blocks_at_once = 16;
-
-void encode_bc6h(const float* texels, int count, EncodingQuality quality, std::uint8_t* blocks) {
-    bc6h::encode(texels, count, quality, blocks);
-}
+/// Blocks that are gathered at once: as many as the widest vectors take, and few enough for the processor's caches.
+constexpr int k_blocks_at_once = 32;
 
 void decode_bc6h(const std::uint8_t* blocks, int count, float* texels) {
     for (int i = 0; i < count; ++i) bc6h::decode(blocks + 16 * i, texels + 48 * i);
 }
 
-constexpr BlockCodec k_bc6h{0, k_half_max, encode_bc6h, decode_bc6h};
+constexpr BlockCodec k_bc6h{0, k_half_max, simd::bc6h_encode, decode_bc6h};
 
 Vec3f texel_at(const float* p) {
     return {p[0], p[1], p[2]};
