@@ -17,7 +17,8 @@ namespace {
 struct BakeWords {
     CommonOptions common;
     std::vector<std::string> environments, targets;
-    std::string output, lobe, method = "exact", riemann_steps, layout, encoding, format, cube_picture = "cross";
+    std::string output, lobe, method = "exact", riemann_steps, layout, encoding, encoding_quality, format,
+                              cube_picture = "cross";
     std::string sh_window = "none", brdf_g = "correlated", brdf_form;
     std::optional<int> size, levels, samples, irradiance_size, sh_bands, brdf_size;
     std::vector<double> roughness, exponents;
@@ -67,8 +68,10 @@ void declare(Arguments& a, BakeWords& w) {
              "its channels (the target's)");
     a.integer("--brdf-size", "N", w.brdf_size, "its width and height (128)");
     a.group("How to store it");
-    a.choice("--encoding", w.encoding, {"rgba16f", "rgba32f", "rgb9e5", "r11g11b10f"},
+    a.choice("--encoding", w.encoding, {"rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "bc6h", "rgbm", "rgbd", "rgbp"},
              "texels of the maps (the target's)");
+    a.choice("--encoding-quality", w.encoding_quality, {"fast", "default", "high", "exhaustive"},
+             "how hard bc6h searches for the best block; exhaustive takes minutes (default)");
     a.choice("--format", w.format, {"ktx2", "ktx1", "dds", "exr", "hdr"},
              "container of the maps; exr and hdr hold one level a file (the target's)");
     a.choice("--cube-picture", w.cube_picture, {"cross", "strip", "faces"},
@@ -121,6 +124,7 @@ Result<BakeOptions> bake_options(const BakeWords& w) {
     if (!w.riemann_steps.empty())
         if (auto ok = parse_riemann_steps(w.riemann_steps, o); !ok) return ok.error();
     if (!w.encoding.empty()) o.encoding = *encoding_from_name(w.encoding);
+    if (!w.encoding_quality.empty()) o.encoding_quality = *encoding_quality_from_name(w.encoding_quality);
     if (!w.format.empty()) o.format = *container_from_name(w.format);
     if (w.zstd && w.no_zstd) return Error{"contradicts --no-zstd", "--zstd", "Give one of them."};
     if (w.zstd || w.no_zstd) o.zstd = w.zstd;
@@ -206,7 +210,8 @@ int run_bake(const std::vector<std::string>& words) {
                         "exactly what they are.",
                         {"domelight bake studio.hdr -o out",
                          "domelight bake studio.hdr evening.hdr -o lights --for khronos --for filament",
-                         "domelight bake studio.hdr -o small --size 128 --levels 5 --encoding rgb9e5 --zstd"});
+                         "domelight bake studio.hdr -o small --size 128 --levels 5 --encoding rgb9e5 --zstd",
+                         "domelight bake studio.hdr -o tiny --size 128 --encoding bc6h --encoding-quality high"});
     declare(arguments, w);
     if (const auto code = begin_command(arguments, words, w.common)) return *code;
     const auto options = bake_options(w);

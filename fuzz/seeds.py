@@ -52,10 +52,12 @@ def make(program, folder):
     for kind in ("half", "float"):
         run("sky", "--height", "16", "--exr", kind, "-o", folder / f"sky-{kind}.exr")
     run("sky", "--axes", "--height", "16", "-o", folder / "axes.png")
-    for encoding in ("rgba16f", "rgba32f", "rgb9e5", "r11g11b10f"):
+    for encoding in ("rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "bc6h", "rgbm"):
         bake(encoding, "--size", "8", "--levels", "2", "--encoding", encoding)
     for container in ("ktx1", "dds", "exr", "hdr"):
         bake(container, "--size", "8", "--levels", "2", "--format", container)
+    for container in ("ktx1", "dds"):
+        bake(f"bc6h-{container}", "--size", "8", "--levels", "2", "--format", container, "--encoding", "bc6h")
     bake("zstd", "--size", "8", "--levels", "2", "--zstd")
 
 

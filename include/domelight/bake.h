@@ -43,6 +43,7 @@ struct BakeOptions {
     int riemann_polar = 64, riemann_azimuth = 256;
 
     std::optional<Encoding> encoding;
+    EncodingQuality encoding_quality = EncodingQuality::standard;
     std::optional<Container> format;
     std::optional<bool> zstd;
     CubePicture cube_picture = CubePicture::cross;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -14,9 +15,9 @@
 namespace domelight {
 
 /// How texels are stored on the GPU: one by one, or (bc6h) in blocks.
-enum class Encoding { rgba16f, rgba32f, rgb9e5, r11g11b10f, rg16f, rg32f, bc6h };
+enum class Encoding { rgba16f, rgba32f, rgb9e5, r11g11b10f, rg16f, rg32f, bc6h, rgbm, rgbd, rgbp };
 
-/// "rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "rg16f", "rg32f", "bc6h".
+/// "rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "rg16f", "rg32f", "bc6h", "rgbm", "rgbd", "rgbp".
 std::string encoding_name(Encoding encoding);
 Result<Encoding> encoding_from_name(const std::string& name);  ///< the error lists the accepted names
 int encoding_block(Encoding encoding);                         ///< texels along a side of a block; 1: single texels
@@ -37,6 +38,9 @@ struct EncodingReport {
     double clipped_energy =
         0;  ///< radiant power lost by clipping over the level's power, 0..1, solid-angle weighted luminance
     double rms_error = 0;  ///< relative RMS error of the stored values against the float ones, clipped texels left out
+    /// dB, of log2(v + 1e-4 of the level's mean luminance) channel by channel, against the range of that over the
+    /// level; clipped texels left out. Infinite where nothing was lost.
+    double log_psnr = std::numeric_limits<double>::infinity();
 };
 
 /// Encoded texels: like any byte vector, but one made by size alone is not cleared.

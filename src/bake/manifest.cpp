@@ -68,6 +68,8 @@ Json options_json(const TargetPlan& plan, const BakeOptions& o) {
     if (o.method == BakeMethod::montecarlo) json["samples"] = o.samples;
     if (o.method == BakeMethod::riemann) json["riemann_steps"] = {o.riemann_polar, o.riemann_azimuth};
     json["encoding"] = plan.container == Container::hdr ? "rgbe" : encoding_name(plan.encoding);
+    if (plan.container != Container::hdr && encoding_block(plan.encoding) > 1)
+        json["encoding_quality"] = encoding_quality_name(o.encoding_quality);
     json["format"] = container_name(plan.container);
     json["zstd"] = plan.zstd;
     if (plan.container == Container::exr || plan.container == Container::hdr)
@@ -99,6 +101,7 @@ Json level_json(const BakedMap& map, const BakedLevel& level) {
     json["clipped_texels"] = level.encoding.clipped_texels;
     json["clipped_energy"] = level.encoding.clipped_energy;
     json["encoding_rms_error"] = level.encoding.rms_error;
+    json["encoding_log_psnr"] = std::isfinite(level.encoding.log_psnr) ? Json(level.encoding.log_psnr) : Json(nullptr);
     if (level.files.size() == 1) add_file(json, level.files[0]);
     if (level.files.size() > 1)
         for (const BakedFile& file : level.files) {

@@ -70,7 +70,8 @@ Result<TextureLayout> layout_of(const ChainEncoder& encoder, Container container
 void write_compressed_chain(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
                             const BakeOptions& options, const std::filesystem::path& path, Background& background) {
     std::vector<EncodingReport> encoded;
-    auto texture = std::make_shared<Texture>(encode_texture(levels, format.encoding, options.threads, &encoded));
+    auto texture = std::make_shared<Texture>(
+        encode_texture(levels, format.encoding, options.threads, &encoded, options.encoding_quality));
     texture->metadata = format.metadata;
     for (std::size_t l = 0; l < encoded.size(); ++l) report.levels[l].encoding = encoded[l];
     background.start([texture, path, &file = report.file, hashes = options.hashes]() -> Result<void> {
@@ -81,7 +82,7 @@ void write_compressed_chain(BakedMap& report, std::span<FilteredMap> levels, con
 
 Result<void> write_plain_chain(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
                                const BakeOptions& options, const std::filesystem::path& path) {
-    ChainEncoder encoder(levels, format.encoding, format.metadata);
+    ChainEncoder encoder(levels, format.encoding, format.metadata, options.encoding_quality);
     const auto layout = layout_of(encoder, format.container);
     if (!layout) return layout.error().at(path.string());
     auto hash = encode_to_file(path, encoder, *layout, options.threads, options.hashes);
@@ -142,9 +143,12 @@ std::vector<std::pair<std::string, ImageF>> level_pictures(const FilteredMap& le
 
 void write_pictures(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
                     const BakeOptions& options, Staging& staging, Background& background) {
-    if (format.container == Container::exr && format.encoding == Encoding::rgba16f) {
-        std::vector<EncodingReport> encoded;  // half floats clip alike in every container
-        encode_texture(levels, Encoding::rgba16f, options.threads, &encoded);
+    if (format.container == Container::hdr || format.encoding == Encoding::rgba16f) {
+        std::vector<EncodingReport> encoded;
+        if (format.container == Container::hdr)
+            encoded = rgbe_reports(levels);
+        else
+            encode_texture(levels, Encoding::rgba16f, options.threads, &encoded);  // half floats clip alike everywhere
         for (std::size_t l = 0; l < encoded.size(); ++l) report.levels[l].encoding = encoded[l];
     }
     for (std::size_t l = 0; l < levels.size(); ++l) {

@@ -1,5 +1,7 @@
 #include "bake/plan.h"
 
+#include "io/scaled_bytes.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -60,9 +62,9 @@ Result<void> check_values(const BakeOptions& o) {
     if (o.lobe && is_phong(*o.lobe) && !o.roughness.empty())
         return option_error("--roughness", "does not apply to --lobe phong",
                             "Give its exponents with --exponents n0,n1,...");
-    if (o.encoding && (*o.encoding == Encoding::rg16f || *o.encoding == Encoding::rg32f))
+    if (o.encoding && encoding_channels(*o.encoding) != 3)
         return option_error("--encoding", encoding_name(*o.encoding) + " has no room for a colour",
-                            "Accepted are rgba16f, rgba32f, rgb9e5, r11g11b10f.");
+                            "Accepted are rgba16f, rgba32f, rgb9e5, r11g11b10f, bc6h, rgbm, rgbd, rgbp.");
     if (o.irradiance_size && (*o.irradiance_size < 1 || *o.irradiance_size > 4096))
         return option_error("--irradiance-size", fmt::format("{} is not from 1 to 4096", *o.irradiance_size));
     if (o.brdf_size && (*o.brdf_size < 1 || *o.brdf_size > 4096))
@@ -121,6 +123,9 @@ Result<void> plan_encoding(TargetPlan& plan, const BakeOptions& o) {
     if (plan.container == Container::exr && plan.encoding != Encoding::rgba16f && plan.encoding != Encoding::rgba32f)
         return option_error("--encoding", encoding_name(plan.encoding) + " cannot be stored as exr",
                             "exr holds rgba16f (half) and rgba32f (float).");
+    if (plan.container == Container::dds && is_scaled_bytes(plan.encoding))
+        return option_error("--encoding", "dds cannot say that its bytes are " + encoding_name(plan.encoding),
+                            "Use --format ktx2 or ktx1, where a key says so.");
     if (plan.container == Container::hdr && o.encoding)
         return option_error("--encoding", "hdr has only its own encoding (RGBE)", "Leave --encoding out.");
     return {};

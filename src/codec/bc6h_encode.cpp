@@ -13,13 +13,20 @@ Effort effort_of(EncodingQuality quality) {
         case EncodingQuality::fast:
             return {.partitions = 0, .fits = 1, .refits = 1};
         case EncodingQuality::standard:
-            return {.partitions = 4, .fits = 2, .refits = 1};
+            return {.partitions = 4, .fits = 2, .refits = 1, .polish = 2};
         case EncodingQuality::high:
-            return {8, 2, 2, 4, 2, 1.2f, false};
+            return {.partitions = 8, .fits = 2, .refits = 2, .polish = 8, .nudges = 3, .step = 2, .reach = 1.15f};
         case EncodingQuality::exhaustive:
             break;
     }
-    return {k_partitions, 3, 3, 64, 4, 1e30f, true};
+    return {.partitions = k_partitions,
+            .fits = 3,
+            .refits = 3,
+            .polish = 0,
+            .nudges = 64,
+            .step = 4,
+            .reach = 1e30f,
+            .neighbours = true};
 }
 
 void pack_solution(int mode_number, int partition, const int* ends, const int* index, std::uint8_t* block) {

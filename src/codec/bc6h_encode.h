@@ -11,7 +11,8 @@ struct Effort {
     int partitions = 0;       ///< of the 32, the most promising; 0: modes of one subset alone
     int fits = 1;             ///< rounds of nearest indices and least squares before anything is quantised
     int refits = 1;           ///< and with each mode's quantised ends
-    int nudges = 0;           ///< the most rounds of moving single ends by steps; 0: none
+    int polish = 0;           ///< the most rounds of moving single ends of the best block by steps
+    int nudges = 0;           ///< the same of every mode and partition's, before the best is chosen
     float step = 2;           ///< the longest of them
     float reach = 1;          ///< only where a mode's error is below this times the best one found without
     bool neighbours = false;  ///< tries the indices beside a texel's projection on the line, too

@@ -30,6 +30,15 @@ struct Target {
     Colour value[k_texels];  ///< the middle of what decodes to them
 };
 
+/// A mode's numbers, one a lane. In most of the search all lanes have the same.
+struct Rules {
+    F grid, offset;  ///< 16-bit value of an end: end * grid + offset, but 0 and 65535 at the two extremes
+    F top;           ///< the largest end
+    F reach[3];      ///< ends lie from the first one less this to the first one plus this less 1
+    F last;          ///< the largest index
+    F index_weight;  ///< 64ths of the second end an index stands for, before rounding
+};
+
 /// Which texels belong to the second subset (1, else 0), and where that keeps its shortened index.
 struct Subsets {
     F second[k_texels];
@@ -58,6 +67,27 @@ F clamp_to(F v, float low, float high) {
 
 F pick(const F& second, const F& if_first, const F& if_second) {
     return select(second > splat(0.5f), if_second, if_first);
+}
+
+/// The members of Rules in their order.
+struct ModeNumbers {
+    float of[8];
+};
+
+ModeNumbers numbers_of(const Mode& mode) {
+    const int bits = mode.endpoint_bits;
+    // In a mode of 16 bits ends are values; a mode without differences reaches everywhere.
+    ModeNumbers n{{float(1 << (16 - bits)), bits == 16 ? 0 : float(1 << (15 - bits)), float((1 << bits) - 1)}};
+    for (int c = 0; c < 3; ++c) n.of[3 + c] = mode.transformed ? float(1 << (mode.delta_bits[c] - 1)) : 65536;
+    n.of[6] = float((1 << mode.index_bits()) - 1);
+    n.of[7] = 64 / n.of[6];
+    return n;
+}
+
+Rules rules_of(const Mode& mode) {
+    const ModeNumbers n = numbers_of(mode);
+    return {splat(n.of[0]), splat(n.of[1]), splat(n.of[2]), {splat(n.of[3]), splat(n.of[4]), splat(n.of[5])},
+            splat(n.of[6]), splat(n.of[7])};
 }
 
 // ---- Lines ----
@@ -138,9 +168,9 @@ void fit_axis(const Target& target, const Subsets& subsets, float want, Colour& 
     }
 }
 
-/// What share of the second end an index stands for, in 64ths: the format's tables are these sums, rounded.
-F weight_of_index(F index, int levels) {
-    return floor_of(index * splat(64.0f / float(levels - 1)) + splat(0.5f));
+/// What share of the second end an index stands for, in 64ths: the format's tables are these products, rounded.
+F weight_of_index(const F& index, const Rules& rules) {
+    return floor_of(index * rules.index_weight + splat(0.5f));
 }
 
 /// The line of one subset made ready for projections.
@@ -148,19 +178,19 @@ struct Projector {
     Colour start, along;  ///< along: scaled so that texels give indices
 };
 
-Projector projector(const Colour& first, const Colour& second, int levels) {
+Projector projector(const Colour& first, const Colour& second, const Rules& rules) {
     Projector p;
     p.start = first;
     for (int c = 0; c < 3; ++c) p.along.c[c] = second.c[c] - first.c[c];
     const F length = dot(p.along, p.along);
-    const F scale = select(length > splat(0), splat(float(levels - 1)) / length, splat(0));
+    const F scale = select(length > splat(0), rules.last / length, splat(0));
     for (F& v : p.along.c) v = v * scale;
     return p;
 }
 
-F nearest_index(const Colour& texel, const Colour& start, const Colour& along, int levels) {
+F nearest_index(const Colour& texel, const Colour& start, const Colour& along, const F& last) {
     const F at = dot(along, {{texel.c[0] - start.c[0], texel.c[1] - start.c[1], texel.c[2] - start.c[2]}});
-    return clamp_to(floor_of(at + splat(0.5f)), 0, float(levels - 1));
+    return smaller(larger(floor_of(at + splat(0.5f)), splat(0)), last);
 }
 
 /// Turns lines round on which the anchor lies in the second half: its index's top bit is not stored.
@@ -186,13 +216,14 @@ void orient(const Target& target, const Subsets& subsets, int count, Ends& ends)
 }
 
 /// Ends that suit the texels best at the shares of the way that their indices stand for.
-void least_squares(const Target& target, const Subsets& subsets, int count, const F* index, int levels, Ends& ends) {
+void least_squares(const Target& target, const Subsets& subsets, const Rules& rules, int count, const F* index,
+                   Ends& ends) {
     for (int s = 0; s < count; ++s) {
         F aa = splat(0), ab = aa, bb = aa, total = aa;
         Colour ax{{aa, aa, aa}}, bx = ax, sum = ax;
         for (int t = 0; t < k_texels; ++t) {
             const F member = count == 1 ? splat(1) : s == 1 ? subsets.second[t] : splat(1) - subsets.second[t];
-            const F b = weight_of_index(index[t], levels) * splat(1.0f / 64), a = splat(1) - b;
+            const F b = weight_of_index(index[t], rules) * splat(1.0f / 64), a = splat(1) - b;
             const F wa = member * a, wb = member * b;
             aa = aa + wa * a;
             ab = ab + wa * b;
@@ -218,22 +249,22 @@ void least_squares(const Target& target, const Subsets& subsets, int count, cons
 
 /// The lines through `count` subsets: principal axes, then rounds of nearest indices and least squares.
 Ends fit_lines(const Target& target, const Subsets& subsets, int count, int rounds) {
-    const int levels = count == 2 ? 8 : 16;
+    const Rules rules = rules_of(k_mode[count == 2 ? 0 : 10]);
     Ends ends{};
     for (int s = 0; s < count; ++s) fit_axis(target, subsets, float(s), ends.end[2 * s], ends.end[2 * s + 1]);
     for (int i = 0; i < rounds; ++i) {
         F index[k_texels];
-        const Projector first = projector(ends.end[0], ends.end[1], levels),
-                        second = count == 2 ? projector(ends.end[2], ends.end[3], levels) : first;
+        const Projector first = projector(ends.end[0], ends.end[1], rules),
+                        second = count == 2 ? projector(ends.end[2], ends.end[3], rules) : first;
         for (int t = 0; t < k_texels; ++t) {
             Colour start, along;
             for (int c = 0; c < 3; ++c) {
                 start.c[c] = pick(subsets.second[t], first.start.c[c], second.start.c[c]);
                 along.c[c] = pick(subsets.second[t], first.along.c[c], second.along.c[c]);
             }
-            index[t] = nearest_index(target.value[t], start, along, levels);
+            index[t] = nearest_index(target.value[t], start, along, rules.last);
         }
-        least_squares(target, subsets, count, index, levels, ends);
+        least_squares(target, subsets, rules, count, index, ends);
     }
     orient(target, subsets, count, ends);
     return ends;
@@ -242,34 +273,29 @@ Ends fit_lines(const Target& target, const Subsets& subsets, int count, int roun
 // ---- Blocks ----
 
 /// Nearest whole numbers of a mode's precision.
-void snap(const Mode& mode, Ends& ends) {
-    const float scale = 1.0f / float(1 << (16 - mode.endpoint_bits)), top = float((1 << mode.endpoint_bits) - 1);
-    for (int e = 0; e < 2 * mode.subsets; ++e)
-        for (F& v : ends.end[e].c) v = clamp_to(floor_of(v * splat(scale)), 0, top);
+void snap(const Rules& rules, int count, Ends& ends) {
+    const F scale = splat(1) / rules.grid;
+    for (int e = 0; e < 2 * count; ++e)
+        for (F& v : ends.end[e].c) v = smaller(larger(floor_of(v * scale), splat(0)), rules.top);
 }
 
 /// Brings the other ends to where the mode's differences from the first reach.
-void bring_into_reach(const Mode& mode, Ends& ends) {
-    if (!mode.transformed) return;
-    const float top = float((1 << mode.endpoint_bits) - 1);
+void bring_into_reach(const Rules& rules, int count, Ends& ends) {
     for (int c = 0; c < 3; ++c) {
-        const float half = float(1 << (mode.delta_bits[c] - 1));
-        const F low = ends.end[0].c[c] - splat(half), high = ends.end[0].c[c] + splat(half - 1);
-        for (int e = 1; e < 2 * mode.subsets; ++e)
-            ends.end[e].c[c] = clamp_to(smaller(larger(ends.end[e].c[c], low), high), 0, top);
+        const F low = ends.end[0].c[c] - rules.reach[c], high = ends.end[0].c[c] + rules.reach[c] - splat(1);
+        for (int e = 1; e < 2 * count; ++e)
+            ends.end[e].c[c] = smaller(larger(smaller(larger(ends.end[e].c[c], low), high), splat(0)), rules.top);
     }
 }
 
-F unquantised(F value, int bits) {
-    if (bits == 16) return value;
-    const F inner = (value + value + splat(1)) * splat(float(1 << (15 - bits)));
-    return select(value < splat(0.5f), splat(0),
-                  select(value > splat(float((1 << bits) - 1) - 0.5f), splat(k_top), inner));
+F unquantised(const F& end, const Rules& rules) {
+    return select(end < splat(0.5f), splat(0),
+                  select(end > rules.top - splat(0.5f), splat(k_top), end * rules.grid + rules.offset));
 }
 
 /// Squared error of a texel at an index.
-F texel_error(const Colour& bits, const Colour& start, const Colour& end, const F& index, int levels) {
-    const F w = weight_of_index(index, levels), rest = splat(64) - w;
+F texel_error(const Colour& bits, const Colour& start, const Colour& end, const F& index, const Rules& rules) {
+    const F w = weight_of_index(index, rules), rest = splat(64) - w;
     F error = splat(0);
     for (int c = 0; c < 3; ++c) {
         const F value = floor_of((start.c[c] * rest + end.c[c] * w + splat(32)) * splat(1.0f / 64));
@@ -281,35 +307,35 @@ F texel_error(const Colour& bits, const Colour& start, const Colour& end, const 
 
 /// Best indices of given ends, and what they come to. The index nearest to a texel's projection is the best but for
 /// rounding; `neighbours` tries also the ones beside it.
-void evaluate(const Target& target, const Subsets& subsets, const Mode& mode, bool neighbours, Solution& s) {
-    const int levels = 1 << mode.index_bits();
+void evaluate(const Target& target, const Subsets& subsets, const Rules& rules, int count, bool neighbours,
+              Solution& s) {
     Ends colours;
-    for (int e = 0; e < 2 * mode.subsets; ++e)
-        for (int c = 0; c < 3; ++c) colours.end[e].c[c] = unquantised(s.ends.end[e].c[c], mode.endpoint_bits);
+    for (int e = 0; e < 2 * count; ++e)
+        for (int c = 0; c < 3; ++c) colours.end[e].c[c] = unquantised(s.ends.end[e].c[c], rules);
     Projector line[2];
-    for (int i = 0; i < mode.subsets; ++i) line[i] = projector(colours.end[2 * i], colours.end[2 * i + 1], levels);
+    for (int i = 0; i < count; ++i) line[i] = projector(colours.end[2 * i], colours.end[2 * i + 1], rules);
+    // An anchor beyond the middle of its line, which orient() and rounding leave possible, has to stay before it.
+    const F last_of_anchor = (rules.last - splat(1)) * splat(0.5f);
     s.error = splat(0);
     for (int t = 0; t < k_texels; ++t) {
         Colour start = line[0].start, along = line[0].along, end = colours.end[1];
-        if (mode.subsets == 2)
+        if (count == 2)
             for (int c = 0; c < 3; ++c) {
                 start.c[c] = pick(subsets.second[t], start.c[c], line[1].start.c[c]);
                 along.c[c] = pick(subsets.second[t], along.c[c], line[1].along.c[c]);
                 end.c[c] = pick(subsets.second[t], end.c[c], colours.end[3].c[c]);
             }
-        F last = splat(float(levels - 1));
-        // An anchor beyond the middle of its line, which orient() and rounding leave possible, has to stay before it.
-        if (t == 0) last = splat(float(levels / 2 - 1));
-        if (mode.subsets == 2 && (t == 2 || t == 8 || t == 15)) {
+        F last = t == 0 ? last_of_anchor : rules.last;
+        if (count == 2 && (t == 2 || t == 8 || t == 15)) {
             const F distance = subsets.anchor - splat(float(t));
-            last = select(distance * distance < splat(0.5f), splat(float(levels / 2 - 1)), last);
+            last = select(distance * distance < splat(0.5f), last_of_anchor, last);
         }
-        const F nearest = smaller(nearest_index(target.value[t], start, along, levels), last);
-        F index = nearest, error = texel_error(target.bits[t], start, end, index, levels);
+        const F nearest = nearest_index(target.value[t], start, along, last);
+        F index = nearest, error = texel_error(target.bits[t], start, end, index, rules);
         if (neighbours)
             for (const float step : {-1.0f, 1.0f}) {
-                const F other = smaller(clamp_to(nearest + splat(step), 0, float(levels - 1)), last),
-                        other_error = texel_error(target.bits[t], start, end, other, levels);
+                const F other = smaller(larger(nearest + splat(step), splat(0)), last),
+                        other_error = texel_error(target.bits[t], start, end, other, rules);
                 const M better = other_error < error;
                 index = select(better, other, index);
                 error = select(better, other_error, error);
@@ -328,18 +354,17 @@ void keep_better(const Solution& s, const M& better, Solution& best) {
 }
 
 /// Moves single ends in single channels of the blocks in `open`, round after round as long as one gets better.
-void nudge(const Target& target, const Subsets& subsets, const Mode& mode, const M& open, const Effort& effort,
-           Solution& best) {
-    const float top = float((1 << mode.endpoint_bits) - 1);
-    for (int round = 0; round < effort.nudges; ++round) {
+void nudge(const Target& target, const Subsets& subsets, const Rules& rules, int count, const M& open, int rounds,
+           const Effort& effort, Solution& best) {
+    for (int round = 0; round < rounds; ++round) {
         bool changed = false;
-        for (int e = 0; e < 2 * mode.subsets; ++e)
+        for (int e = 0; e < 2 * count; ++e)
             for (int c = 0; c < 3; ++c)
                 for (float step = 1; std::abs(step) <= effort.step; step = step > 0 ? -step : -2 * step) {
                     Solution s = best;
-                    s.ends.end[e].c[c] = clamp_to(s.ends.end[e].c[c] + splat(step), 0, top);
-                    bring_into_reach(mode, s.ends);
-                    evaluate(target, subsets, mode, effort.neighbours, s);
+                    s.ends.end[e].c[c] = smaller(larger(s.ends.end[e].c[c] + splat(step), splat(0)), rules.top);
+                    bring_into_reach(rules, count, s.ends);
+                    evaluate(target, subsets, rules, count, effort.neighbours, s);
                     const M better = (s.error < best.error) & open;
                     if (!any(better)) continue;
                     keep_better(s, better, best);
@@ -350,19 +375,19 @@ void nudge(const Target& target, const Subsets& subsets, const Mode& mode, const
 }
 
 /// The best block of one mode that can be found from `lines`.
-Solution quantise(const Target& target, const Subsets& subsets, const Mode& mode, const Ends& lines,
+Solution quantise(const Target& target, const Subsets& subsets, const Rules& rules, int count, const Ends& lines,
                   const Effort& effort) {
     Solution best{};
     best.ends = lines;
-    snap(mode, best.ends);
-    bring_into_reach(mode, best.ends);
-    evaluate(target, subsets, mode, effort.neighbours, best);
+    snap(rules, count, best.ends);
+    bring_into_reach(rules, count, best.ends);
+    evaluate(target, subsets, rules, count, effort.neighbours, best);
     for (int i = 0; i < effort.refits; ++i) {
         Solution s = best;
-        least_squares(target, subsets, mode.subsets, best.index, 1 << mode.index_bits(), s.ends);
-        snap(mode, s.ends);
-        bring_into_reach(mode, s.ends);
-        evaluate(target, subsets, mode, effort.neighbours, s);
+        least_squares(target, subsets, rules, count, best.index, s.ends);
+        snap(rules, count, s.ends);
+        bring_into_reach(rules, count, s.ends);
+        evaluate(target, subsets, rules, count, effort.neighbours, s);
         keep_better(s, s.error < best.error, best);
     }
     return best;
@@ -372,14 +397,15 @@ Solution quantise(const Target& target, const Subsets& subsets, const Mode& mode
 /// effort.reach of the best error so far.
 void try_modes(const Target& target, const Subsets& subsets, const F& partition, int first, int last,
                const Effort& effort, bool nudged, Best& best) {
-    const Ends lines = fit_lines(target, subsets, k_mode[std::size_t(first)].subsets, effort.fits);
+    const int count = k_mode[std::size_t(first)].subsets;
+    const Ends lines = fit_lines(target, subsets, count, effort.fits);
     for (int m = first; m <= last; ++m) {
-        const Mode& mode = k_mode[std::size_t(m)];
-        Solution s = quantise(target, subsets, mode, lines, effort);
+        const Rules rules = rules_of(k_mode[std::size_t(m)]);
+        Solution s = quantise(target, subsets, rules, count, lines, effort);
         if (nudged) {
             const M open = s.error < best.solution.error * splat(effort.reach);
             if (!any(open)) continue;
-            nudge(target, subsets, mode, open, effort, s);
+            nudge(target, subsets, rules, count, open, effort.nudges, effort, s);
         }
         const M better = s.error < best.solution.error;
         if (!any(better)) continue;
@@ -440,18 +466,33 @@ void rank_partitions(const Target& target, int count, F* ranked) {
     }
 }
 
-Subsets subsets_of(const F& partition) {
-    float number[k_max_lanes], second[k_texels][k_max_lanes], anchor[k_max_lanes];
+/// Per lane; a mode of one subset has no second one.
+Subsets subsets_of(const F& partition, const F& mode) {
+    float number[k_max_lanes], modes[k_max_lanes], second[k_texels][k_max_lanes], anchor[k_max_lanes];
     store(partition, number);
+    store(mode, modes);
     for (int lane = 0; lane < lane_count(); ++lane) {
         const std::size_t p = std::size_t(number[lane]);
-        for (int t = 0; t < k_texels; ++t) second[t][lane] = float(k_partition[p] >> t & 1);
-        anchor[lane] = float(k_anchor[p]);
+        const bool two = k_mode[std::size_t(modes[lane])].subsets == 2;
+        for (int t = 0; t < k_texels; ++t) second[t][lane] = float(two && (k_partition[p] >> t & 1));
+        anchor[lane] = float(two ? k_anchor[p] : 0);
     }
     Subsets subsets;
     for (int t = 0; t < k_texels; ++t) subsets.second[t] = load(second[t]);
     subsets.anchor = load(anchor);
     return subsets;
+}
+
+/// Each lane's own mode.
+Rules rules_of(const F& mode) {
+    float numbers[k_max_lanes], column[8][k_max_lanes];
+    store(mode, numbers);
+    for (int lane = 0; lane < lane_count(); ++lane) {
+        const ModeNumbers n = numbers_of(k_mode[std::size_t(numbers[lane])]);
+        for (int i = 0; i < 8; ++i) column[i][lane] = n.of[i];
+    }
+    return {load(column[0]), load(column[1]), load(column[2]), {load(column[3]), load(column[4]), load(column[5])},
+            load(column[6]), load(column[7])};
 }
 
 Best search(const Target& target, const Effort& effort) {
@@ -467,8 +508,11 @@ Best search(const Target& target, const Effort& effort) {
         if (nudged && effort.nudges == 0) break;
         try_modes(target, one, splat(0), 10, 13, effort, nudged, best);
         for (int i = 0; i < effort.partitions; ++i)
-            try_modes(target, subsets_of(ranked[i]), ranked[i], 0, 9, effort, nudged, best);
+            try_modes(target, subsets_of(ranked[i], splat(0)), ranked[i], 0, 9, effort, nudged, best);
     }
+    if (effort.polish > 0)
+        nudge(target, subsets_of(best.partition, best.mode), rules_of(best.mode), 2, splat(0) < splat(1), effort.polish,
+              effort, best.solution);
     return best;
 }
 

@@ -3,6 +3,7 @@
 #include "codec/bc6h.h"
 #include "codec/half.h"
 #include "simd/bc6h_encode.h"
+#include "simd/encode_row.h"
 
 #include <algorithm>
 #include <cassert>
@@ -21,10 +22,6 @@ void decode_bc6h(const std::uint8_t* blocks, int count, float* texels) {
 
 constexpr BlockCodec k_bc6h{0, k_half_max, simd::bc6h_encode, decode_bc6h};
 
-Vec3f texel_at(const float* p) {
-    return {p[0], p[1], p[2]};
-}
-
 }  // namespace
 
 const BlockCodec* block_codec(Encoding encoding) {
@@ -32,32 +29,32 @@ const BlockCodec* block_codec(Encoding encoding) {
 }
 
 EncodeSums encode_block_row(Encoding encoding, EncodingQuality quality, const float* rgb, int width, int rows,
-                            const float* const* weight, std::uint8_t* out) {
+                            const float* const* weight, float log_floor, std::uint8_t* out) {
     const BlockCodec& codec = *block_codec(encoding);
     const int side = encoding_block(encoding), block_floats = 3 * side * side, columns = (width + side - 1) / side;
     assert(rows >= 1 && rows <= side);
-    std::vector<float> texels(std::size_t(k_blocks_at_once * block_floats)), stored(texels.size());
+    std::vector<float> texels(std::size_t(k_blocks_at_once * block_floats)),
+        row(std::size_t(3 * k_blocks_at_once * side));
     EncodeSums sums;
     for (int first = 0; first < columns; first += k_blocks_at_once) {
-        const int count = std::min(k_blocks_at_once, columns - first);
-        const auto for_texels = [&](auto use) {
-            for (int b = 0; b < count; ++b)
-                for (int i = 0; i < side * side; ++i)
-                    use(b * block_floats + 3 * i, side * (first + b) + i % side, i / side);
-        };
-        for_texels([&](int at, int x, int y) {
-            const float* from = rgb + 3 * (std::size_t(width) * std::size_t(std::min(y, rows - 1)) +
-                                           std::size_t(std::min(x, width - 1)));
-            for (int c = 0; c < 3; ++c) texels[std::size_t(at + c)] = limit_to(from[c], codec.min, codec.max);
-        });
+        const int count = std::min(k_blocks_at_once, columns - first), left = side * first,
+                  texel_columns = std::min(side * count, width - left);
+        float* to = texels.data();
+        for (int b = 0; b < count; ++b)
+            for (int i = 0; i < side * side; ++i) {
+                const int x = std::min(left + b * side + i % side, width - 1), y = std::min(i / side, rows - 1);
+                const float* from = rgb + 3 * (std::size_t(width) * std::size_t(y) + std::size_t(x));
+                for (int c = 0; c < 3; ++c) *to++ = limit_to(from[c], codec.min, codec.max);
+            }
         codec.encode(texels.data(), count, quality, out);
-        codec.decode(out, count, stored.data());
+        codec.decode(out, count, texels.data());
         out += std::size_t(count) * std::size_t(encoding_bytes(encoding));
-        for_texels([&](int at, int x, int y) {
-            if (x >= width || y >= rows) return;
-            sums.add(texel_at(rgb + 3 * (std::size_t(width) * std::size_t(y) + std::size_t(x))),
-                     texel_at(texels.data() + at), texel_at(stored.data() + at), weight[y][x]);
-        });
+        for (int y = 0; y < rows; ++y) {
+            for (int b = 0; b < count; ++b)
+                std::copy_n(texels.data() + b * block_floats + 3 * side * y, 3 * side, row.data() + 3 * side * b);
+            sums += simd::compare_row(rgb + 3 * (std::size_t(width) * std::size_t(y) + std::size_t(left)), row.data(),
+                                      texel_columns, weight[y] + left, codec.min, codec.max, log_floor);
+        }
     }
     return sums;
 }

@@ -24,7 +24,7 @@ const BlockCodec* block_codec(Encoding encoding);
 /// Encodes one row of blocks: `rows` (at most the block's side) rows of `width` RGB texels one after the other, with
 /// `weight[y][x]` for the sums. What a block misses at the right and below is filled with its last column and row.
 EncodeSums encode_block_row(Encoding encoding, EncodingQuality quality, const float* rgb, int width, int rows,
-                            const float* const* weight, std::uint8_t* out);
+                            const float* const* weight, float log_floor, std::uint8_t* out);
 
 /// RGB texels, width x height, of rows of blocks.
 void decode_blocks(Encoding encoding, const std::uint8_t* blocks, int width, int height, float* rgb);

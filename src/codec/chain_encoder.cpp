@@ -1,6 +1,7 @@
 #include "codec/chain_encoder.h"
 
 #include "codec/block_codec.h"
+#include "codec/rgbe.h"
 #include "simd/encode_row.h"
 
 #include <algorithm>
@@ -27,11 +28,13 @@ void cube_row_weights(int size, int y, float* weight) {
     }
 }
 
-EncodingReport report_from(const EncodeSums& sums) {
+EncodingReport report_from(const EncodeSums& sums, const LogScale& log_scale) {
     EncodingReport report;
     report.clipped_texels = sums.clipped;
     if (sums.power > 0) report.clipped_energy = sums.lost / sums.power;
     if (sums.norm > 0) report.rms_error = std::sqrt(sums.error / sums.norm);
+    if (sums.log_error > 0)
+        report.log_psnr = 10 * std::log10(log_scale.range * log_scale.range * sums.log_norm / sums.log_error);
     return report;
 }
 
@@ -52,6 +55,7 @@ ChainEncoder::ChainEncoder(std::span<const FilteredMap> levels, Encoding encodin
         level.pixels = map.pixels().data();
         level.width = cube ? map.cube.size() : map.latlong.width();
         level.height = cube ? map.cube.size() : map.latlong.height();
+        level.log_scale = log_scale_of(map.pixels());
         level.sums.resize(std::size_t(rows(level_count() - 1)) * head_.faces);
         if (!cube) continue;
         const int half = (level.height + 1) / 2;
@@ -91,8 +95,9 @@ void ChainEncoder::encode(int level_index, int first, int count, std::uint8_t* o
             weight[std::size_t(i)] = row_weights(level, y + i, scratch[std::size_t(i)]);
         const float* rgb = level.pixels + 3 * std::size_t(level.width) * (std::size_t(level.height) * face + y);
         level.sums[row] =
-            side == 1 ? simd::encode_row(head_.encoding, rgb, level.width, weight[0], out)
-                      : encode_block_row(head_.encoding, quality_, rgb, level.width, texel_rows, weight.data(), out);
+            side == 1 ? simd::encode_row(head_.encoding, rgb, level.width, weight[0], level.log_scale.floor, out)
+                      : encode_block_row(head_.encoding, quality_, rgb, level.width, texel_rows, weight.data(),
+                                         level.log_scale.floor, out);
     }
 }
 
@@ -107,7 +112,34 @@ std::vector<EncodingReport> ChainEncoder::reports() const {
                 for (int face = 0; face < head_.faces; ++face) part += levels_[l].sums[face * face_rows + y];
             total += part;
         }
-        reports.push_back(report_from(total));
+        reports.push_back(report_from(total, levels_[l].log_scale));
+    }
+    return reports;
+}
+
+std::vector<EncodingReport> rgbe_reports(std::span<const FilteredMap> levels) {
+    constexpr float k_top = 255 * 0x1p119f;
+    std::vector<EncodingReport> reports;
+    for (const FilteredMap& map : levels) {
+        const bool cube = !map.cube.empty();
+        const int width = cube ? map.cube.size() : map.latlong.width(),
+                  height = cube ? map.cube.size() : map.latlong.height(), rows = cube ? 6 * height : height;
+        const LogScale log_scale = log_scale_of(map.pixels());
+        std::vector<float> weight(static_cast<std::size_t>(width)), stored(3 * weight.size());
+        EncodeSums sums;
+        for (int row = 0; row < rows; ++row) {
+            if (cube)
+                cube_row_weights(width, row % height, weight.data());
+            else
+                weight.assign(weight.size(), float(std::sin(k_pi * (row + 0.5) / height)));
+            const float* rgb = map.pixels().data() + stored.size() * std::size_t(row);
+            for (std::size_t i = 0; i < stored.size(); i += 3) {
+                const auto rgbe = rgbe_from_rgb(rgb[i], rgb[i + 1], rgb[i + 2]);
+                for (std::size_t c = 0; c < 3; ++c) stored[i + c] = std::ldexp(float(rgbe[c]), int(rgbe[3]) - 136);
+            }
+            sums += simd::compare_row(rgb, stored.data(), width, weight.data(), 0, k_top, log_scale.floor);
+        }
+        reports.push_back(report_from(sums, log_scale));
     }
     return reports;
 }

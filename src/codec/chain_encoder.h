@@ -43,6 +43,7 @@ class ChainEncoder {
         int width = 0, height = 0;
         std::vector<float> weights;    ///< cube: of the upper half of a face's rows; the lower half is its reflection
         std::vector<EncodeSums> sums;  ///< of each row of each face
+        LogScale log_scale;
     };
     int in_blocks(int texels) const {
         return (texels + encoding_block(head_.encoding) - 1) / encoding_block(head_.encoding);
@@ -54,5 +55,8 @@ class ChainEncoder {
     EncodingQuality quality_;
     std::vector<Level> levels_;
 };
+
+/// What storing levels as RGBE (.hdr pictures) does to them, one report a level.
+std::vector<EncodingReport> rgbe_reports(std::span<const FilteredMap> levels);
 
 }  // namespace domelight

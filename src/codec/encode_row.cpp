@@ -4,10 +4,13 @@
 #include "codec/half.h"
 #include "codec/r11g11b10f.h"
 #include "codec/rgb9e5.h"
+#include "codec/rgba8_ranges.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
 
 namespace domelight {
@@ -90,6 +93,23 @@ struct R11g11b10f {
     static Vec3f decode(const std::uint8_t* in) { return rgb_from_r11g11b10f(load<std::uint32_t>(in)); }
 };
 
+template <Rgba8 (*from)(const Vec3f&), Vec3f (*back)(const Rgba8&)>
+struct ScaledBytes {
+    static constexpr bool k_exact = false;
+    static constexpr int k_bytes = 4, k_channels = 3;
+    static void encode(const Vec3f& v, std::uint8_t* out) { store(out, from(v)); }
+    static Vec3f decode(const std::uint8_t* in) { return back(load<Rgba8>(in)); }
+};
+struct Rgbm : ScaledBytes<rgbm_from_rgb, rgb_from_rgbm> {
+    static constexpr std::array<float, 3> k_min{0, 0, 0}, k_max{k_rgbm_max, k_rgbm_max, k_rgbm_max};
+};
+struct Rgbd : ScaledBytes<rgbd_from_rgb, rgb_from_rgbd> {
+    static constexpr std::array<float, 3> k_min{0, 0, 0}, k_max{k_rgbd_max, k_rgbd_max, k_rgbd_max};
+};
+struct Rgbp : ScaledBytes<rgbp_from_rgb, rgb_from_rgbp> {
+    static constexpr std::array<float, 3> k_min{0, 0, 0}, k_max{k_rgbp_max, k_rgbp_max, k_rgbp_max};
+};
+
 /// Calls `use` with the coder of `encoding`.
 template <typename Use>
 auto with_coder(Encoding encoding, Use use) {
@@ -104,8 +124,14 @@ auto with_coder(Encoding encoding, Use use) {
             return use(R11g11b10f{});
         case Encoding::rg16f:
             return use(Rg16f{});
+        case Encoding::rgbm:
+            return use(Rgbm{});
+        case Encoding::rgbd:
+            return use(Rgbd{});
+        case Encoding::rgbp:
+            return use(Rgbp{});
         case Encoding::rg32f:
-        case Encoding::bc6h:
+        case Encoding::bc6h:  // has no texels by themselves
             break;
     }
     return use(Rg32f{});
@@ -118,22 +144,69 @@ Vec3f clamp_to_range(const Vec3f& v) {
 }
 
 template <typename Coder>
-EncodeSums encode_row_with(const float* rgb, int count, const float* weight, std::uint8_t* out) {
+EncodeSums encode_row_with(const float* rgb, int count, const float* weight, float log_floor, std::uint8_t* out) {
     EncodeSums sums;
     for (int i = 0; i < count; ++i, rgb += 3, out += Coder::k_bytes) {
         const Vec3f read{rgb[0], rgb[1], Coder::k_channels == 3 ? rgb[2] : 0.0f};
         const Vec3f inside = clamp_to_range<Coder>(read);
         Coder::encode(inside, out);
-        sums.add(read, inside, Coder::decode(out), weight[i]);
+        sums.add(read, inside, Coder::decode(out), weight[i], log_floor);
     }
-    if (Coder::k_exact) sums.error = sums.norm = 0;
+    if (Coder::k_exact) sums.error = sums.norm = sums.log_error = 0;
     return sums;
 }
 
 }  // namespace
 
-EncodeSums encode_row_scalar(Encoding encoding, const float* rgb, int count, const float* weight, std::uint8_t* out) {
-    return with_coder(encoding, [&](auto coder) { return encode_row_with<decltype(coder)>(rgb, count, weight, out); });
+EncodeSums encode_row_scalar(Encoding encoding, const float* rgb, int count, const float* weight, float log_floor,
+                             std::uint8_t* out) {
+    return with_coder(encoding,
+                      [&](auto coder) { return encode_row_with<decltype(coder)>(rgb, count, weight, log_floor, out); });
+}
+
+EncodeSums compare_row_scalar(const float* rgb, const float* stored, int count, const float* weight, float low,
+                              float high, float log_floor) {
+    EncodeSums sums;
+    for (int i = 0; i < count; ++i, rgb += 3, stored += 3) {
+        const Vec3f read{rgb[0], rgb[1], rgb[2]};
+        const Vec3f inside{limit_to(read.x, low, high), limit_to(read.y, low, high), limit_to(read.z, low, high)};
+        sums.add(read, inside, {stored[0], stored[1], stored[2]}, weight[i], log_floor);
+    }
+    return sums;
+}
+
+LogScale log_scale_of(std::span<const float> rgb) {
+    // Eight sums side by side: their order is part of the result's definition, and a vector has them at once.
+    constexpr std::size_t k_texels_at_once = 8;
+    std::array<double, 3> sum{};
+    float low = std::numeric_limits<float>::max(), high = 0;
+    const auto number = [](float v) { return v == v ? v : 0.0f; };
+    for (std::size_t begin = 0; begin < rgb.size();) {
+        const std::size_t end = std::min(rgb.size(), begin + 3 * 512);
+        float part[3 * k_texels_at_once] = {}, least[3 * k_texels_at_once], most[3 * k_texels_at_once];
+        std::fill(std::begin(least), std::end(least), low);
+        std::fill(std::begin(most), std::end(most), high);
+        for (; begin < end; begin += 3 * k_texels_at_once) {
+            const std::size_t lanes = std::min(end - begin, 3 * k_texels_at_once);
+            for (std::size_t i = 0; i < lanes; ++i) {
+                const float v = number(rgb[begin + i]);
+                part[i] += v;
+                least[i] = v < least[i] ? v : least[i];
+                most[i] = v > most[i] ? v : most[i];
+            }
+        }
+        begin = end;
+        for (std::size_t i = 0; i < 3 * k_texels_at_once; ++i) sum[i % 3] += double(part[i]);
+        low = *std::min_element(std::begin(least), std::end(least));
+        high = *std::max_element(std::begin(most), std::end(most));
+    }
+    const double mean =
+        rgb.empty() ? 0 : (0.2126 * sum[0] + 0.7152 * sum[1] + 0.0722 * sum[2]) / (double(rgb.size()) / 3);
+    LogScale scale;
+    if (mean > 0) scale.floor = float(1e-4 * mean);
+    if (!(scale.floor > 0 && std::isfinite(scale.floor))) scale.floor = 1;
+    scale.range = std::log2((std::max(high, 0.0f) + scale.floor) / (std::max(low, 0.0f) + scale.floor));
+    return scale;
 }
 
 void encode_texels(Encoding encoding, const float* texels, int channels, int count, std::uint8_t* out) {

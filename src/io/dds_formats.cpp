@@ -239,6 +239,10 @@ std::uint32_t dxgi_number(Encoding encoding) {
             return 34;
         case Encoding::bc6h:
             return 95;
+        case Encoding::rgbm:
+        case Encoding::rgbd:
+        case Encoding::rgbp:
+            return 28;  // four bytes: what they mean, DDS cannot say
         case Encoding::rg32f:
             break;
     }

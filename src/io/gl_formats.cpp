@@ -36,7 +36,7 @@ constexpr Name k_names[] = {
     {0x8054, "RGB16"},
     {0x8056, "RGBA4"},
     {0x8057, "RGB5_A1"},
-    {0x8058, "RGBA8"},
+    {k_gl_rgba8, "RGBA8"},
     {0x8059, "RGB10_A2"},
     {0x805b, "RGBA16"},
     {0x8d62, "RGB565"},

@@ -24,6 +24,8 @@ enum : std::uint32_t {
     k_gl_r11f_g11f_b10f = 0x8c3a,
     k_gl_rgb9_e5 = 0x8c3d,
     k_gl_bptc_unsigned_float = 0x8e8f,
+    k_gl_rgba8 = 0x8058,
+    k_gl_unsigned_byte = 0x1401,
 };
 
 }  // namespace domelight

@@ -1,6 +1,7 @@
 // Reads KTX 1.1 (Khronos KTX File Format Specification, version 1.1), of either endianness.
 #include "io/gl_formats.h"
 #include "io/ktx1.h"
+#include "io/scaled_bytes.h"
 #include "io/texture_reading.h"
 
 #include <algorithm>
@@ -92,6 +93,11 @@ Result<Ktx1> parse(ByteSource& source) {
     file.texels = gl_format_texels(internal_format, word(1));
     done = read_key_values(source, file.swapped, word(12), file.info.metadata);
     if (!done) return done.error();
+    if (internal_format == k_gl_rgba8 && word(1) == k_gl_unsigned_byte)
+        if (const auto encoding = take_scaled_bytes(file.info.metadata)) {
+            file.texels = StoredTexels{*encoding};
+            file.info.format += ", " + encoding_name(*encoding);
+        }
     file.data_offset = k_ktx1_header_bytes + word(12);
     done = check_levels(source, file);
     if (!done) return done.error();
@@ -103,7 +109,7 @@ Result<Ktx1> parse(ByteSource& source) {
 /// type size says; blocks are bytes.
 std::size_t swap_unit(const StoredTexels& texels) {
     if (texels.channels > 0) return std::size_t(texels.channel_bytes);
-    if (encoding_block(texels.encoding) > 1) return 1;
+    if (encoding_block(texels.encoding) > 1 || is_scaled_bytes(texels.encoding)) return 1;
     return texels.encoding == Encoding::rgba16f || texels.encoding == Encoding::rg16f ? 2 : 4;
 }
 

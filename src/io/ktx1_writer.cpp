@@ -3,8 +3,10 @@
 
 #include "io/byte_buffer.h"
 #include "io/ktx1.h"
+#include "io/scaled_bytes.h"
 #include "io/texture_layout.h"
 
+#include <map>
 #include <string>
 
 namespace domelight {
@@ -29,6 +31,10 @@ GlFormat gl_format(Encoding encoding) {
             return {k_gl_rg32f, k_float, 4, k_rg, k_rg};
         case Encoding::rgb9e5:
             return {k_gl_rgb9_e5, 0x8c3e, 4, k_rgb, k_rgb};  // UNSIGNED_INT_5_9_9_9_REV
+        case Encoding::rgbm:
+        case Encoding::rgbd:
+        case Encoding::rgbp:
+            return {k_gl_rgba8, k_gl_unsigned_byte, 1, k_rgba, k_rgba};
         case Encoding::bc6h:
             return {k_gl_bptc_unsigned_float, 0, 1, 0, k_rgb};  // compressed: neither type nor format
         case Encoding::r11g11b10f:
@@ -47,7 +53,9 @@ bool is_reserved(const std::string& key) {
 
 Result<TextureLayout> ktx1_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes) {
     ByteBuffer key_values;
-    for (const auto& [key, value] : texture.metadata) {
+    std::map<std::string, std::string> metadata = texture.metadata;
+    note_scaled_bytes(texture.encoding, metadata);
+    for (const auto& [key, value] : metadata) {
         if (is_reserved(key)) continue;
         key_values.u32(std::uint32_t(key.size() + 1 + value.size() + 1));
         key_values.text(key);

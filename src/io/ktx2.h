@@ -12,6 +12,8 @@ inline constexpr std::array<std::uint8_t, 12> k_ktx2_identifier{0xab, 'K',  'T',
                                                                 '0',  0xbb, '\r', '\n', 0x1a, '\n'};
 inline constexpr std::uint64_t k_ktx2_header_bytes = 80, k_ktx2_level_bytes = 24;
 
+inline constexpr std::uint32_t k_vulkan_rgba8 = 37;  // VK_FORMAT_R8G8B8A8_UNORM
+
 /// VkFormat number of an encoding.
 constexpr std::uint32_t vulkan_format(Encoding encoding) {
     switch (encoding) {
@@ -27,6 +29,10 @@ constexpr std::uint32_t vulkan_format(Encoding encoding) {
             return 83;  // VK_FORMAT_R16G16_SFLOAT
         case Encoding::bc6h:
             return 143;  // VK_FORMAT_BC6H_UFLOAT_BLOCK
+        case Encoding::rgbm:
+        case Encoding::rgbd:
+        case Encoding::rgbp:
+            return k_vulkan_rgba8;
         case Encoding::rg32f:
             break;
     }

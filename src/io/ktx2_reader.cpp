@@ -1,5 +1,6 @@
 // Reads KTX 2.0 (Khronos KTX File Format Specification, version 2.0).
 #include "io/ktx2.h"
+#include "io/scaled_bytes.h"
 #include "io/texture_reading.h"
 #include "io/vulkan_formats.h"
 
@@ -119,6 +120,11 @@ Result<Ktx2> parse(ByteSource& source) {
         done = read_key_values(source, word(11), word(12), file.info.metadata);
         if (!done) return done.error();
     }
+    if (format == k_vulkan_rgba8)
+        if (const auto encoding = take_scaled_bytes(file.info.metadata)) {
+            file.texels = StoredTexels{*encoding};
+            file.info.format += ", " + encoding_name(*encoding);
+        }
     if (!source.contains(u64_at(*head, 64), u64_at(*head, 72)))
         return Error{"ends before its supercompression global data", "", "the file is truncated or damaged"};
 

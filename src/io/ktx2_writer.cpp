@@ -3,6 +3,7 @@
 
 #include "io/byte_buffer.h"
 #include "io/ktx2.h"
+#include "io/scaled_bytes.h"
 #include "io/texture_layout.h"
 
 #include <zstd.h>
@@ -53,6 +54,10 @@ std::vector<Sample> samples_of(Encoding encoding) {
             return {{0, 11, k_red | k_float, 0, k_one},
                     {11, 11, k_green | k_float, 0, k_one},
                     {22, 10, k_blue | k_float, 0, k_one}};
+        case Encoding::rgbm:
+        case Encoding::rgbd:
+        case Encoding::rgbp:
+            return {{0, 8, k_red, 0, 255}, {8, 8, k_green, 0, 255}, {16, 8, k_blue, 0, 255}, {24, 8, k_alpha, 0, 255}};
         case Encoding::bc6h:
             return {{0, 128, k_red | k_float, 0, k_one}};  // channel 0 of this model is its colour
         case Encoding::rgb9e5:
@@ -104,7 +109,7 @@ void append_descriptor(ByteBuffer& out, Encoding encoding) {
 
 /// Bytes of what a swap of ends swaps.
 std::uint32_t type_bytes(Encoding encoding) {
-    if (encoding_block(encoding) > 1) return 1;
+    if (encoding_block(encoding) > 1 || is_scaled_bytes(encoding)) return 1;
     return encoding == Encoding::rgba16f || encoding == Encoding::rg16f ? 2 : 4;
 }
 
@@ -126,6 +131,7 @@ std::map<std::string, std::string> complete_metadata(const Texture& texture) {
     std::map<std::string, std::string> metadata = texture.metadata;
     std::erase_if(metadata,
                   [](const auto& pair) { return pair.first.starts_with("KTX") || pair.first.starts_with("ktx"); });
+    note_scaled_bytes(texture.encoding, metadata);
     metadata["KTXorientation"] = "rd";  // right, down: rows run from top to bottom
     metadata["KTXwriter"] = "Domelight " DOMELIGHT_VERSION;
     return metadata;

@@ -13,6 +13,8 @@
 // clang-format off: the order is Highway's
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include <hwy/contrib/math/math-inl.h>
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
@@ -118,80 +120,140 @@ struct R11g11b10fCoder {
     }
 };
 
-template <typename D, typename V = hn::Vec<D>>
-double sum(D d, V v) {
-    return double(hn::GetLane(hn::SumOfLanes(d, v)));
-}
+/// EncodeSums of a row in the making: those of each lane.
+class Accumulator {
+    using D = hn::ScalableTag<float>;
+    using V = hn::Vec<D>;
 
-template <typename Coder>
-EncodeSums encode_row_with(Encoding encoding, const float* rgb, int count, const float* weight, std::uint8_t* out) {
-    const hn::ScalableTag<float> d;
-    using V = hn::Vec<decltype(d)>;
-    const int lanes = int(hn::Lanes(d));
-    const auto low = hn::Set(d, Coder::k_min), high = hn::Set(d, Coder::k_max),
-               high_blue = hn::Set(d, Coder::k_max_blue);
-    const auto luminance = [&](const Rgb<V>& v) HWY_ATTR {
-        return hn::Add(hn::Mul(hn::Set(d, 0.2126f), v.r),
-                       hn::Add(hn::Mul(hn::Set(d, 0.7152f), v.g), hn::Mul(hn::Set(d, 0.0722f), v.b)));
-    };
-    const auto square = [&](const Rgb<V>& v) HWY_ATTR {
-        return hn::Add(hn::Mul(v.r, v.r), hn::Add(hn::Mul(v.g, v.g), hn::Mul(v.b, v.b)));
-    };
-    const auto minus = [](const Rgb<V>& a, const Rgb<V>& b)
-                           HWY_ATTR { return Rgb<V>{hn::Sub(a.r, b.r), hn::Sub(a.g, b.g), hn::Sub(a.b, b.b)}; };
-    const auto number = [](V v) HWY_ATTR { return hn::IfThenElseZero(hn::Eq(v, v), v); };
-    V power = hn::Zero(d), lost = power, error = power, norm = power;
-    EncodeSums sums;
-    int x = 0;
-    for (; x + lanes <= count; x += lanes) {
-        Rgb<V> read{hn::Undefined(d), hn::Undefined(d), hn::Undefined(d)};
-        hn::LoadInterleaved3(d, rgb + 3 * x, read.r, read.g, read.b);
-        const Rgb<V> v{number(read.r), number(read.g), number(read.b)};
-        const Rgb<V> inside{hn::Min(hn::Max(v.r, low), high), hn::Min(hn::Max(v.g, low), high),
-                            hn::Min(hn::Max(v.b, low), high_blue)};
-        const Rgb<V> stored = Coder::store(d, inside, out + std::size_t(x) * Coder::k_bytes);
-        const auto w = hn::LoadU(d, weight + x);
-        power = hn::Add(power, hn::Mul(w, luminance(v)));
+  public:
+    Accumulator(float low, float high, float high_blue, float log_floor)
+        : low_(hn::Set(d_, low)),
+          high_(hn::Set(d_, high)),
+          high_blue_(hn::Set(d_, high_blue)),
+          floor_(hn::Set(d_, log_floor)) {}
+
+    static Rgb<V> load(const float* rgb) {
+        Rgb<V> read{hn::Undefined(d_), hn::Undefined(d_), hn::Undefined(d_)};
+        hn::LoadInterleaved3(d_, rgb, read.r, read.g, read.b);
+        return read;
+    }
+    /// Inside the range; NaN becomes 0.
+    Rgb<V> limit(const Rgb<V>& read) const {
+        const Rgb<V> v = numbers(read);
+        return {hn::Min(hn::Max(v.r, low_), high_), hn::Min(hn::Max(v.g, low_), high_),
+                hn::Min(hn::Max(v.b, low_), high_blue_)};
+    }
+    /// See EncodeSums::add. `exact`: `stored` is `inside`.
+    void add(const Rgb<V>& read, const Rgb<V>& inside, const Rgb<V>& stored, V w, bool exact) {
+        const Rgb<V> v = numbers(read);
+        power_ = hn::Add(power_, hn::Mul(w, luminance(v)));
         // Not Ne: that is false for NaN.
         const auto kept =
             hn::And(hn::Eq(read.r, inside.r), hn::And(hn::Eq(read.g, inside.g), hn::Eq(read.b, inside.b)));
         const auto clipped = hn::Not(kept);
-        auto w_kept = w;
-        if (HWY_UNLIKELY(!hn::AllFalse(d, clipped))) {
-            sums.clipped += std::int64_t(hn::CountTrue(d, clipped));
-            w_kept = hn::IfThenZeroElse(clipped, w);
+        if (HWY_UNLIKELY(!hn::AllFalse(d_, clipped))) {
+            clipped_ += std::int64_t(hn::CountTrue(d_, clipped));
             const Rgb<V> above = minus(v, inside);
-            const auto zero = hn::Zero(d);
+            const auto zero = hn::Zero(d_);
             const Rgb<V> lost_here{hn::Max(above.r, zero), hn::Max(above.g, zero), hn::Max(above.b, zero)};
-            lost = hn::Add(lost, hn::Mul(w, luminance(lost_here)));
+            lost_ = hn::Add(lost_, hn::Mul(w, luminance(lost_here)));
+            w = hn::IfThenZeroElse(clipped, w);
         }
-        if (Coder::k_exact) continue;
-        error = hn::Add(error, hn::Mul(w_kept, square(minus(stored, inside))));
-        norm = hn::Add(norm, hn::Mul(w_kept, square(inside)));
+        log_norm_ = hn::Add(log_norm_, hn::Mul(w, hn::Set(d_, 3.0f)));
+        if (exact) return;
+        error_ = hn::Add(error_, hn::Mul(w, square(minus(stored, inside))));
+        norm_ = hn::Add(norm_, hn::Mul(w, square(inside)));
+        const Rgb<V> ratio{log_ratio(stored.r, inside.r), log_ratio(stored.g, inside.g), log_ratio(stored.b, inside.b)};
+        log_error_ = hn::Add(log_error_, hn::Mul(w, square(ratio)));
     }
-    sums.power = sum(d, power);
-    sums.lost = sum(d, lost);
-    sums.error = sum(d, error);
-    sums.norm = sum(d, norm);
-    sums += encode_row_scalar(encoding, rgb + 3 * x, count - x, weight + x, out + std::size_t(x) * Coder::k_bytes);
-    return sums;
+    EncodeSums finish() const {
+        EncodeSums sums;
+        sums.clipped = clipped_;
+        sums.power = sum(power_);
+        sums.lost = sum(lost_);
+        sums.error = sum(error_);
+        sums.norm = sum(norm_);
+        sums.log_error = sum(log_error_);
+        sums.log_norm = sum(log_norm_);
+        return sums;
+    }
+
+  private:
+    static Rgb<V> numbers(const Rgb<V>& v) {
+        return {hn::IfThenElseZero(hn::Eq(v.r, v.r), v.r), hn::IfThenElseZero(hn::Eq(v.g, v.g), v.g),
+                hn::IfThenElseZero(hn::Eq(v.b, v.b), v.b)};
+    }
+    static V luminance(const Rgb<V>& v) {
+        return hn::Add(hn::Mul(hn::Set(d_, 0.2126f), v.r),
+                       hn::Add(hn::Mul(hn::Set(d_, 0.7152f), v.g), hn::Mul(hn::Set(d_, 0.0722f), v.b)));
+    }
+    static V square(const Rgb<V>& v) {
+        return hn::Add(hn::Mul(v.r, v.r), hn::Add(hn::Mul(v.g, v.g), hn::Mul(v.b, v.b)));
+    }
+    static Rgb<V> minus(const Rgb<V>& a, const Rgb<V>& b) {
+        return {hn::Sub(a.r, b.r), hn::Sub(a.g, b.g), hn::Sub(a.b, b.b)};
+    }
+    V log_ratio(V now, V before) const {
+        const auto zero = hn::Zero(d_);
+        return hn::Log2(d_, hn::Div(hn::Add(hn::Max(now, zero), floor_), hn::Add(hn::Max(before, zero), floor_)));
+    }
+    static double sum(V v) { return double(hn::GetLane(hn::SumOfLanes(d_, v))); }
+
+    static constexpr D d_{};
+    V low_, high_, high_blue_, floor_;
+    V power_ = hn::Zero(d_), lost_ = power_, error_ = power_, norm_ = power_, log_error_ = power_, log_norm_ = power_;
+    std::int64_t clipped_ = 0;
+};
+
+template <typename Coder>
+EncodeSums encode_row_with(Encoding encoding, const float* rgb, int count, const float* weight, float log_floor,
+                           std::uint8_t* out) {
+    const hn::ScalableTag<float> d;
+    const int lanes = int(hn::Lanes(d));
+    Accumulator sums(Coder::k_min, Coder::k_max, Coder::k_max_blue, log_floor);
+    int x = 0;
+    for (; x + lanes <= count; x += lanes) {
+        const auto read = Accumulator::load(rgb + 3 * x), inside = sums.limit(read);
+        const auto stored = Coder::store(d, inside, out + std::size_t(x) * Coder::k_bytes);
+        sums.add(read, inside, stored, hn::LoadU(d, weight + x), Coder::k_exact);
+    }
+    EncodeSums total = sums.finish();
+    total += encode_row_scalar(encoding, rgb + 3 * x, count - x, weight + x, log_floor,
+                               out + std::size_t(x) * Coder::k_bytes);
+    return total;
 }
 
-EncodeSums encode_row_here(Encoding encoding, const float* rgb, int count, const float* weight, std::uint8_t* out) {
+EncodeSums compare_row_here(const float* rgb, const float* stored, int count, const float* weight, float low,
+                            float high, float log_floor) {
+    const hn::ScalableTag<float> d;
+    const int lanes = int(hn::Lanes(d));
+    Accumulator sums(low, high, high, log_floor);
+    int x = 0;
+    for (; x + lanes <= count; x += lanes) {
+        const auto read = Accumulator::load(rgb + 3 * x);
+        sums.add(read, sums.limit(read), Accumulator::load(stored + 3 * x), hn::LoadU(d, weight + x), false);
+    }
+    EncodeSums total = sums.finish();
+    total += compare_row_scalar(rgb + 3 * x, stored + 3 * x, count - x, weight + x, low, high, log_floor);
+    return total;
+}
+
+EncodeSums encode_row_here(Encoding encoding, const float* rgb, int count, const float* weight, float log_floor,
+                           std::uint8_t* out) {
     switch (encoding) {
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_NEON
         // Only where the processor converts: Highway's own emulation rounds differently.
         case Encoding::rgba16f:
-            return encode_row_with<HalfCoder>(encoding, rgb, count, weight, out);
+            return encode_row_with<HalfCoder>(encoding, rgb, count, weight, log_floor, out);
 #endif
 #if HWY_TARGET != HWY_SCALAR
         case Encoding::rgb9e5:
-            return encode_row_with<Rgb9e5Coder>(encoding, rgb, count, weight, out);
+            return encode_row_with<Rgb9e5Coder>(encoding, rgb, count, weight, log_floor, out);
         case Encoding::r11g11b10f:
-            return encode_row_with<R11g11b10fCoder>(encoding, rgb, count, weight, out);
+            return encode_row_with<R11g11b10fCoder>(encoding, rgb, count, weight, log_floor, out);
 #endif
         default:
-            return encode_row_scalar(encoding, rgb, count, weight, out);
+            return encode_row_scalar(encoding, rgb, count, weight, log_floor, out);
     }
 }
 
@@ -203,9 +265,16 @@ HWY_AFTER_NAMESPACE();
 namespace domelight::simd {
 
 HWY_EXPORT(encode_row_here);
+HWY_EXPORT(compare_row_here);
 
-EncodeSums encode_row(Encoding encoding, const float* rgb, int count, const float* weight, std::uint8_t* out) {
-    return HWY_DYNAMIC_DISPATCH(encode_row_here)(encoding, rgb, count, weight, out);
+EncodeSums encode_row(Encoding encoding, const float* rgb, int count, const float* weight, float log_floor,
+                      std::uint8_t* out) {
+    return HWY_DYNAMIC_DISPATCH(encode_row_here)(encoding, rgb, count, weight, log_floor, out);
+}
+
+EncodeSums compare_row(const float* rgb, const float* stored, int count, const float* weight, float low, float high,
+                       float log_floor) {
+    return HWY_DYNAMIC_DISPATCH(compare_row_here)(rgb, stored, count, weight, low, high, log_floor);
 }
 
 }  // namespace domelight::simd

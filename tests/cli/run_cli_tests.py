@@ -282,6 +282,33 @@ def test_roughness_and_alpha_stand_in_the_texture(folder):
     assert keys["domelight.lobe"] == "ggx" and keys["domelight.quantity"] == "radiance"
 
 
+def test_encodings_report_their_errors_and_are_read_again(folder):
+    psnr = {}
+    for name, words in {"bc6h": [], "fast": ["--encoding-quality", "fast"], "dds": ["--format", "dds"], "ktx1": ["--format", "ktx1"],
+                        "zstd": ["--zstd"]}.items():
+        run("bake", "studio.hdr", "-o", name, "--size", "32", "--levels", "4", "--encoding", "bc6h", *words, folder=folder)
+        manifest = manifest_of(folder / name)
+        psnr[name] = [level["encoding_log_psnr"] for level in manifest["specular"]["levels"]]
+        assert manifest["options"]["encoding_quality"] == ("fast" if name == "fast" else "default")
+        file = manifest["specular"]["file"]
+        info = json.loads(run("info", f"{name}/{file}", "--json", folder=folder).stdout)
+        assert info["decodable"] and info["levels"] == 4 and ("BC6H" in info["format"] or "BPTC" in info["format"])
+    assert psnr["bc6h"] == psnr["dds"] == psnr["ktx1"] == psnr["zstd"] and psnr["fast"][0] < psnr["bc6h"][0]
+    assert all(p > 40 for p in psnr["bc6h"]), psnr
+    audit = json.loads(run("compare", "--bake", "bc6h/specular.ktx2", "--env", "studio.hdr", "--json", folder=folder).stdout)
+    assert audit["orientation"]["words"] == "as ours" and all(abs(level["scale"] - 1) < 0.01 for level in audit["levels"])
+    for name in ("rgbm", "rgbd", "rgbp"):
+        run("bake", "studio.hdr", "-o", name, *SMALL, "--encoding", name, folder=folder)
+        levels = manifest_of(folder / name)["specular"]["levels"]
+        assert all(l["encoding_log_psnr"] is None or l["encoding_log_psnr"] > 40 for l in levels)
+        info = json.loads(run("info", f"{name}/specular.ktx2", "--json", folder=folder).stdout)
+        assert info["decodable"] and info["format"].endswith(", " + name)
+    run("bake", "studio.hdr", "-o", "no", *SMALL, "--encoding", "rgbd", "--format", "dds", folder=folder, code=2)
+    run("bake", "studio.hdr", "-o", "no", *SMALL, "--encoding-quality", "best", folder=folder, code=2)
+    run("bake", "studio.hdr", "-o", "picture", *SMALL, "--format", "hdr", folder=folder)
+    assert all(l["encoding_rms_error"] > 0 for l in manifest_of(folder / "picture")["specular"]["levels"])
+
+
 def test_phong_records_exponents(folder):
     run("bake", "studio.hdr", "-o", "out", *SMALL, "--lobe", "phong", "--exponents", "inf,64,8", folder=folder)
     manifest = manifest_of(folder / "out")

@@ -1,6 +1,7 @@
 #include "domelight/projection.h"
 #include "domelight/texture.h"
 
+#include "codec/chain_encoder.h"
 #include "codec/encode_row.h"
 #include "simd/encode_row.h"
 #include "test.h"
@@ -12,8 +13,9 @@ using namespace domelight;
 
 namespace {
 
-constexpr Encoding k_all[] = {Encoding::rgba16f,    Encoding::rgba32f, Encoding::rgb9e5,
-                              Encoding::r11g11b10f, Encoding::rg16f,   Encoding::rg32f};
+constexpr Encoding k_all[] = {Encoding::rgba16f, Encoding::rgba32f, Encoding::rgb9e5, Encoding::r11g11b10f,
+                              Encoding::rg16f,   Encoding::rg32f,   Encoding::rgbm,   Encoding::rgbd,
+                              Encoding::rgbp,    Encoding::bc6h};
 
 float noise(std::uint32_t& state) {
     state = state * 1664525u + 1013904223u;
@@ -46,9 +48,9 @@ TEST_CASE("encoding names: every one round-trips, and an unknown one lists them"
 }
 
 TEST_CASE("encode_texture: decoding gives back what the encoding can hold") {
-    const auto chain = cube_chain(16, 5, 100);
+    const auto chain = cube_chain(16, 5, 50);
     // Relative to the largest channel of a texel: half a unit in the last place.
-    const auto tolerance = [](Encoding e) {
+    const auto tolerance = [](Encoding e, double largest) {
         switch (e) {
             case Encoding::rgba32f:
             case Encoding::rg32f:
@@ -57,6 +59,15 @@ TEST_CASE("encode_texture: decoding gives back what the encoding can hold") {
                 return std::exp2(-9);
             case Encoding::r11g11b10f:
                 return std::exp2(-6);
+            // Half a step of 8 bits below a square or a power of 2.2. Below 1 rgbp and rgbd have no scale to spare.
+            case Encoding::rgbm:
+                return 1 / 120.0;
+            case Encoding::rgbp:
+                return 1 / 120.0 / std::sqrt(std::min(largest, 1.0));
+            case Encoding::rgbd:
+                return 1 / 110.0 / std::sqrt(std::min(largest, 1.0));
+            case Encoding::bc6h:
+                return 1.0;  // noise is what blocks cannot hold; see bc6h_test.cpp
             default:
                 return std::exp2(-11);
         }
@@ -68,10 +79,11 @@ TEST_CASE("encode_texture: decoding gives back what the encoding can hold") {
         CHECK(texture.faces == 6);
         CHECK(texture.width == 16);
         for (int l = 0; l < 5; ++l) {
-            CHECK(texture.levels[std::size_t(l)].size() == std::size_t(6 * (16 >> l) * (16 >> l) * encoding_bytes(e)));
+            const int side = std::max(1, (16 >> l) / encoding_block(e));
+            CHECK(texture.levels[std::size_t(l)].size() == std::size_t(6 * side * side * encoding_bytes(e)));
             CHECK(reports[std::size_t(l)].clipped_texels == 0);
             CHECK(reports[std::size_t(l)].clipped_energy == 0);
-            CHECK(reports[std::size_t(l)].rms_error <= tolerance(e));
+            CHECK(reports[std::size_t(l)].rms_error <= tolerance(e, 1));
             for (int face = 0; face < 6; ++face) {
                 const ImageF back = decode_texture(texture, l, face);
                 const auto source = chain[std::size_t(l)].cube.face(face);
@@ -80,7 +92,8 @@ TEST_CASE("encode_texture: decoding gives back what the encoding can hold") {
                         const float* v = source.at(x, y);
                         const double largest = std::max({v[0], v[1], v[2]});
                         for (int c = 0; c < back.channels(); ++c)
-                            REQUIRE(std::abs(back.at(x, y)[c] - v[c]) <= tolerance(e) * largest);
+                            if (e != Encoding::bc6h)
+                                REQUIRE(std::abs(back.at(x, y)[c] - v[c]) <= tolerance(e, largest) * largest);
                     }
             }
         }
@@ -112,6 +125,44 @@ TEST_CASE("encode_texture: what is clipped is counted and weighed by solid angle
     CHECK(decode_texture(texture, 0, 2).at(0, 0)[0] == 65504);
 }
 
+TEST_CASE("encode_texture: the PSNR of logarithms is as defined") {
+    // Half the texels 1, half 2^8; rgb9e5 keeps both exactly, so a texel is put where its mantissas are coarse: green
+    // of 0.7 beside red of 256 is stored as 1, in steps of 1.
+    const int size = 16;
+    std::vector<FilteredMap> chain(1);
+    chain[0].cube = Cubemap(size);
+    const auto pixels = chain[0].pixels();
+    for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = i / 3 % 2 ? 256 : 1;
+    float* texel = chain[0].cube.face(4).at(3, 5);
+    texel[0] = 256, texel[1] = 0.7f, texel[2] = 256;
+    std::vector<EncodingReport> reports;
+    encode_texture(chain, Encoding::rgb9e5, 1, &reports);
+    double mean = 0;
+    for (std::size_t i = 0; i < pixels.size(); i += 3)
+        mean += (0.2126 * pixels[i] + 0.7152 * pixels[i + 1] + 0.0722 * pixels[i + 2]) / (6 * size * size);
+    const double floor = 1e-4 * mean, range = std::log2((256 + floor) / (0.7 + floor)),
+                 error = std::log2((1 + floor) / (0.7 + floor)), share = cube_solid_angle(3, 5, size) / (4 * k_pi) / 3;
+    CHECK(reports[0].log_psnr ==
+          doctest::Approx(10 * std::log10(range * range / (error * error * share))).epsilon(1e-3));
+    std::fill(pixels.begin(), pixels.end(), 1.0f);
+    encode_texture(chain, Encoding::rgb9e5, 1, &reports);
+    CHECK(std::isinf(reports[0].log_psnr));
+}
+
+TEST_CASE("rgbe_reports: a mantissa's error, nothing clipped but what is negative") {
+    auto chain = cube_chain(16, 2, 1e6f);
+    auto reports = rgbe_reports(chain);
+    REQUIRE(reports.size() == 2);
+    for (const EncodingReport& r : reports) {
+        CHECK(r.clipped_texels == 0);
+        CHECK(r.rms_error > 1e-5);
+        CHECK(r.rms_error < std::exp2(-9));
+        CHECK(r.log_psnr > 40);  // a channel 2^8 darker than the largest has one bit
+    }
+    chain[0].pixels()[0] = -1;
+    CHECK(rgbe_reports(chain)[0].clipped_texels == 1);
+}
+
 TEST_CASE("encode_texture: lat-long rows weigh by their solid angle") {
     std::vector<FilteredMap> chain(1);
     chain[0].latlong = ImageF(32, 16, 3, 1.0f);
@@ -136,6 +187,7 @@ TEST_CASE("encode_texture: the same bytes and reports on any number of threads")
                 CHECK(first[l].clipped_texels == again[l].clipped_texels);
                 CHECK(first[l].clipped_energy == again[l].clipped_energy);
                 CHECK(first[l].rms_error == again[l].rms_error);
+                CHECK(first[l].log_psnr == again[l].log_psnr);
             }
         }
     }
@@ -158,8 +210,9 @@ TEST_CASE("encode_row: the fast rows agree with the plain ones") {
         for (int count : {0, 1, 3, 7, 8, 9, 16, 17, 31, 1031}) {
             const std::size_t bytes = std::size_t(count * encoding_bytes(e));
             std::vector<std::uint8_t> plain(bytes + 8, 0xaa), fast(bytes + 8, 0xaa);
-            const EncodeSums a = encode_row_scalar(e, rgb.data(), count, weight.data(), plain.data());
-            const EncodeSums b = simd::encode_row(e, rgb.data(), count, weight.data(), fast.data());
+            if (encoding_block(e) > 1) continue;
+            const EncodeSums a = encode_row_scalar(e, rgb.data(), count, weight.data(), 1e-3f, plain.data());
+            const EncodeSums b = simd::encode_row(e, rgb.data(), count, weight.data(), 1e-3f, fast.data());
             REQUIRE(plain == fast);
             CHECK(a.clipped == b.clipped);
             // Sums of up to 1031 floats: a few hundred roundings of 6e-8.
@@ -167,7 +220,21 @@ TEST_CASE("encode_row: the fast rows agree with the plain ones") {
             CHECK(b.lost == doctest::Approx(a.lost).epsilon(1e-5));
             CHECK(b.error == doctest::Approx(a.error).epsilon(1e-4));
             CHECK(b.norm == doctest::Approx(a.norm).epsilon(1e-5));
+            CHECK(b.log_norm == doctest::Approx(a.log_norm).epsilon(1e-5));
+            CHECK(b.log_error == doctest::Approx(a.log_error).epsilon(1e-3));  // vectors have a logarithm of their own
         }
+    // What blocks compare with: texels that come back a little off.
+    std::vector<float> stored(rgb.size());
+    for (std::size_t i = 0; i < rgb.size(); ++i) stored[i] = limit_to(rgb[i], 0, 65504) * (0.9f + 0.2f * noise(state));
+    for (int count : {0, 5, 16, 1031}) {
+        const EncodeSums a = compare_row_scalar(rgb.data(), stored.data(), count, weight.data(), 0, 65504, 1e-3f);
+        const EncodeSums b = simd::compare_row(rgb.data(), stored.data(), count, weight.data(), 0, 65504, 1e-3f);
+        CHECK(a.clipped == b.clipped);
+        CHECK(b.power == doctest::Approx(a.power).epsilon(1e-5));
+        CHECK(b.lost == doctest::Approx(a.lost).epsilon(1e-5));
+        CHECK(b.error == doctest::Approx(a.error).epsilon(1e-4));
+        CHECK(b.log_error == doctest::Approx(a.log_error).epsilon(1e-4));
+    }
 }
 
 TEST_CASE("encode_table: two and three channels, and missing ones are zero") {

@@ -52,6 +52,25 @@ TEST_CASE("ktx2: what was written is read back, for every encoding, shape and co
                 }
 }
 
+TEST_CASE("ktx: scaled bytes are told apart by a key, which the reader takes away again") {
+    const TemporaryFolder folder;
+    for (Encoding encoding : k_scaled_bytes) {
+        const Texture texture = sample_texture(encoding, 6, 6, 2);
+        REQUIRE(write_ktx2(folder / "a.ktx2", texture));
+        REQUIRE(write_ktx1(folder / "a.ktx", texture));
+        for (const char* name : {"a.ktx2", "a.ktx"}) {
+            const auto back = read_texture(folder / name);
+            REQUIRE(back);
+            CHECK(same_texels(*back, texture));
+            CHECK(!back->metadata.contains("domelight.encoding"));
+            const auto info = read_texture_info(folder / name);
+            REQUIRE(info);
+            CHECK(info->decodable);
+            CHECK(info->format.ends_with(", " + encoding_name(encoding)));
+        }
+    }
+}
+
 TEST_CASE("ktx2: levels lie aligned, smallest first, key/value data sorted") {
     const TemporaryFolder folder;
     const auto file = folder / "a.ktx2";
@@ -102,6 +121,9 @@ TEST_CASE("ktx2: the data format descriptors, word for word") {
     CHECK(descriptor(Encoding::r11g11b10f) == Words{76, 0, 2 | 72 << 16, 0x00010101, 0, 4, 0, 0x800a0000, 0, 0,
                                                     0x3f800000, 0x810a000b, 0, 0, 0x3f800000, 0x82090016, 0, 0,
                                                     0x3f800000});
+    CHECK(descriptor(Encoding::rgbd) == Words{92, 0, 2 | 88 << 16, 0x00010101, 0, 4, 0,   0x00070000,
+                                              0,  0, 255,          0x01070008, 0, 0, 255, 0x02070010,
+                                              0,  0, 255,          0x0f070018, 0, 0, 255});
     // Block-compressed: the model's own number, 4 x 4 texels, 16 bytes, one sample of 128 bits.
     CHECK(descriptor(Encoding::bc6h) ==
           Words{44, 0, 2 | 40 << 16, 0x00010185, 0x0303, 16, 0, 0x807f0000, 0, 0, 0x3f800000});
