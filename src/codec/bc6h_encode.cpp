@@ -4,7 +4,9 @@
 #include "codec/half.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <cstdlib>
 
 namespace domelight::bc6h {
 
@@ -37,10 +39,14 @@ void pack_solution(int mode_number, int partition, const int* ends, const int* i
     for (int e = 0; e < 2 * mode.subsets; ++e)
         for (int c = 0; c < 3; ++c) {
             const int value = ends[3 * e + c];
+            assert(!mode.transformed || e == 0 || std::abs(2 * (value - ends[c]) + 1) < 1 << mode.delta_bits[c]);
             fields.endpoint[std::size_t(e)][std::size_t(c)] =
                 e > 0 && mode.transformed ? (value - ends[c]) & ((1 << mode.delta_bits[c]) - 1) : value;
         }
     for (std::size_t t = 0; t < k_texels; ++t) fields.index[t] = std::uint8_t(index[t]);
+    // What is not stored must be zero, and what wraps round must not have.
+    assert(index[0] < 1 << (mode.index_bits() - 1));
+    assert(mode.subsets == 1 || index[k_anchor[std::size_t(partition)]] < 1 << (mode.index_bits() - 1));
     pack(fields, block);
 }
 

@@ -294,7 +294,7 @@ def test_encodings_report_their_errors_and_are_read_again(folder):
         info = json.loads(run("info", f"{name}/{file}", "--json", folder=folder).stdout)
         assert info["decodable"] and info["levels"] == 4 and ("BC6H" in info["format"] or "BPTC" in info["format"])
     assert psnr["bc6h"] == psnr["dds"] == psnr["ktx1"] == psnr["zstd"] and psnr["fast"][0] < psnr["bc6h"][0]
-    assert all(p > 40 for p in psnr["bc6h"]), psnr
+    assert all(p > 30 for p in psnr["bc6h"]), psnr
     audit = json.loads(run("compare", "--bake", "bc6h/specular.ktx2", "--env", "studio.hdr", "--json", folder=folder).stdout)
     assert audit["orientation"]["words"] == "as ours" and all(abs(level["scale"] - 1) < 0.01 for level in audit["levels"])
     for name in ("rgbm", "rgbd", "rgbp"):
