@@ -68,10 +68,12 @@ void declare(Arguments& a, BakeWords& w) {
              "its channels (the target's)");
     a.integer("--brdf-size", "N", w.brdf_size, "its width and height (128)");
     a.group("How to store it");
-    a.choice("--encoding", w.encoding, {"rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "bc6h", "rgbm", "rgbd", "rgbp"},
+    a.choice("--encoding", w.encoding,
+             {"rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "bc6h", "uastc-hdr", "astc4x4-hdr", "astc6x6-hdr", "rgbm",
+              "rgbd", "rgbp"},
              "texels of the maps (the target's)");
     a.choice("--encoding-quality", w.encoding_quality, {"fast", "default", "high", "exhaustive"},
-             "how hard bc6h searches for the best block; exhaustive takes minutes (default)");
+             "how hard bc6h, uastc-hdr and astc search for the best block; exhaustive takes minutes (default)");
     a.choice("--format", w.format, {"ktx2", "ktx1", "dds", "exr", "hdr"},
              "container of the maps; exr and hdr hold one level a file (the target's)");
     a.choice("--cube-picture", w.cube_picture, {"cross", "strip", "faces"},

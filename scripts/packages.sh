@@ -10,6 +10,7 @@ build_packages=(
     libzstd-dev         # KTX2 supercompression
     libdraco-dev libmeshoptimizer-dev  # compressed glTF
     libwebp-dev         # WebP textures, animations
+    libastcenc-dev      # ASTC HDR
     libssl-dev          # SHA-256 (libcrypto only)
     libembree-dev       # rays; brings oneTBB
     libfmt-dev nlohmann-json3-dev libcli11-dev

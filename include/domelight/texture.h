@@ -14,10 +14,26 @@
 
 namespace domelight {
 
-/// How texels are stored on the GPU: one by one, or (bc6h) in blocks.
-enum class Encoding { rgba16f, rgba32f, rgb9e5, r11g11b10f, rg16f, rg32f, bc6h, rgbm, rgbd, rgbp };
+/// How texels are stored on the GPU: one by one, or (bc6h, uastc_hdr, astc..._hdr) in blocks. Blocks of uastc_hdr are
+/// astc4x4_hdr of a kind that can be turned into bc6h.
+enum class Encoding {
+    rgba16f,
+    rgba32f,
+    rgb9e5,
+    r11g11b10f,
+    rg16f,
+    rg32f,
+    bc6h,
+    rgbm,
+    rgbd,
+    rgbp,
+    uastc_hdr,
+    astc4x4_hdr,
+    astc6x6_hdr
+};
 
-/// "rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "rg16f", "rg32f", "bc6h", "rgbm", "rgbd", "rgbp".
+/// "rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "rg16f", "rg32f", "bc6h", "rgbm", "rgbd", "rgbp", "uastc-hdr",
+/// "astc4x4-hdr", "astc6x6-hdr".
 std::string encoding_name(Encoding encoding);
 Result<Encoding> encoding_from_name(const std::string& name);  ///< the error lists the accepted names
 int encoding_block(Encoding encoding);                         ///< texels along a side of a block; 1: single texels
@@ -25,7 +41,7 @@ int encoding_bytes(Encoding encoding);                         ///< of a block
 int encoding_channels(Encoding encoding);                      ///< that carry data: 3, or 2 (red and green)
 double encoding_max(Encoding encoding);                        ///< largest value a channel can hold
 
-/// How hard the encodings that have to search for the best block (bc6h) try; the others take no notice.
+/// How hard the encodings that have to search for the best block (bc6h, astc) try; the others take no notice.
 /// fast: a few candidates. standard: nearly all that can be had. high: the last tenths of a decibel. exhaustive: every
 /// mode and partition there is, a yardstick for the others.
 enum class EncodingQuality { fast, standard, high, exhaustive };

@@ -64,7 +64,8 @@ Result<void> check_values(const BakeOptions& o) {
                             "Give its exponents with --exponents n0,n1,...");
     if (o.encoding && encoding_channels(*o.encoding) != 3)
         return option_error("--encoding", encoding_name(*o.encoding) + " has no room for a colour",
-                            "Accepted are rgba16f, rgba32f, rgb9e5, r11g11b10f, bc6h, rgbm, rgbd, rgbp.");
+                            "Accepted are rgba16f, rgba32f, rgb9e5, r11g11b10f, bc6h, uastc-hdr, astc4x4-hdr, "
+                            "astc6x6-hdr, rgbm, rgbd, rgbp.");
     if (o.irradiance_size && (*o.irradiance_size < 1 || *o.irradiance_size > 4096))
         return option_error("--irradiance-size", fmt::format("{} is not from 1 to 4096", *o.irradiance_size));
     if (o.brdf_size && (*o.brdf_size < 1 || *o.brdf_size > 4096))

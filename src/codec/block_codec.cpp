@@ -1,7 +1,9 @@
 #include "codec/block_codec.h"
 
+#include "codec/astc_codec.h"
 #include "codec/bc6h.h"
 #include "codec/half.h"
+#include "codec/uastc_hdr.h"
 #include "simd/bc6h_encode.h"
 #include "simd/encode_row.h"
 
@@ -22,10 +24,36 @@ void decode_bc6h(const std::uint8_t* blocks, int count, float* texels) {
 
 constexpr BlockCodec k_bc6h{0, k_half_max, simd::bc6h_encode, decode_bc6h};
 
+constexpr BlockCodec k_uastc_hdr{0, k_uastc_hdr_max, encode_uastc_hdr, decode_uastc_hdr};
+
+template <int side>
+void encode_astc_blocks(const float* texels, int count, EncodingQuality quality, std::uint8_t* blocks) {
+    encode_astc_hdr(side, texels, count, quality, blocks);
+}
+
+template <int side>
+void decode_astc_blocks(const std::uint8_t* blocks, int count, float* texels) {
+    decode_astc_hdr(side, blocks, count, texels);
+}
+
+template <int side>
+constexpr BlockCodec k_astc_hdr{0, k_half_max, encode_astc_blocks<side>, decode_astc_blocks<side>};
+
 }  // namespace
 
 const BlockCodec* block_codec(Encoding encoding) {
-    return encoding == Encoding::bc6h ? &k_bc6h : nullptr;
+    switch (encoding) {
+        case Encoding::bc6h:
+            return &k_bc6h;
+        case Encoding::uastc_hdr:
+            return &k_uastc_hdr;
+        case Encoding::astc4x4_hdr:
+            return &k_astc_hdr<4>;
+        case Encoding::astc6x6_hdr:
+            return &k_astc_hdr<6>;
+        default:
+            return nullptr;
+    }
 }
 
 EncodeSums encode_block_row(Encoding encoding, EncodingQuality quality, const float* rgb, int width, int rows,

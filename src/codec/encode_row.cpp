@@ -131,7 +131,10 @@ auto with_coder(Encoding encoding, Use use) {
         case Encoding::rgbp:
             return use(Rgbp{});
         case Encoding::rg32f:
-        case Encoding::bc6h:  // has no texels by themselves
+        case Encoding::bc6h:  // these have no texels by themselves
+        case Encoding::uastc_hdr:
+        case Encoding::astc4x4_hdr:
+        case Encoding::astc6x6_hdr:
             break;
     }
     return use(Rg32f{});

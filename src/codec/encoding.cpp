@@ -5,6 +5,7 @@
 #include "codec/r11g11b10f.h"
 #include "codec/rgb9e5.h"
 #include "codec/rgba8_ranges.h"
+#include "codec/uastc_hdr.h"
 
 #include <iterator>
 #include <limits>
@@ -21,11 +22,19 @@ struct EncodingFacts {
 
 /// In the order of the enumeration.
 constexpr EncodingFacts k_facts[] = {
-    {"rgba16f", 1, 8, 3, k_half_max},  {"rgba32f", 1, 16, 3, std::numeric_limits<float>::max()},
-    {"rgb9e5", 1, 4, 3, k_rgb9e5_max}, {"r11g11b10f", 1, 4, 3, k_float10_max},
-    {"rg16f", 1, 4, 2, k_half_max},    {"rg32f", 1, 8, 2, std::numeric_limits<float>::max()},
-    {"bc6h", 4, 16, 3, k_half_max},    {"rgbm", 1, 4, 3, k_rgbm_max},
-    {"rgbd", 1, 4, 3, k_rgbd_max},     {"rgbp", 1, 4, 3, k_rgbp_max},
+    {"rgba16f", 1, 8, 3, k_half_max},
+    {"rgba32f", 1, 16, 3, std::numeric_limits<float>::max()},
+    {"rgb9e5", 1, 4, 3, k_rgb9e5_max},
+    {"r11g11b10f", 1, 4, 3, k_float10_max},
+    {"rg16f", 1, 4, 2, k_half_max},
+    {"rg32f", 1, 8, 2, std::numeric_limits<float>::max()},
+    {"bc6h", 4, 16, 3, k_half_max},
+    {"rgbm", 1, 4, 3, k_rgbm_max},
+    {"rgbd", 1, 4, 3, k_rgbd_max},
+    {"rgbp", 1, 4, 3, k_rgbp_max},
+    {"uastc-hdr", 4, 16, 3, k_uastc_hdr_max},
+    {"astc4x4-hdr", 4, 16, 3, k_half_max},
+    {"astc6x6-hdr", 6, 16, 3, k_half_max},
 };
 
 /// In the order of the enumeration.

@@ -243,6 +243,10 @@ std::uint32_t dxgi_number(Encoding encoding) {
         case Encoding::rgbd:
         case Encoding::rgbp:
             return 28;  // four bytes: what they mean, DDS cannot say
+        case Encoding::uastc_hdr:
+        case Encoding::astc4x4_hdr:
+        case Encoding::astc6x6_hdr:
+            return 0;
         case Encoding::rg32f:
             break;
     }

@@ -20,7 +20,7 @@ struct DdsFormat {
 DdsFormat dxgi_format(std::uint32_t number);
 
 /// The DXGI_FORMAT of an encoding.
-std::uint32_t dxgi_number(Encoding encoding);
+std::uint32_t dxgi_number(Encoding encoding);  ///< 0: it has none
 
 /// A format of the older header: four characters or a D3DFORMAT number, or channel masks.
 DdsFormat legacy_dds_format(std::uint32_t flags, std::uint32_t four_cc, std::uint32_t bits,

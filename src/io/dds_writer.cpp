@@ -9,6 +9,9 @@
 namespace domelight {
 
 Result<TextureLayout> dds_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes) {
+    if (dxgi_number(texture.encoding) == 0)
+        return Error{encoding_name(texture.encoding) + " cannot be stored as dds", "",
+                     "Direct3D has no such format; use ktx2."};
     const bool cube = texture.faces == 6, mips = level_bytes.size() > 1;
     ByteBuffer head;
     head.text("DDS ");

@@ -139,6 +139,12 @@ std::optional<StoredTexels> gl_format_texels(std::uint32_t internal_format, std:
             // Compressed formats come with type 0; with any other OpenGL would compress texels on upload.
             if (type == 0) return StoredTexels{Encoding::bc6h};
             return std::nullopt;
+        case k_gl_astc4x4:
+            if (type == 0) return StoredTexels{Encoding::astc4x4_hdr};
+            return std::nullopt;
+        case k_gl_astc6x6:
+            if (type == 0) return StoredTexels{Encoding::astc6x6_hdr};
+            return std::nullopt;
         default:
             return std::nullopt;
     }

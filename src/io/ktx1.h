@@ -26,6 +26,8 @@ enum : std::uint32_t {
     k_gl_bptc_unsigned_float = 0x8e8f,
     k_gl_rgba8 = 0x8058,
     k_gl_unsigned_byte = 0x1401,
+    k_gl_astc4x4 = 0x93b0,  // of any dynamic range
+    k_gl_astc6x6 = 0x93b4,
 };
 
 }  // namespace domelight

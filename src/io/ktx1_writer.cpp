@@ -37,6 +37,11 @@ GlFormat gl_format(Encoding encoding) {
             return {k_gl_rgba8, k_gl_unsigned_byte, 1, k_rgba, k_rgba};
         case Encoding::bc6h:
             return {k_gl_bptc_unsigned_float, 0, 1, 0, k_rgb};  // compressed: neither type nor format
+        case Encoding::uastc_hdr:
+        case Encoding::astc4x4_hdr:
+            return {k_gl_astc4x4, 0, 1, 0, k_rgba};
+        case Encoding::astc6x6_hdr:
+            return {k_gl_astc6x6, 0, 1, 0, k_rgba};
         case Encoding::r11g11b10f:
             break;
     }

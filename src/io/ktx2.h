@@ -13,6 +13,10 @@ inline constexpr std::array<std::uint8_t, 12> k_ktx2_identifier{0xab, 'K',  'T',
 inline constexpr std::uint64_t k_ktx2_header_bytes = 80, k_ktx2_level_bytes = 24;
 
 inline constexpr std::uint32_t k_vulkan_rgba8 = 37;  // VK_FORMAT_R8G8B8A8_UNORM
+/// VkFormat numbers of ASTC HDR (VK_EXT_texture_compression_astc_hdr).
+inline constexpr std::uint32_t k_vulkan_astc4x4_hdr = 1000066000, k_vulkan_astc6x6_hdr = 1000066004;
+/// The colour model by which a file in the first of these says that it keeps to UASTC HDR 4x4.
+inline constexpr unsigned k_model_uastc_hdr = 167;
 
 /// VkFormat number of an encoding.
 constexpr std::uint32_t vulkan_format(Encoding encoding) {
@@ -33,6 +37,11 @@ constexpr std::uint32_t vulkan_format(Encoding encoding) {
         case Encoding::rgbd:
         case Encoding::rgbp:
             return k_vulkan_rgba8;
+        case Encoding::uastc_hdr:
+        case Encoding::astc4x4_hdr:
+            return k_vulkan_astc4x4_hdr;  // VK_FORMAT_ASTC_4x4_SFLOAT_BLOCK
+        case Encoding::astc6x6_hdr:
+            return k_vulkan_astc6x6_hdr;  // VK_FORMAT_ASTC_6x6_SFLOAT_BLOCK
         case Encoding::rg32f:
             break;
     }

@@ -116,6 +116,8 @@ Result<Ktx2> parse(ByteSource& source) {
     if (!descriptor) return descriptor.error();
     file.info.format = format ? vulkan_format_name(format) : model_name(*descriptor);
     file.texels = vulkan_format_texels(format);
+    if (format == k_vulkan_astc4x4_hdr && *descriptor == k_model_uastc_hdr)
+        file.texels = StoredTexels{Encoding::uastc_hdr};
     if (word(12) > 0) {
         done = read_key_values(source, word(11), word(12), file.info.metadata);
         if (!done) return done.error();

@@ -59,7 +59,11 @@ std::vector<Sample> samples_of(Encoding encoding) {
         case Encoding::rgbp:
             return {{0, 8, k_red, 0, 255}, {8, 8, k_green, 0, 255}, {16, 8, k_blue, 0, 255}, {24, 8, k_alpha, 0, 255}};
         case Encoding::bc6h:
-            return {{0, 128, k_red | k_float, 0, k_one}};  // channel 0 of this model is its colour
+        case Encoding::uastc_hdr:
+            return {{0, 128, k_red | k_float, 0, k_one}};  // channel 0 of these models is their colour
+        case Encoding::astc4x4_hdr:
+        case Encoding::astc6x6_hdr:
+            return {{0, 128, k_red | k_float | k_signed, k_minus_one, k_one}};  // as for all of ASTC's SFLOAT formats
         case Encoding::rgb9e5:
             break;
     }
@@ -76,7 +80,17 @@ std::vector<Sample> samples_of(Encoding encoding) {
 
 /// Colour model of an encoding (Khronos Data Format Specification 1.3, section 5.6).
 unsigned colour_model(Encoding encoding) {
-    return encoding == Encoding::bc6h ? 133 : 1;  // KHR_DF_MODEL_BC6H, KHR_DF_MODEL_RGBSDA
+    switch (encoding) {
+        case Encoding::bc6h:
+            return 133;  // KHR_DF_MODEL_BC6H
+        case Encoding::uastc_hdr:
+            return k_model_uastc_hdr;  // what tells its consumers that the blocks turn into BC6H
+        case Encoding::astc4x4_hdr:
+        case Encoding::astc6x6_hdr:
+            return 162;  // KHR_DF_MODEL_ASTC
+        default:
+            return 1;  // KHR_DF_MODEL_RGBSDA
+    }
 }
 
 /// The data format descriptor: its total size and one basic block.

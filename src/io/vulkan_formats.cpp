@@ -1,6 +1,8 @@
 // The numbers of VkFormat (Vulkan 1.3 specification, section 34.1.1, and the extensions that image files use).
 #include "io/vulkan_formats.h"
 
+#include "io/ktx2.h"
+
 #include <array>
 #include <iterator>
 
@@ -142,6 +144,10 @@ std::optional<StoredTexels> vulkan_format_texels(std::uint32_t format) {
             return StoredTexels{Encoding::rgb9e5};  // E5B9G9R9_UFLOAT_PACK32
         case 143:
             return StoredTexels{Encoding::bc6h};  // BC6H_UFLOAT_BLOCK
+        case k_vulkan_astc4x4_hdr:
+            return StoredTexels{Encoding::astc4x4_hdr};  // ASTC_4x4_SFLOAT_BLOCK
+        case k_vulkan_astc6x6_hdr:
+            return StoredTexels{Encoding::astc6x6_hdr};  // ASTC_6x6_SFLOAT_BLOCK
         default:
             return std::nullopt;
     }
