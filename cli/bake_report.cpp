@@ -24,7 +24,7 @@ void print_map(const BakedMap& map) {
     const int size = map.levels.front().size;
     const std::string shape =
         map.layout == Layout::cube ? fmt::format("6 x {}^2", size) : fmt::format("{} x {}", 2 * size, size);
-    std::string line = fmt::format("  {:<28}{}: {}, {}", shown_name(map), map.role, shape, map.encoding);
+    std::string line = fmt::format("  {:<28} {}: {}, {}", shown_name(map), map.role, shape, map.encoding);
     if (map.levels.size() > 1) line += fmt::format(", {} levels to {}", map.levels.size(), map.levels.back().size);
     if (map.quantity != Quantity::radiance) line += ", " + quantity_name(map.quantity);
     fmt::print("{}\n", line);
@@ -41,13 +41,13 @@ void print_summary(const BakeOutcome& outcome) {
         fmt::print("{}: {} for {}\n", target.folder.string(),
                    outcome.environment.empty() ? "the built-in sky" : outcome.environment.front(), target.target);
         for (const BakedMap& map : target.maps) print_map(map);
-        fmt::print("  {:<28}harmonics: {} bands; E is off by {} RMS, {} at most\n", target.sh.files.front().file,
+        fmt::print("  {:<28} harmonics: {} bands; E is off by {} RMS, {} at most\n", target.sh.files.front().file,
                    target.sh.bands, percent(target.sh.rms_error), percent(target.sh.max_error));
         if (!target.brdf.file.file.empty())
-            fmt::print("  {:<28}BRDF table: {}^2, {}, {}\n", target.brdf.file.file, target.brdf.size,
+            fmt::print("  {:<28} BRDF table: {}^2, {}, {}\n", target.brdf.file.file, target.brdf.size,
                        target.brdf.encoding, brdf_form_name(target.brdf.form));
-        if (target.preview) fmt::print("  {:<28}a picture of it all\n", target.preview->file);
-        fmt::print("  {:<28}what everything is\n", "manifest.json");
+        if (target.preview) fmt::print("  {:<28} a picture of it all\n", target.preview->file);
+        fmt::print("  {:<28} what everything is\n", "manifest.json");
         for (const Target& t : targets())
             if (t.name == target.target && !t.note.empty()) fmt::print("  note: {}\n", t.note);
     }

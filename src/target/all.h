@@ -11,5 +11,10 @@ Target filament_target();
 Target babylon_target();
 Target bevy_target();
 Target three_target();
+Target three_latlong_target();
+
+/// For consumers that read level = (levels - 1) r (2 - r), Filament and three.js: r = 1 - sqrt(1 - level / (levels -
+/// 1)).
+double quadratic_roughness(int level, int levels, int size);
 
 }  // namespace domelight

@@ -1,16 +1,6 @@
 #include "target/all.h"
 
-#include <cmath>
-
 namespace domelight {
-namespace {
-
-/// Filament reads level = (levels - 1) r (2 - r): r = 1 - sqrt(1 - level / (levels - 1)).
-double filament_roughness(int level, int levels, int) {
-    return levels > 1 ? 1 - std::sqrt(1 - double(level) / (levels - 1)) : 0;
-}
-
-}  // namespace
 
 /// Filament: KTX1 in R11F_G11F_B10F, {stem}_ibl.ktx from 256^2 to 16^2 and {stem}_skybox.ktx, nine SH numbers of E / pi
 /// in the key "sh" and in sh.txt. Its shaders look along the world direction itself. cmgen takes the centre of a
@@ -24,7 +14,7 @@ Target filament_target() {
     t.note = "cmgen sees +Z in the centre of a lat-long image: --latlong usd gives its orientation";
     t.size = 256;
     t.smallest = 16;
-    t.roughness = filament_roughness;
+    t.roughness = quadratic_roughness;
     t.encoding = Encoding::r11g11b10f;
     t.container = Container::ktx1;
     t.specular_file = "{stem}_ibl";

@@ -88,9 +88,13 @@ std::vector<double> default_phong_exponents(int levels) {
     return exponents;
 }
 
+double quadratic_roughness(int level, int levels, int) {
+    return levels > 1 ? 1 - std::sqrt(1 - double(level) / (levels - 1)) : 0;
+}
+
 std::span<const Target> targets() {
-    static const std::array all{generic_target(), khronos_target(), filament_target(),
-                                babylon_target(), bevy_target(),    three_target()};
+    static const std::array all{generic_target(), khronos_target(), filament_target(),     babylon_target(),
+                                bevy_target(),    three_target(),   three_latlong_target()};
     return all;
 }
 

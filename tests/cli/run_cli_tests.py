@@ -119,7 +119,7 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["bake", "-o", "o", "--sh-bands", "0"], "1 to 64"),
         (["bake", "-o", "o", "--threads", "-1"], "0 to 1024"),
         (["bake", "-o", "o", "--exposure", "much"], "number"),
-        (["bake", "-o", "o", "--for", "three", "--levels", "5"], "filters it itself"),
+        (["bake", "-o", "o", "--for", "three-latlong", "--levels", "5"], "filters it itself"),
         (["bake", "-o", "o", "--for", "generic", "--for", "generic"], "twice"),
         (["bake", "studio.hdr", "-o", "o", "--latlong", "sideways"], "materialx"),
         (["bake", "studio.hdr", "-o", "o", "--projection", "fisheye"], "cube-cross"),
@@ -326,18 +326,18 @@ def test_charlie_states_its_least_roughness(folder):
 
 
 def test_targets_share_a_reading_and_get_folders(folder):
-    run("bake", "studio.hdr", "-o", "all", *SMALL, *[w for t in ["generic", "khronos", "filament", "babylon", "bevy", "three"] for w in ("--for", t)],
+    run("bake", "studio.hdr", "-o", "all", *SMALL, *[w for t in ["generic", "khronos", "filament", "babylon", "bevy", "three", "three-latlong"] for w in ("--for", t)],
         folder=folder)
     files = set(files_of(folder / "all"))
     assert files >= {"khronos/ggx/specular.ktx2", "khronos/charlie/sheen.ktx2", "khronos/lambertian/diffuse.ktx2", "filament/studio_ibl.ktx",
                      "filament/studio_skybox.ktx", "filament/sh.txt", "babylon/studio.dds", "bevy/studio_specular.ktx2", "bevy/studio_diffuse.ktx2",
-                     "three/studio.exr", "generic/specular.ktx2"}, files
+                     "three/studio.pmrem.ktx2", "three-latlong/studio.exr", "generic/specular.ktx2"}, files
     # The same light as each baked on its own; only the last digits may depend on the company.
-    for target in ["khronos", "bevy", "three"]:
+    for target in ["khronos", "bevy", "three", "three-latlong"]:
         run("bake", "studio.hdr", "-o", target, *SMALL, "--for", target, folder=folder)
         alone, together = manifest_of(folder / target), manifest_of(folder / "all" / target)
         assert set(files_of(folder / target)) == set(files_of(folder / "all" / target)), target
-        assert alone["options"]["targets"] == [target] and len(together["options"]["targets"]) == 6
+        assert alone["options"]["targets"] == [target] and len(together["options"]["targets"]) == 7
         sh_alone, sh_together = (json.loads((f / target / "sh.json").read_text())["radiance"] for f in (folder, folder / "all"))
         assert all(abs(a - b) < 1e-5 * sh_alone[0][0] for v, w in zip(sh_alone, sh_together) for a, b in zip(v, w)), target
     assert manifest_of(folder / "khronos")["irradiance"]["quantity"] == "irradiance_over_pi"
@@ -373,7 +373,7 @@ def test_plain_methods_agree_with_the_exact_one(folder):
 
 def test_same_bytes_on_any_number_of_threads(folder):
     expected = None
-    targets = [w for t in ["generic", "khronos", "filament", "babylon", "bevy", "three"] for w in ("--for", t)]
+    targets = [w for t in ["generic", "khronos", "filament", "babylon", "bevy", "three", "three-latlong"] for w in ("--for", t)]
     for threads in [1, 2, 3, 8]:
         run("bake", "studio.hdr", "-o", f"t{threads}", *targets, "--size", "32", "--irradiance-size", "8", "--threads", threads, folder=folder)
         files = files_of(folder / f"t{threads}")

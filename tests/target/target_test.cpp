@@ -81,8 +81,26 @@ TEST_CASE("target: bevy is linear from 512^2 in RGB9E5 with zstd, diffuse 32^2 o
     CHECK(plan.target->mirror == CubeMirror::z);
 }
 
-TEST_CASE("target: three gets one lat-long image four times as wide as the cube it makes") {
+TEST_CASE("target: three gets 512^2 to 8^2 in UASTC HDR with zstd, at its lookup level = 6 r (2 - r), x flipped") {
     const TargetPlan plan = plan_of("three");
+    CHECK(sizes(plan) == std::vector{512, 256, 128, 64, 32, 16, 8});
+    for (int l = 0; l < 7; ++l) {
+        const double r = plan.specular[l].roughness;
+        CHECK(6 * r * (2 - r) == doctest::Approx(l));
+    }
+    CHECK(plan.specular[0].spec.mirror);
+    CHECK(plan.encoding == Encoding::uastc_hdr);
+    CHECK(plan.container == Container::ktx2);
+    CHECK(plan.zstd);
+    CHECK(plan.target->mirror == CubeMirror::x);
+    CHECK(plan.target->specular_file == "{stem}.pmrem");
+    BakeOptions options;
+    options.encoding = Encoding::rgba16f;
+    CHECK(plan_of("three", options).encoding == Encoding::rgba16f);
+}
+
+TEST_CASE("target: three-latlong gets one lat-long image four times as wide as the cube it makes") {
+    const TargetPlan plan = plan_of("three-latlong");
     CHECK(plan.layout == Layout::latlong);
     CHECK(sizes(plan) == std::vector{1024});
     CHECK(plan.specular[0].spec.mirror);
@@ -92,7 +110,8 @@ TEST_CASE("target: three gets one lat-long image four times as wide as the cube 
 TEST_CASE("target: an unknown name lists the known ones") {
     const auto target = find_target("quake");
     REQUIRE_FALSE(target);
-    CHECK(target.error().what.find("generic, khronos, filament, babylon, bevy, three") != std::string::npos);
+    CHECK(target.error().what.find("generic, khronos, filament, babylon, bevy, three, three-latlong") !=
+          std::string::npos);
     for (const Target& t : targets()) CHECK(find_target(t.name));
 }
 
@@ -143,7 +162,7 @@ TEST_CASE("plan: contradictions are errors that name the option") {
     CHECK(where([](BakeOptions& o) { o.exponents = {1}; }) == "--exponents");
     CHECK(where([](BakeOptions& o) { o.encoding = Encoding::rg16f; }) == "--encoding");
     CHECK(where([](BakeOptions& o) { o.zstd = true, o.format = Container::dds; }) == "--zstd");
-    CHECK(where([](BakeOptions& o) { o.targets = {"three"}, o.lobe = Lobe::charlie; }) == "--lobe");
+    CHECK(where([](BakeOptions& o) { o.targets = {"three-latlong"}, o.lobe = Lobe::charlie; }) == "--lobe");
     CHECK(where([](BakeOptions& o) { o.targets = {}; }) == "--for");
     CHECK(where([](BakeOptions& o) { o.sh_bands = 65; }) == "--sh-bands");
     CHECK(where([](BakeOptions& o) { o.layout = Layout::latlong, o.size = 100, o.levels = 4; }) == "--size");
