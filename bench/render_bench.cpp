@@ -207,7 +207,7 @@ void measure_rays(const Words& w) {
         shares.push_back(double(traced) / loop.back() / bare);
         // By the clock: threads cost the same CPU time.
         RenderOptions more = b.options;
-        more.samples = 64;
+        more.width = more.height = 2 * more.width;
         double wall[2];
         for (const int threads : {1, 2}) {
             more.threads = threads;

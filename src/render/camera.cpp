@@ -5,14 +5,16 @@
 
 namespace domelight {
 
-CameraRays::CameraRays(const Camera& camera, int width, int height) : camera_(camera), width_(width), height_(height) {
+CameraRays::CameraRays(const Camera& camera, int width, int height) : camera_(camera) {
     half_height_ = camera.orthographic ? camera.half_height : std::tan(0.5f * camera.fov_y);
     half_width_ = half_height_ * float(width) / float(height);
+    step_u_ = 2 * half_width_ / float(width);
+    step_v_ = 2 * half_height_ / float(height);
 }
 
 Ray CameraRays::through(int x, int y, UnitPoint within) const {
-    const float u = (2 * (float(x) + unit_float(within.x)) / float(width_) - 1) * half_width_,
-                v = (1 - 2 * (float(y) + unit_float(within.y)) / float(height_)) * half_height_;
+    const float u = (float(x) + unit_float(within.x)) * step_u_ - half_width_,
+                v = half_height_ - (float(y) + unit_float(within.y)) * step_v_;
     const Affine& m = camera_.to_world;
     if (camera_.orthographic) return {m.point({u, v, 0}), normalize(m.vector({0, 0, -1})), 0};
     return {m.translation, normalize(m.vector({u, v, -1})), 0};

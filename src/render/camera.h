@@ -16,8 +16,8 @@ class CameraRays {
 
   private:
     Camera camera_;
-    int width_, height_;
     float half_width_, half_height_;
+    float step_u_, step_v_;  ///< from pixel to pixel
 };
 
 }  // namespace domelight
