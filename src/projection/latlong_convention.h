@@ -1,5 +1,6 @@
 #pragma once
 
+#include "domelight/projections.h"
 #include "domelight/result.h"
 #include "domelight/vec.h"
 
@@ -9,12 +10,7 @@ namespace domelight {
 
 /// Where a lat-long image puts the world, and where on it the samples lie (docs/conventions.md).
 struct LatlongConvention {
-    /// Where sample (i, j) of a W x H image lies.
-    enum class Grid {
-        centres,        ///< u = (i + 1/2) / W, v = (j + 1/2) / H
-        rows_on_poles,  ///< v = j / (H - 1)
-        both_on_edges,  ///< u = i / (W - 1), v = j / (H - 1)
-    };
+    using Grid = SampleGrid;
     Vec3d centre{1, 0, 0};  ///< world direction at the image's centre
     Vec3d right{0, 0, 1};   ///< a quarter turn to the right of it
     Vec3d up{0, 1, 0};      ///< at the top row
