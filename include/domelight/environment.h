@@ -1,6 +1,7 @@
 #pragma once
 
 #include "domelight/image.h"
+#include "domelight/reproject.h"
 #include "domelight/result.h"
 #include "domelight/row_source.h"
 #include "domelight/vec.h"
@@ -27,9 +28,11 @@ struct RepairReport {
 
 /// How to understand an environment's file where it does not say so itself.
 struct EnvironmentOptions {
-    std::string projection = "auto";  ///< auto | latlong | cube-cross | cube-strip | cube-faces
-    /// Lat-long convention: default, usd, mitsuba, openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]"; empty:
-    /// what the file says, else default.
+    /// auto | latlong | cube-cross | cube-strip | cube-faces, or any other of projections.h, with its convention:
+    /// "angular/centre=+Z", "mirror-ball/fov=20". Those are turned into a lat-long image on opening.
+    std::string projection = "auto";
+    /// Lat-long convention: default, usd, mitsuba, openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]", or pbrt
+    /// (the equal-area octahedral square); empty: what the file says, else default.
     std::string latlong = "";
     std::string decode = "auto";  ///< PNG and JPEG: auto (= srgb) | srgb | gamma22 | linear
     double rotate_y_deg = 0;      ///< turns the light about +Y: +X moves towards +Z
@@ -37,23 +40,27 @@ struct EnvironmentOptions {
     double exposure = 0;          ///< stops: radiance is multiplied by 2^exposure
     std::int64_t max_bytes = std::int64_t(1) << 30;  ///< refuses images whose decoding would need more memory than this
     int threads = 0;                                 ///< for decoding; 0: all
+    bool keep_projection = false;                    ///< leaves other projections as they are, in Environment::picture
 };
 
 /// An environment opened for reading: a lat-long image handed on by rows, or a cube in memory.
 struct Environment {
     std::filesystem::path file;
-    std::string format;                  ///< "Radiance HDR", "OpenEXR", "PNG", "JPEG", "sky"
-    std::string projection;              ///< "latlong" or "cube"
-    int width = 0, height = 0;           ///< of the image as stored
-    std::unique_ptr<RowSource> latlong;  ///< set for lat-long; in the default convention up to `world_to_source`
-    Cubemap cube;                        ///< set for cubes
+    std::string format;                     ///< "Radiance HDR", "OpenEXR", "PNG", "JPEG", "sky"
+    std::string projection;                 ///< "latlong", "cube", or the name of another in projections.h
+    int width = 0, height = 0;              ///< of the image as stored
+    std::unique_ptr<RowSource> latlong;     ///< set for lat-long; in the default convention up to `world_to_source`
+    Cubemap cube;                           ///< set for cubes
+    std::optional<ProjectedImage> picture;  ///< set for the others with EnvironmentOptions::keep_projection, else they
+                                            ///< are in `latlong`
     /// Where to look in the source for light from a world direction: convention, up axis and rotation together
     /// (orthogonal, may mirror).
     Mat3 world_to_source;
     std::shared_ptr<RepairReport> report;
 };
 
-/// Opens an environment. `files` is one image, or the six faces of a cube in any order (recognised by name).
+/// Opens an environment. `files` is one image, the six faces of a cube in any order (recognised by name), or the
+/// front and the back of a dual paraboloid.
 /// Errors: no such file, unknown or broken format, wrong shape, over `max_bytes`; each names the file.
 Result<Environment> open_environment(const std::vector<std::filesystem::path>& files,
                                      const EnvironmentOptions& options = {});

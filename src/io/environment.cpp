@@ -43,16 +43,41 @@ struct Request {
     EnvironmentOptions options;
     Mat3 turn;  ///< world to the file's frame, apart from its lat-long convention
     float scale = 1;
+    std::optional<Projection> other;  ///< neither lat-long nor a cube
 };
 
+/// A projection that pictures are read in by name only.
+Result<Projection> other_projection(const std::string& text) {
+    std::string accepted = "Accepted: auto, latlong, cube-cross, cube-strip, cube-faces";
+    for (const ProjectionInfo& info : projections())
+        if (std::string(info.name) != "latlong" && std::string(info.name) != "cube")
+            accepted += std::string(", ") + info.name;
+    const Result<Projection> projection = projection_from_name(text);
+    if (!projection && projection.error().what.starts_with("unknown projection"))
+        return Error{projection.error().what, "", accepted + "."};
+    if (!projection) return projection.error();
+    if (projection->name() == "latlong")
+        return Error{"a lat-long convention is given apart", "", "Pass --projection latlong --latlong CONVENTION."};
+    if (projection->name() == "cube") return Error{"unknown projection \"" + text + "\"", "", accepted + "."};
+    return *projection;
+}
+
 Result<Request> check_options(const EnvironmentOptions& options) {
-    Request request{options, {}, 1};
+    Request request{options, {}, 1, {}};
     const auto one_of = [](const std::string& value, std::initializer_list<const char*> accepted) {
         return std::find(accepted.begin(), accepted.end(), value) != accepted.end();
     };
-    if (!one_of(options.projection, {"auto", "latlong", "cube-cross", "cube-strip", "cube-faces"}))
-        return Error{"unknown projection \"" + options.projection + "\"", "--projection",
-                     "Accepted: auto, latlong, cube-cross, cube-strip, cube-faces."};
+    if (request.options.latlong == "pbrt") {
+        if (options.projection != "auto" && options.projection != "latlong")
+            return Error{"pbrt's square is no " + options.projection, "--latlong", ""};
+        request.options.latlong.clear();
+        request.options.projection = "pbrt";
+    }
+    if (!one_of(request.options.projection, {"auto", "latlong", "cube-cross", "cube-strip", "cube-faces"})) {
+        auto other = other_projection(request.options.projection);
+        if (!other) return other.error().at("--projection");
+        request.other = *std::move(other);
+    }
     if (!one_of(options.decode, {"auto", "srgb", "gamma22", "linear"}))
         return Error{"unknown decoding \"" + options.decode + "\"", "--decode",
                      "Accepted: auto, srgb, gamma22, linear."};
@@ -61,8 +86,8 @@ Result<Request> check_options(const EnvironmentOptions& options) {
         return Error{"exposure must lie between -64 and 64 stops", "--exposure", ""};
     const Result<Vec3d> up = signed_axis(options.up);
     if (!up) return up.error().at("--up");
-    if (!options.latlong.empty())
-        if (const auto convention = latlong_convention(options.latlong); !convention)
+    if (!request.options.latlong.empty())
+        if (const auto convention = latlong_convention(request.options.latlong); !convention)
             return convention.error().at("--latlong");
     // Light turned by R arrives from d if it came from R^T d before.
     request.turn = up_to_y(*up) * rotation_y_deg(options.rotate_y_deg).transposed();
@@ -90,8 +115,11 @@ Result<std::optional<CubeLayout>> choose_layout(const ImageFacts& facts, const s
     if (projection == "latlong" || (projection == "auto" && !layout)) {
         if (!has_latlong_shape(facts.width, facts.height))
             return Error{is + ", but a lat-long map must be twice as wide as high", "",
-                         facts.width == facts.height ? "If this is one face of a cube, give all six."
-                                                     : "If this is a cube cross, pass --projection cube-cross."};
+                         facts.width == facts.height
+                             ? "If this is one face of a cube, give all six; if it is a mirror ball or another "
+                               "round or octahedral map, say which: --projection sphere-map, "
+                               "mirror-ball/fov=DEGREES, angular, octahedral, ..."
+                             : "If this is a cube cross, pass --projection cube-cross."};
         return std::optional<CubeLayout>();
     }
     return layout;
@@ -156,6 +184,93 @@ Environment finish_cube(Environment environment, Cubemap cube, const Request& re
     return environment;
 }
 
+/// Rows of an image that goes with them.
+class OwnedRows : public RowSource {
+  public:
+    explicit OwnedRows(ImageF image) : image_(std::move(image)), rows_(image_) {}
+    int width() const override { return image_.width(); }
+    int height() const override { return image_.height(); }
+    Result<void> read(ImageView<float> rows) override { return rows_.read(rows); }
+
+  private:
+    ImageF image_;
+    ImageRowSource rows_;
+};
+
+/// The greatest height that a lat-long map made from another projection gets.
+constexpr int k_most_latlong_height = 8192;
+
+/// A picture in any projection: kept, or made lat-long without loss of resolution.
+Result<Environment> finish_other(Environment environment, ProjectedImage picture, const Request& request) {
+    const ProjectionShape& shape = picture.projection.shape();
+    environment.projection = picture.projection.name();
+    environment.world_to_source = request.turn;
+    if (!picture.projection.full())
+        environment.report->warnings.push_back(
+            fmt::format("the projection {} shows {:.0f} % of all directions: {}", environment.projection,
+                        25 * shape.coverage() / k_pi,
+                        shape.coverage() < 3 * k_pi ? "the rest is black" : "the rest repeats its rim"));
+    if (request.options.keep_projection) {
+        environment.picture = std::move(picture);
+        return environment;
+    }
+    const int height = std::clamp(shape.latlong_height(picture.height()), 1, k_most_latlong_height);
+    if (const std::int64_t bytes = std::int64_t(height) * height * 2 * 12; bytes > request.options.max_bytes)
+        return Error{
+            fmt::format("the lat-long map needs {} bytes, more than the limit of {}", bytes, request.options.max_bytes),
+            "", ""};
+    ProjectedImage latlong =
+        reproject(picture, *projection_from_name("latlong"), 2 * height, height, request.options.threads);
+    environment.latlong = std::make_unique<OwnedRows>(std::move(latlong.pixels));
+    return environment;
+}
+
+/// Reads one picture of a projection: its only chart, or the two halves of a dual paraboloid side by side.
+Result<ProjectedImage> read_other(RowSource& rows, const Projection& projection) {
+    const int charts = projection.charts(), width = rows.width() / charts, height = rows.height();
+    if (rows.width() != charts * height)
+        return Error{fmt::format("image is {} x {}, but {} must be {}", rows.width(), height, projection.name(),
+                                 charts == 2 ? "two squares side by side" : "square"),
+                     "", charts == 2 ? "Front and back may also be two files." : ""};
+    Result<ImageF> picture = read_latlong(rows);
+    if (!picture) return picture.error();
+    if (charts == 1) return ProjectedImage{projection, *std::move(picture)};
+    ImageF stacked(width, height * charts, 3);
+    for (int c = 0; c < charts; ++c)
+        for (int y = 0; y < height; ++y) std::copy_n(picture->at(c * width, y), 3 * width, stacked.row(c * height + y));
+    return ProjectedImage{projection, std::move(stacked)};
+}
+
+/// Front and back of a dual paraboloid.
+Result<Environment> open_halves(const std::vector<std::filesystem::path>& files, const Request& request) {
+    Environment environment;
+    ImageF stacked;
+    for (int c = 0; c < 2; ++c) {
+        const std::filesystem::path& file = files[std::size_t(c)];
+        auto image = open_file(file, request.options);
+        if (!image) return image.error();
+        const ImageFacts& facts = (*image)->facts();
+        if (facts.width != facts.height)
+            return Error{
+                fmt::format("image is {} x {}, but half a dual paraboloid must be square", facts.width, facts.height),
+                file.string(), ""};
+        if (c == 0) {
+            environment = begin_environment(file, facts);
+            stacked = ImageF(facts.width, 2 * facts.width, 3);
+        } else if (facts.width != stacked.width()) {
+            return Error{fmt::format("image is {} x {}, but {} is {} x {}", facts.width, facts.height,
+                                     files[0].filename().string(), stacked.width(), stacked.width()),
+                         file.string(), "Both halves must have one size."};
+        }
+        const int size = stacked.width();
+        if (const auto read = radiance_of(environment, file, std::move(*image), request, false)
+                                  ->read(stacked.view().rows(c * size, size));
+            !read)
+            return read.error();
+    }
+    return finish_other(std::move(environment), {*request.other, std::move(stacked)}, request);
+}
+
 /// KTX2, KTX and DDS hold cubes as the engines load them.
 Result<Environment> open_texture(const std::filesystem::path& file, const std::string& container,
                                  const Request& request) {
@@ -179,6 +294,13 @@ Result<Environment> open_picture(const std::filesystem::path& file, const Reques
     auto image = open_image_reader(std::move(*bytes), reader_options(request.options));
     if (!image) return image.error();
     const ImageFacts& facts = (*image)->facts();
+    if (request.other) {
+        Environment environment = begin_environment(file, facts);
+        const auto rows = radiance_of(environment, file, std::move(*image), request, false);
+        Result<ProjectedImage> picture = read_other(*rows, *request.other);
+        if (!picture) return picture.error();
+        return finish_other(std::move(environment), *std::move(picture), request);
+    }
     const auto layout = choose_layout(facts, request.options.projection);
     if (!layout) return layout.error();
     Environment environment = begin_environment(file, facts);
@@ -236,6 +358,7 @@ Result<Environment> open_environment(const std::vector<std::filesystem::path>& f
     const Result<Request> request = check_options(options);
     if (!request) return request.error();
     if (files.size() == 6) return open_faces(files, *request);
+    if (files.size() == 2 && request->other && request->other->charts() == 2) return open_halves(files, *request);
     if (files.size() != 1)
         return Error{fmt::format("{} files: an environment is one image or the six faces of a cube", files.size()), "",
                      ""};
