@@ -73,11 +73,15 @@ int face_of(const std::filesystem::path& file) {
 
 void add_environment_options(Arguments& arguments, EnvironmentOptions& options) {
     arguments.group("Reading the environment");
-    arguments.choice("--projection", options.projection, {"auto", "latlong", "cube-cross", "cube-strip", "cube-faces"},
-                     "what the image shows (auto: from its shape and attributes)");
+    arguments.text(
+        "--projection", "NAME", options.projection,
+        "what the image shows: latlong, cube-cross, cube-strip, cube-faces, sphere-map, mirror-ball/fov=DEGREES, "
+        "angular, hemisphere, paraboloid, paraboloid-opposite, dual-paraboloid, octahedral, "
+        "equal-area-octahedral, each with /centre=+Z,right=+X,up=+Y where it differs (auto: latlong or a "
+        "cube, from its shape and attributes)");
     arguments.text(
         "--latlong", "NAME", options.latlong,
-        "lat-long convention: default, usd, mitsuba, openexr, materialx, mod, or centre=+X,right=+Z[,up=+Y]");
+        "lat-long convention: default, usd, mitsuba, openexr, materialx, mod, pbrt, or centre=+X,right=+Z[,up=+Y]");
     arguments.choice("--decode", options.decode, {"auto", "srgb", "gamma22", "linear"},
                      "transfer function of PNG and JPEG (auto: srgb)");
     arguments.number("--rotate-y-deg", "DEGREES", options.rotate_y_deg, "turn the light about +Y: +X moves towards +Z");

@@ -24,6 +24,7 @@ constexpr Command k_commands[] = {
     {"bake", "an environment to specular levels, irradiance, harmonics and BRDF table, as an engine loads them",
      run_bake},
     {"compare", "how far two pictures are apart, or a bake of any tool from the exact filter", run_compare},
+    {"convert", "an environment to another projection, convention, orientation, size or format", run_convert},
     {"info", "what an environment, a texture or a bake holds", run_info},
     {"render", "a scene under an environment: the truth by path tracing, or what an engine draws", run_render},
     {"lights", "the sun and other small bright sources as lights, and the environment without them", run_lights},

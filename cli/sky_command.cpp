@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "console.h"
+#include "eight_bit.h"
 
 #include <fmt/core.h>
 
@@ -77,21 +78,6 @@ class WatchedRows : public RowSource {
     int done_ = 0;
     float largest_ = 0;
 };
-
-/// 8-bit sRGB (IEC 61966-2-1), clipped at 1.
-Result<void> write_8bit(const std::string& file, RowSource& rows) {
-    Image<std::uint8_t> pixels(rows.width(), rows.height(), 3);
-    ImageF row(rows.width(), 1, 3);
-    for (int y = 0; y < rows.height(); ++y) {
-        if (auto ok = rows.read(row.view()); !ok) return ok;
-        for (int i = 0; i < 3 * rows.width(); ++i) {
-            const float c = std::clamp(row.row(0)[i], 0.0f, 1.0f);
-            pixels.row(y)[i] =
-                std::uint8_t(255 * (c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f) + 0.5f);
-        }
-    }
-    return write_png(file, pixels.view());
-}
 
 Result<void> write(const SkyWords& w, WatchedRows& rows) {
     const std::string extension = std::filesystem::path(w.output).extension().string();

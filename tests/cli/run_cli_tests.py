@@ -67,7 +67,7 @@ def test_examples_in_every_help_run(folder):
     shutil.copy(folder / "evening.hdr", folder / "sunset.hdr")
     (folder / "helmet.glb").write_bytes(make_glb())
     smaller = {"render": ["--width", "8", "--height", "8", "--spp", "1", "--quiet"]}  # the last of an option counts
-    for command in ["bake", "compare", "info", "lights", "render", "sample", "sky"]:
+    for command in ["bake", "compare", "convert", "info", "lights", "render", "sample", "sky"]:
         text = run(command, "--help", folder=folder).stdout
         assert text.startswith("Examples:\n"), f"{command} --help does not open with examples"
         examples = [line.strip() for line in text.split("\n\n")[0].splitlines()[1:]]
@@ -87,8 +87,8 @@ def test_version(folder):
 
 def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
     cases = [
-        (["nonsense"], "bake, compare, info, render, lights, sample, sky"),
-        (["--nonsense"], "bake, compare, info, render, lights, sample, sky"),
+        (["nonsense"], "bake, compare, convert, info, render, lights, sample, sky"),
+        (["--nonsense"], "bake, compare, convert, info, render, lights, sample, sky"),
         (["bake", "-o", "o", "--nonsense"], "--lobe"),
         (["bake"], "-o DIR"),
         (["bake", "-o", "o", "--lobe", "blinn"], "ggx, charlie, phong, phong-plain"),
@@ -124,6 +124,21 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["bake", "studio.hdr", "-o", "o", "--latlong", "sideways"], "materialx"),
         (["bake", "studio.hdr", "-o", "o", "--projection", "fisheye"], "cube-cross"),
         (["bake", "studio.hdr", "-o", "o", "--up", "w"], "--up"),
+        (["convert"], "IN OUT"),
+        (["convert", "studio.hdr", "out.tga"], ".hdr, .exr, .png, .ktx2"),
+        (["convert", "studio.hdr", "out.hdr", "--to", "mercator"], "sphere-map, mirror-ball, angular"),
+        (["convert", "studio.hdr", "out.hdr", "--to", "latlong/sideways"], "materialx"),
+        (["convert", "studio.hdr", "out.hdr", "--to", "angular/centre=+X,right=-X"], "three different axes"),
+        (["convert", "studio.hdr", "out.hdr", "--from", "fisheye"], "dual-paraboloid"),
+        (["convert", "studio.hdr", "out.hdr", "--size", "0"], "1 to 32768"),
+        (["convert", "studio.hdr", "out.hdr", "--rotate", "0,0,0,30"], "X,Y,Z,DEGREES"),
+        (["convert", "studio.hdr", "out.hdr", "--rotate", "0,1,30"], "X,Y,Z,DEGREES"),
+        (["convert", "studio.hdr", "out.hdr", "--mirror", "w"], "x, y, z"),
+        (["convert", "studio.hdr", "out.hdr", "--to", "cube", "--layout", "dome"], "cross, vertical-cross, strip, vertical-strip, faces"),
+        (["convert", "studio.hdr", "out.hdr", "--layout", "cross"], "picture"),
+        (["convert", "studio.hdr", "out.hdr", "--encoding", "half"], "rgbe"),
+        (["convert", "studio.hdr", "out.hdr", "--to", "cube/openexr"], ".exr"),
+        (["convert", "studio.hdr", "out.hdr", "--exposure", "nan"], "--exposure"),
         (["compare", "studio.hdr"], "two pictures"),
         (["compare", "studio.hdr", "evening.hdr", "--fail-above", "rmse"], "METRIC=VALUE"),
         (["compare", "studio.hdr", "evening.hdr", "--fail-above", "colour=1"], "rmse, relative, tone-mapped"),
@@ -683,6 +698,76 @@ def test_sky_formats_and_axes(folder):
         assert (folder / name).stat().st_size > 100
     run("sky", "--axes", "-o", "axes.png", "--height", "64", folder=folder)
     assert json.loads(run("info", "axes.png", "--json", folder=folder).stdout)["width"] == 128
+
+
+def converted(folder, *words):
+    return json.loads(run("convert", *words, "--json", folder=folder).stdout)
+
+
+def test_convert_reports_power_and_files(folder):
+    faces = converted(folder, "studio.hdr", "cube.exr", "--to", "cube", "--layout", "faces", "--size", "24")
+    assert faces["files"] == [f"cube_{f}.exr" for f in ["px", "nx", "py", "ny", "pz", "nz"]] and faces["method"] == "exact"
+    assert all((folder / name).is_file() for name in faces["files"])
+    assert abs(faces["power"]["relative_change"]) < 5e-3  # the sun is one texel of a row of 64
+    back = converted(folder, *faces["files"], "back.exr", "--size", "32", "--encoding", "float")
+    assert back["source"]["projection"] == "cube" and back["method"] == "conservative"
+    assert all(abs(a / b - 1) < 1e-2 for a, b in zip(back["power"]["after"], faces["power"]["before"]))
+    assert "radiant power" in run("convert", "studio.hdr", "x.hdr", "--to", "angular", folder=folder).stdout
+    assert run("convert", "studio.hdr", "x.hdr", "--to", "octahedral", "--quiet", folder=folder).stdout == ""
+
+
+def test_convert_every_projection_there_and_back(folder):
+    before = None
+    for name in ["latlong/usd", "latlong/materialx", "latlong/mitsuba", "latlong/openexr", "sphere-map", "mirror-ball/fov=30", "angular",
+                 "dual-paraboloid", "octahedral", "equal-area-octahedral"]:
+        there = converted(folder, "evening.hdr", "there.exr", "--to", name, "--size", "64", "--encoding", "float")
+        words = ["--latlong", name.split("/")[1]] if name.startswith("latlong") else ["--projection", name]
+        info = json.loads(run("info", "there.exr", *words, "--json", folder=folder).stdout)
+        assert info["projection"] == name.split("/")[0], info
+        mean = info["mean_radiance"]
+        before = before or mean
+        # A mirror ball hides a cone behind it, and 64 texels are coarse for the sun.
+        tolerance = 0.25 if "ball" in name else 0.05
+        assert all(abs(a / b - 1) < tolerance for a, b in zip(mean, before)), (name, mean, before)
+    for name, share in [("hemisphere", 50), ("paraboloid", 50), ("paraboloid-opposite", 50)]:
+        result = run("convert", "evening.hdr", "half.hdr", "--to", name, "--size", "32", folder=folder)
+        assert f"shows {share} % of all directions" in result.stderr
+        again = run("convert", "half.hdr", "again.hdr", "--from", name, folder=folder)
+        assert "the rest is black" in again.stderr
+    halves = converted(folder, "evening.hdr", "dp.hdr", "--to", "dual-paraboloid", "--layout", "files", "--size", "32")
+    assert halves["files"] == ["dp_front.hdr", "dp_back.hdr"]
+    again = converted(folder, "dp_front.hdr", "dp_back.hdr", "again.hdr", "--from", "dual-paraboloid")
+    assert abs(again["power"]["relative_change"]) < 1e-2
+
+
+def test_a_mirror_ball_goes_through_every_command(folder):
+    run("sky", "--axes", "--height", "64", "-o", "axes.hdr", folder=folder)
+    run("convert", "axes.hdr", "ball.hdr", "--to", "sphere-map", "--size", "96", folder=folder)
+    run("bake", "ball.hdr", "-o", "out", "--projection", "sphere-map", *SMALL, folder=folder)
+    assert manifest_of(folder / "out")["source"]["projection"] == "sphere-map"
+    run("sample", "ball.hdr", "-n", "10", "--projection", "sphere-map", folder=folder)
+    refused = run("info", "ball.hdr", folder=folder, code=1).stderr
+    assert "--projection sphere-map" in refused
+    assert "must be square" in run("info", "axes.hdr", "--projection", "angular", folder=folder, code=1).stderr
+
+
+def test_convert_textures_envmap_and_threads(folder):
+    run("convert", "studio.hdr", "cube.ktx2", "--size", "16", "--encoding", "rgb9e5", folder=folder)
+    run("convert", "cube.ktx2", "cross.hdr", "--to", "cube", "--mirror", "x", folder=folder)
+    for ending in ["ktx", "dds"]:
+        run("convert", "cube.ktx2", f"again.{ending}", folder=folder)
+    run("convert", "studio.hdr", "env.exr", "--to", "cube/openexr", "--size", "16", folder=folder)
+    assert json.loads(run("info", "env.exr", "--json", folder=folder).stdout)["projection"] == "cube"
+    for words in [["--to", "cube"], ["--to", "angular"], ["--rotate", "1,2,3,40"]]:
+        outputs = []
+        for threads in ["1", "3"]:
+            run("convert", "studio.hdr", "t.hdr", *words, "--threads", threads, folder=folder)
+            outputs.append((folder / "t.hdr").read_bytes())
+        assert outputs[0] == outputs[1], words
+    # Twice a quarter turn is half a turn, and four of them are none.
+    run("convert", "studio.hdr", "half.hdr", "--rotate-y-deg", "180", folder=folder)
+    run("convert", "studio.hdr", "quarters.hdr", "--rotate", "0,1,0,90", "--rotate", "0,2,0,90", folder=folder)
+    assert (folder / "half.hdr").read_bytes() == (folder / "quarters.hdr").read_bytes()
 
 
 def test_bad_texels_are_reported(folder):

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "domelight/reproject.h"
+#include "domelight/result.h"
+#include "domelight/texture.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace domelight::cli {
+
+/// How a picture of several charts goes into files.
+struct ConvertOutput {
+    std::string file;
+    std::string layout;    ///< empty: the format's and projection's own
+    std::string encoding;  ///< empty: half for .exr, rgba16f for textures
+    int threads = 0;
+};
+
+/// Errors: a format that is not known, a layout or an encoding that does not go with it or with the projection;
+/// `where` is the option. Sets the layout and the encoding that were left out.
+Result<void> check_output(ConvertOutput& output, const Projection& projection);
+
+struct WrittenPicture {
+    std::vector<std::string> files;
+    EncodingReport encoding;  ///< what the encoding clipped; textures and half .exr
+    bool clips = false;       ///< 8 bits: everything above 1
+};
+
+/// Writes the picture, in one file or one a chart (`name_px.hdr`, `name_front.hdr`). Each appears whole or not at all.
+Result<WrittenPicture> write_projected(const ProjectedImage& image, const ConvertOutput& output);
+
+}  // namespace domelight::cli

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "domelight/result.h"
+#include "domelight/row_source.h"
+
+#include <filesystem>
+
+namespace domelight::cli {
+
+/// Rows as an 8-bit sRGB PNG (IEC 61966-2-1), clipped at 1.
+Result<void> write_8bit(const std::filesystem::path& file, RowSource& rows);
+
+}  // namespace domelight::cli
