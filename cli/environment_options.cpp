@@ -82,7 +82,7 @@ void add_environment_options(Arguments& arguments, EnvironmentOptions& options) 
     arguments.text(
         "--latlong", "NAME", options.latlong,
         "lat-long convention: default, usd, mitsuba, openexr, materialx, mod, pbrt, or centre=+X,right=+Z[,up=+Y]");
-    arguments.choice("--decode", options.decode, {"auto", "srgb", "gamma22", "linear"},
+    arguments.choice("--decode", options.decode, {"auto", "srgb", "gamma22", "linear", "rgbm", "rgbd", "rgbp"},
                      "transfer function of PNG and JPEG (auto: srgb)");
     arguments.number("--rotate-y-deg", "DEGREES", options.rotate_y_deg, "turn the light about +Y: +X moves towards +Z");
     arguments.text("--up", "AXIS", options.up, "the axis that the image's top shows: +Y, +Z, ... (+Y)");

@@ -87,6 +87,7 @@ struct BakedMap {
     Lobe lobe = Lobe::ggx;
     Quantity quantity = Quantity::radiance;
     Layout layout = Layout::cube;
+    std::string projection;  ///< the environment as one image: its name and convention; else empty
     std::string encoding, container;
     bool zstd = false;
     BakedFile file;  ///< containers that hold the whole chain

@@ -34,7 +34,8 @@ struct EnvironmentOptions {
     /// Lat-long convention: default, usd, mitsuba, openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]", or pbrt
     /// (the equal-area octahedral square); empty: what the file says, else default.
     std::string latlong = "";
-    std::string decode = "auto";  ///< PNG and JPEG: auto (= srgb) | srgb | gamma22 | linear
+    /// PNG, JPEG and DDS of eight bits a channel: auto (= srgb) | srgb | gamma22 | linear; DDS also rgbm | rgbd | rgbp
+    std::string decode = "auto";
     double rotate_y_deg = 0;      ///< turns the light about +Y: +X moves towards +Z
     std::string up = "+Y";        ///< the world axis (of the file's author) that the image's top shows: +Y, +Z, ...
     double exposure = 0;          ///< stops: radiance is multiplied by 2^exposure

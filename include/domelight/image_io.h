@@ -35,6 +35,12 @@ Result<void> write_exr(const std::filesystem::path& file, ImageView<const float>
                        const ExrWriteOptions& options = {});
 Result<void> write_exr(const std::filesystem::path& file, RowSource& rows, const ExrWriteOptions& options = {});
 
+/// OpenEXR tiled image with levels (MIPMAP_LEVELS, sizes rounded down). `levels`: the finest first, each half as large
+/// as the one before in both directions; the smaller ones that the format demands down to 1 x 1 are made from the last
+/// one by averaging. With envmap "cube" each level is a strip of faces that halves. Errors: other sizes.
+Result<void> write_exr_levels(const std::filesystem::path& file, std::span<const ImageView<const float>> levels,
+                              const ExrWriteOptions& options = {});
+
 /// A layer of an image of several.
 struct ExrLayer {
     std::string name;  ///< before the channels' names: "direct" gives direct.R; empty for the picture itself

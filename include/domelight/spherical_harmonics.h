@@ -29,4 +29,14 @@ Vec3d sh_evaluate(std::span<const Vec3d> coefficients, const Vec3d& direction);
 /// 3z^2-1, zx, x^2-y^2.
 std::vector<Vec3d> sh_filament(std::span<const Vec3d> radiance);
 
+/// A function of a unit direction d, one for each colour: x d.x + y d.y + z d.z + xx d.x^2 + ... + xy d.x d.y. A
+/// constant c is xx = yy = zz = c.
+struct QuadraticPolynomial {
+    Vec3d x, y, z, xx, yy, zz, yz, zx, xy;
+    Vec3d operator()(const Vec3d& d) const;
+};
+
+/// The expansion's first nine coefficients as a polynomial: the same function.
+QuadraticPolynomial sh_polynomial(std::span<const Vec3d> coefficients);
+
 }  // namespace domelight

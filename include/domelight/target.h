@@ -14,18 +14,23 @@ namespace domelight {
 enum class Quantity { radiance, irradiance, irradiance_over_pi };
 std::string quantity_name(Quantity quantity);
 
-/// The file a map is written to. exr and hdr hold one image a level; the others hold the whole chain.
-enum class Container { ktx2, ktx1, dds, exr, hdr };
+/// The file a map is written to. exr and hdr hold one image a level; the others hold the whole chain. dds9 is DDS with
+/// the header from before DX10; exr_mip a tiled OpenEXR with its levels and the envmap attribute. The last three belong
+/// to one target each: Babylon's .env, a glTF file with EXT_lights_image_based, PlayCanvas' atlas (a PNG).
+enum class Container { ktx2, ktx1, dds, dds9, exr, exr_mip, hdr, env, gltf, playcanvas_atlas };
 std::string container_name(Container container);
-Result<Container> container_from_name(const std::string& name);  ///< the error lists the accepted names
-std::string container_extension(Container container);            ///< ".ktx2", ".ktx", ...
+/// Those that fit any target: ktx2, ktx1, dds, dds9, exr, exr-mip, hdr. The error lists them.
+Result<Container> container_from_name(const std::string& name);
+std::string container_extension(Container container);  ///< ".ktx2", ".ktx", ...
 
 /// How a consumer's lookup differs from texture(cube, d) for the light that arrives from world direction d = (x, y, z).
 enum class CubeMirror {
     none,  ///< it does not
-    x,     ///< it reads texture(cube, (-x, y, z))
-    z,     ///< it reads texture(cube, (x, y, -z))
+    x,        ///< it reads texture(cube, (-x, y, z))
+    z,        ///< it reads texture(cube, (x, y, -z))
+    swap_yz,  ///< it reads texture(cube, (x, z, y))
 };
+std::string cube_mirror_direction(CubeMirror mirror);  ///< "d", "(-x, y, z)", ...
 
 /// What a BRDF table's channels hold; brdf_table.h has the integrals.
 enum class BrdfForm { none, scale_bias, multiscatter, scale_bias_charlie };
@@ -45,16 +50,21 @@ struct Target {
     int size = 512;    ///< face size of level 0
     int smallest = 8;  ///< by default levels go down to this face size
     RoughnessCurve roughness = nullptr;
+    Layout layout = Layout::cube;        ///< of the maps, unless asked otherwise
     CubeMirror mirror = CubeMirror::none;
+    std::string latlong = "default";     ///< convention of lat-long maps: one that only turns the default about +Y
     Encoding encoding = Encoding::rgba16f;
     Container container = Container::ktx2;
     bool zstd = false;
-    /// The consumer filters by itself: only the environment is written, as one lat-long image 4 size x 2 size.
+    /// The consumer filters by itself: only the environment is written, as one image of the projection `panorama`: a
+    /// lat-long one 4 size x 2 size, else 2 size x 2 size.
     bool environment_only = false;
+    std::string panorama = "latlong";  ///< name and convention, as projections.h takes them
 
     std::string specular_file = "specular";
     std::string sheen_file;   ///< a second chain with Charlie's lobe
     std::string skybox_file;  ///< level 0 alone
+    std::string panorama_file;  ///< the environment as one .exr beside the maps
     std::string irradiance_file = "irradiance";
     int irradiance_size = 64;
     Quantity irradiance_quantity = Quantity::irradiance;

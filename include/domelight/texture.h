@@ -103,6 +103,9 @@ Result<void> write_ktx2(const std::filesystem::path& file, const Texture& textur
                         Supercompression compression = Supercompression::none);
 Result<void> write_ktx1(const std::filesystem::path& file, const Texture& texture);
 Result<void> write_dds(const std::filesystem::path& file, const Texture& texture);
+/// DDS with the header from before DX10, for tools that know no other: half and float RGBA and RG; rgbm, rgbd and rgbp
+/// as RGBA bytes, of which it cannot say what they mean.
+Result<void> write_dds9(const std::filesystem::path& file, const Texture& texture);
 
 /// What any KTX2, KTX1 or DDS file says about itself; also for formats whose texels we do not decode.
 struct TextureInfo {
@@ -111,6 +114,7 @@ struct TextureInfo {
     int width = 0, height = 0, depth = 0, faces = 1, layers = 0, levels = 1;
     std::map<std::string, std::string> metadata;
     bool decodable = false;  ///< read_texture can decode it
+    bool eight_bits = false;  ///< a channel: made for a screen, or RGBM and its like
 };
 Result<TextureInfo> read_texture_info(const std::filesystem::path& file);
 /// Reads a texture in one of our encodings, or in half or float RGB or R (which gain the missing channels). Checks

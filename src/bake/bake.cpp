@@ -6,6 +6,7 @@
 #include "bake/filter_job.h"
 #include "bake/manifest.h"
 #include "bake/outputs.h"
+#include "bake/panorama.h"
 #include "bake/plan.h"
 #include "bake/preview_sheet.h"
 #include "bake/sh_report.h"
@@ -59,20 +60,21 @@ std::string per_level(const std::vector<LevelPlan>& levels, Number number) {
     return text;
 }
 
+/// In one line, for a file's metadata.
+std::string map_convention(const TargetPlan& plan, const BakedMap& map) {
+    const Target& target = *plan.target;
+    if (!map.projection.empty()) return projection_convention(map.projection);
+    if (map.layout == Layout::latlong) return projection_convention("latlong/" + target.latlong);
+    return fmt::format("texture(cube, {}) is the light from world direction {}, +Y up",
+                       cube_mirror_direction(target.mirror), target.mirror == CubeMirror::none ? "d" : "(x, y, z)");
+}
+
 /// What a texture file says about itself, whatever becomes of the manifest.
 std::map<std::string, std::string> map_metadata(const TargetPlan& plan, const BakedMap& map,
                                                 const std::vector<LevelPlan>& levels) {
     std::map<std::string, std::string> metadata{{"domelight.version", version()},
                                                 {"domelight.quantity", quantity_name(map.quantity)}};
-    if (map.layout == Layout::cube) {
-        const CubeMirror mirror = plan.target->mirror;
-        metadata["domelight.convention"] =
-            mirror == CubeMirror::x   ? "texture(cube, (-x, y, z)) is the light from world direction (x, y, z), +Y up"
-            : mirror == CubeMirror::z ? "texture(cube, (x, y, -z)) is the light from world direction (x, y, z), +Y up"
-                                      : "texture(cube, d) is the light from world direction d, +Y up";
-    } else {
-        metadata["domelight.convention"] = "lat-long, centre +X, right +Z, up +Y";
-    }
+    metadata["domelight.convention"] = map_convention(plan, map);
     if (map.quantity != Quantity::radiance) return metadata;
     metadata["domelight.lobe"] = lobe_name(map.lobe);
     if (map.lobe == Lobe::ggx || map.lobe == Lobe::charlie) {
@@ -111,7 +113,7 @@ class TargetBake {
           stem_(stem),
           staging_(std::move(staging)),
           background_(resolve_threads(options.threads)) {
-        report_.maps.reserve(4);  // their addresses must last
+        report_.maps.reserve(5);  // their addresses must last
         report_.sh.files.reserve(2);
     }
 
@@ -152,15 +154,20 @@ class TargetBake {
 
   private:
     void write_light(FilterJob::Maps& maps) {
-        write(target_.environment_only ? "environment" : "specular", target_.specular_file, plan_.lobe,
-              Quantity::radiance, plan_.layout, plan_.specular, maps.specular, plan_.encoding);
+        if (target_.environment_only) {
+            write_panorama(target_.specular_file, maps.specular.front().latlong);
+        } else {
+            write("specular", target_.specular_file, plan_.lobe, Quantity::radiance, plan_.specular, maps.specular,
+                  plan_.encoding, &maps.irradiance_over_pi);
+        }
         if (!plan_.sheen.empty())
-            write("sheen", target_.sheen_file, Lobe::charlie, Quantity::radiance, plan_.layout, plan_.sheen, maps.sheen,
+            write("sheen", target_.sheen_file, Lobe::charlie, Quantity::radiance, plan_.sheen, maps.sheen,
                   plan_.encoding);
         if (!target_.skybox_file.empty() && plan_.specular.front().spec.mirror)
-            write("skybox", target_.skybox_file, plan_.lobe, Quantity::radiance, plan_.layout, {plan_.specular.front()},
+            write("skybox", target_.skybox_file, plan_.lobe, Quantity::radiance, {plan_.specular.front()},
                   std::span(maps.specular).first(1), plan_.encoding);
         if (!target_.irradiance_file.empty()) write_irradiance(maps.irradiance_over_pi);
+        if (!target_.panorama_file.empty()) write_panorama(target_.panorama_file, maps.panorama);
     }
 
     void write_irradiance(const FilteredMap& over_pi) {
@@ -170,28 +177,55 @@ class TargetBake {
         LevelPlan level;
         level.spec.size = plan_.irradiance_size;
         const bool own_encoding = !options_.encoding && plan_.container == target_.container;
-        write("irradiance", target_.irradiance_file, Lobe::ggx, target_.irradiance_quantity, plan_.layout, {level},
-              {&map, 1}, own_encoding ? target_.irradiance_encoding : plan_.encoding);
+        write("irradiance", target_.irradiance_file, Lobe::ggx, target_.irradiance_quantity, {level}, {&map, 1},
+              own_encoding ? target_.irradiance_encoding : plan_.encoding);
     }
 
-    void write(const char* role, const std::string& name, Lobe lobe, Quantity quantity, Layout layout,
-               const std::vector<LevelPlan>& levels, std::span<FilteredMap> maps, Encoding encoding) {
+    void write(const char* role, const std::string& name, Lobe lobe, Quantity quantity,
+               const std::vector<LevelPlan>& levels, std::span<FilteredMap> maps, Encoding encoding,
+               const FilteredMap* irradiance_over_pi = nullptr) {
         BakedMap& map = report_.maps.emplace_back();
         map.role = role;
         map.lobe = lobe;
         map.quantity = quantity;
-        map.layout = layout;
+        map.layout = plan_.layout;
         map.levels = baked_levels(levels);
+        MapFormat format = map_format(name, encoding);
+        format.mirror = target_.mirror;
+        format.latlong_quarters = plan_.latlong_quarters;
+        format.irradiance_over_pi = irradiance_over_pi;
+        format.radiance_sh = report_.sh.radiance;
+        format.metadata = map_metadata(plan_, map, levels);
+        if (target_.sh_metadata && map.role == "specular") format.metadata["sh"] = filament_sh_metadata(report_.sh);
+        write_map(map, maps, format, options_, staging_, background_);
+    }
+
+    /// The environment as one image, in the target's projection.
+    void write_panorama(const std::string& name, const ImageF& latlong) {
+        BakedMap& map = report_.maps.emplace_back();
+        map.role = "environment";
+        map.layout = Layout::latlong;
+        map.projection = target_.panorama;
+        const std::vector<LevelPlan> level{LevelPlan{LevelSpec{plan_.panorama_size, true, {}}}};
+        map.levels = baked_levels(level);
+        auto projected = project_panorama(latlong, target_.panorama, plan_.panorama_size, options_.threads);
+        if (!projected) return background_.done(projected.error());
+        FilteredMap image;
+        image.latlong = *std::move(projected);
+        MapFormat format = map_format(name, target_.environment_only ? plan_.encoding : Encoding::rgba16f);
+        if (!target_.environment_only) format.container = Container::exr;
+        format.metadata = map_metadata(plan_, map, level);
+        write_map(map, {&image, 1}, format, options_, staging_, background_);
+    }
+
+    MapFormat map_format(const std::string& name, Encoding encoding) const {
         MapFormat format;
         format.encoding = encoding;
         format.container = plan_.container;
         format.zstd = plan_.zstd;
         format.cube_picture = options_.cube_picture;
-        format.mirror = target_.mirror;
         format.name = expand_stem(name, stem_);
-        format.metadata = map_metadata(plan_, map, levels);
-        if (target_.sh_metadata && map.role == "specular") format.metadata["sh"] = filament_sh_metadata(report_.sh);
-        write_map(map, maps, format, options_, staging_, background_);
+        return format;
     }
 
     void write_sh() {
@@ -337,9 +371,9 @@ Result<BakeReport> bake(Environment& environment, const BakeOptions& options, co
         if (auto ok = job.run(environment, options); !ok) return ok.error().at(environment.file.string());
     }
     if (environment.report) report.repaired = source.repaired = *environment.report;
-    report.mean_radiance = job.result().mean;
-    report.clamped = job.result().clamped;
-    report.band_limit = job.result().band_limit;
+    report.mean_radiance = job.result(0).mean;
+    report.clamped = job.clamped();
+    report.band_limit = job.band_limit();
 
     report.targets.resize(plans->size());
     std::vector<std::unique_ptr<TargetBake>> bakes;
@@ -351,7 +385,7 @@ Result<BakeReport> bake(Environment& environment, const BakeOptions& options, co
         if (!staging) return staging.error();
         bakes.push_back(std::make_unique<TargetBake>(report.targets[t], plan, options, stem, *std::move(staging)));
         FilterJob::Maps maps = job.take(t);
-        bakes[t]->start(maps, job.result(), report.stages);
+        bakes[t]->start(maps, job.result(t), report.stages);
         bakes[t]->draw(maps, source.file, report.stages);
         job.give_back(t, std::move(maps));
         if (auto ok = bakes[t]->finish_writing(report.stages); !ok) return ok.error();

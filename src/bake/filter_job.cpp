@@ -26,138 +26,187 @@ ReferenceOptions reference_options(const BakeOptions& o) {
     return r;
 }
 
+/// The maps of one run from rows.
+Result<FilterResult> filter(RowSource& rows, const FilterOptions& filter, const BakeOptions& options) {
+    if (options.method == BakeMethod::exact) return prefilter(rows, filter);
+    const auto image = read_latlong(rows);
+    if (!image) return image.error();
+    return prefilter_reference(*image, filter, reference_options(options));
+}
+
+template <typename T>
+std::size_t index_of(std::vector<T>& values, const T& value) {
+    const auto at = std::find(values.begin(), values.end(), value);
+    if (at != values.end()) return std::size_t(at - values.begin());
+    values.push_back(value);
+    return values.size() - 1;
+}
+
 }  // namespace
 
-std::size_t FilterJob::add(const LevelSpec& spec) {
-    const auto at = std::find_if(specs_.begin(), specs_.end(), [&](const LevelSpec& s) { return same_level(s, spec); });
-    if (at != specs_.end()) return std::size_t(at - specs_.begin());
-    specs_.push_back(spec);
-    return specs_.size() - 1;
+std::size_t FilterJob::Run::add(const LevelSpec& spec) {
+    const auto at = std::find_if(specs.begin(), specs.end(), [&](const LevelSpec& s) { return same_level(s, spec); });
+    if (at != specs.end()) return std::size_t(at - specs.begin());
+    specs.push_back(spec);
+    return specs.size() - 1;
+}
+
+std::size_t FilterJob::run_of(Layout layout) {
+    const auto at = std::find_if(runs_.begin(), runs_.end(), [&](const Run& r) { return r.layout == layout; });
+    if (at != runs_.end()) return std::size_t(at - runs_.begin());
+    runs_.emplace_back().layout = layout;
+    return runs_.size() - 1;
 }
 
 FilterJob::FilterJob(const std::vector<TargetPlan>& plans) : targets_(plans.size()) {
-    const auto index_of = [](std::vector<int>& sizes, int size) {
-        const auto at = std::find(sizes.begin(), sizes.end(), size);
-        if (at != sizes.end()) return std::size_t(at - sizes.begin());
-        sizes.push_back(size);
-        return sizes.size() - 1;
-    };
     for (std::size_t t = 0; t < plans.size(); ++t) {
-        // Where a target only wants the environment, the irradiance serves the harmonics' error alone: its layout does
-        // not matter.
-        targets_[t].irradiance = index_of(irradiance_sizes_, plans[t].irradiance_size);
-        if (plans[t].target->environment_only) continue;
-        layout_ = plans[t].layout;
-        for (const LevelPlan& level : plans[t].specular) targets_[t].specular.push_back(add(level.spec));
-        for (const LevelPlan& level : plans[t].sheen) targets_[t].sheen.push_back(add(level.spec));
+        const TargetPlan& plan = plans[t];
+        Indices& indices = targets_[t];
+        if (plan.panorama_rows) indices.panorama = index_of(panorama_rows_, plan.panorama_rows);
+        indices.panorama_is_level = plan.target->environment_only;
+        if (indices.panorama_is_level) continue;
+        indices.run = run_of(plan.layout);
+        for (const LevelPlan& level : plan.specular) indices.specular.push_back(runs_[indices.run].add(level.spec));
+        for (const LevelPlan& level : plan.sheen) indices.sheen.push_back(runs_[indices.run].add(level.spec));
     }
+    // Where a target only wants the environment, the irradiance serves the harmonics' error alone: its layout does not
+    // matter.
+    if (runs_.empty()) runs_.emplace_back();
     for (std::size_t t = 0; t < plans.size(); ++t)
-        if (plans[t].target->environment_only)
-            targets_[t].specular = {specs_.size() + index_of(panorama_heights_, plans[t].specular.front().spec.size)};
+        targets_[t].irradiance = index_of(runs_[targets_[t].run].irradiance_sizes, plans[t].irradiance_size);
 }
 
-Result<void> FilterJob::filter_rows(RowSource& rows, const FilterOptions& filter, const BakeOptions& options) {
-    Result<FilterResult> result = [&]() -> Result<FilterResult> {
-        if (options.method == BakeMethod::exact) return prefilter(rows, filter);
-        const auto image = read_latlong(rows);
-        if (!image) return image.error();
-        return prefilter_reference(*image, filter, reference_options(options));
-    }();
-    if (!result) return result.error();
-    result_ = *std::move(result);
-    return {};
-}
-
-Result<void> FilterJob::filter_cube(const Environment& environment, const FilterOptions& filter,
-                                    const BakeOptions& options) {
-    if (options.method == BakeMethod::exact) {
-        auto result = prefilter(environment.cube, filter);
-        if (!result) return result.error();
-        result_ = *std::move(result);
-        return {};
-    }
-    // The plain methods read lat-long images: the cube as one, in its own frame.
-    const ImageF image =
-        area_resample_cube_to_latlong(environment.cube, 2 * environment.cube.size(), Mat3{}, options.threads);
-    auto result = prefilter_reference(image, filter, reference_options(options));
-    if (!result) return result.error();
-    result_ = *std::move(result);
-    return {};
-}
-
-Result<void> FilterJob::run(Environment& environment, const BakeOptions& options) {
+FilterOptions FilterJob::Run::options(const Environment& environment, const BakeOptions& options) const {
     FilterOptions filter;
-    filter.layout = layout_;
-    filter.specular = specs_;
-    filter.irradiance_size = irradiance_sizes_.front();
-    for (std::size_t i = 1; i < irradiance_sizes_.size(); ++i)
-        filter.specular.push_back({irradiance_sizes_[i], false, ZonalKernel::cosine()});
+    filter.layout = layout;
+    filter.specular = specs;
+    filter.irradiance_size = irradiance_sizes.front();
+    for (std::size_t i = 1; i < irradiance_sizes.size(); ++i)
+        filter.specular.push_back({irradiance_sizes[i], false, ZonalKernel::cosine()});
     filter.sh_bands = options.sh_bands;
     filter.world_to_source = environment.world_to_source;
     filter.threads = options.threads;
     filter.progress = options.progress;
+    return filter;
+}
 
-    std::vector<ImageF> panoramas;
-    if (environment.latlong) {
-        std::vector<std::unique_ptr<AreaResampler>> resamplers;
-        const int width = environment.latlong->width(), height = environment.latlong->height();
-        for (const int h : panorama_heights_)
-            resamplers.push_back(
-                area_resample_to_latlong(width, height, h, environment.world_to_source, options.threads));
-        Sha256 hash;
-        const bool hash_rows = environment.file.empty() && options.hashes;
-        TapRowSource tap(*environment.latlong, [&](ImageView<const float> rows) {
-            for (auto& resampler : resamplers) resampler->add_rows(rows);
-            for (int y = 0; hash_rows && y < rows.height; ++y)
-                hash.add({reinterpret_cast<const std::uint8_t*>(rows.row(y)),
-                          std::size_t(rows.width) * rows.channels * sizeof(float)});
-        });
-        if (auto ok = filter_rows(tap, filter, options); !ok) return ok;
-        for (auto& resampler : resamplers) panoramas.push_back(resampler->finish());
-        if (hash_rows) rows_sha256_ = hash.finish();
-    } else {
-        if (auto ok = filter_cube(environment, filter, options); !ok) return ok;
-        for (const int h : panorama_heights_)
-            panoramas.push_back(
-                area_resample_cube_to_latlong(environment.cube, h, environment.world_to_source, options.threads));
+void FilterJob::Run::sort_out() {
+    irradiance.push_back(std::move(result.irradiance_over_pi));
+    for (std::size_t i = specs.size(); i < result.specular.size(); ++i)
+        irradiance.push_back(std::move(result.specular[i]));
+    result.specular.resize(specs.size());
+}
+
+Result<void> FilterJob::read_rows(Environment& environment, const BakeOptions& options) {
+    std::vector<std::unique_ptr<AreaResampler>> resamplers;
+    const int width = environment.latlong->width(), height = environment.latlong->height();
+    for (const int rows : panorama_rows_)
+        resamplers.push_back(
+            area_resample_to_latlong(width, height, rows, environment.world_to_source, options.threads));
+    Sha256 hash;
+    const bool hash_rows = environment.file.empty() && options.hashes;
+    TapRowSource tap(*environment.latlong, [&](ImageView<const float> rows) {
+        for (auto& resampler : resamplers) resampler->add_rows(rows);
+        for (int y = 0; hash_rows && y < rows.height; ++y)
+            hash.add({reinterpret_cast<const std::uint8_t*>(rows.row(y)),
+                      std::size_t(rows.width) * rows.channels * sizeof(float)});
+    });
+    // The rows come once: where there are several runs, all of them are kept.
+    ImageF kept;
+    if (runs_.size() > 1) {
+        auto image = read_latlong(tap);
+        if (!image) return image.error();
+        kept = *std::move(image);
     }
-    irradiance_.push_back(std::move(result_.irradiance_over_pi));
-    for (std::size_t i = specs_.size(); i < result_.specular.size(); ++i)
-        irradiance_.push_back(std::move(result_.specular[i]));
-    result_.specular.resize(specs_.size());
-    for (ImageF& panorama : panoramas) {
-        FilteredMap map;
-        map.latlong = std::move(panorama);
-        result_.specular.push_back(std::move(map));
+    for (Run& run : runs_) {
+        ImageRowSource memory(kept.view());
+        RowSource& rows = kept.empty() ? static_cast<RowSource&>(tap) : memory;
+        auto result = filter(rows, run.options(environment, options), options);
+        if (!result) return result.error();
+        run.result = *std::move(result);
     }
+    for (auto& resampler : resamplers) panoramas_.push_back(resampler->finish());
+    if (hash_rows) rows_sha256_ = hash.finish();
     return {};
 }
 
-std::vector<FilteredMap> FilterJob::take(const std::vector<std::size_t>& indices) {
+Result<void> FilterJob::filter_cube(Environment& environment, const BakeOptions& options) {
+    for (Run& run : runs_) {
+        const FilterOptions filter_options = run.options(environment, options);
+        if (options.method == BakeMethod::exact) {
+            auto result = prefilter(environment.cube, filter_options);
+            if (!result) return result.error();
+            run.result = *std::move(result);
+            continue;
+        }
+        // The plain methods read lat-long images: the cube as one, in its own frame.
+        const ImageF image =
+            area_resample_cube_to_latlong(environment.cube, 2 * environment.cube.size(), Mat3{}, options.threads);
+        auto result = prefilter_reference(image, filter_options, reference_options(options));
+        if (!result) return result.error();
+        run.result = *std::move(result);
+    }
+    for (const int rows : panorama_rows_)
+        panoramas_.push_back(
+            area_resample_cube_to_latlong(environment.cube, rows, environment.world_to_source, options.threads));
+    return {};
+}
+
+Result<void> FilterJob::run(Environment& environment, const BakeOptions& options) {
+    const auto done = environment.latlong ? read_rows(environment, options) : filter_cube(environment, options);
+    if (!done) return done;
+    for (Run& run : runs_) run.sort_out();
+    return {};
+}
+
+std::int64_t FilterJob::clamped() const {
+    std::int64_t count = 0;
+    for (const Run& run : runs_) count += run.result.clamped;
+    return count;
+}
+
+int FilterJob::band_limit() const {
+    int limit = 0;
+    for (const Run& run : runs_) limit = std::max(limit, run.result.band_limit);
+    return limit;
+}
+
+std::vector<FilteredMap> FilterJob::take(Run& run, const std::vector<std::size_t>& indices) {
     std::vector<FilteredMap> maps;
     for (const std::size_t i : indices)
-        maps.push_back(std::move(result_.specular[i]));  // the levels of a chain differ in size
+        maps.push_back(std::move(run.result.specular[i]));  // the levels of a chain differ in size
     return maps;
 }
 
-void FilterJob::give_back(const std::vector<std::size_t>& indices, std::vector<FilteredMap> maps) {
-    for (std::size_t i = 0; i < indices.size(); ++i) result_.specular[indices[i]] = std::move(maps[i]);
+void FilterJob::give_back(Run& run, const std::vector<std::size_t>& indices, std::vector<FilteredMap> maps) {
+    for (std::size_t i = 0; i < indices.size(); ++i) run.result.specular[indices[i]] = std::move(maps[i]);
 }
 
 FilterJob::Maps FilterJob::take(std::size_t target) {
     const Indices& indices = targets_[target];
+    Run& run = runs_[indices.run];
     Maps maps;
-    maps.specular = take(indices.specular);
-    maps.sheen = take(indices.sheen);
-    maps.irradiance_over_pi = std::move(irradiance_[indices.irradiance]);
+    maps.specular = take(run, indices.specular);
+    maps.sheen = take(run, indices.sheen);
+    maps.irradiance_over_pi = std::move(run.irradiance[indices.irradiance]);
+    if (!indices.panorama) return maps;
+    ImageF panorama = std::move(panoramas_[*indices.panorama]);
+    if (indices.panorama_is_level)
+        maps.specular.emplace_back().latlong = std::move(panorama);
+    else
+        maps.panorama = std::move(panorama);
     return maps;
 }
 
 void FilterJob::give_back(std::size_t target, Maps maps) {
     const Indices& indices = targets_[target];
-    give_back(indices.specular, std::move(maps.specular));
-    give_back(indices.sheen, std::move(maps.sheen));
-    irradiance_[indices.irradiance] = std::move(maps.irradiance_over_pi);
+    Run& run = runs_[indices.run];
+    if (indices.panorama)
+        panoramas_[*indices.panorama] =
+            std::move(indices.panorama_is_level ? maps.specular.front().latlong : maps.panorama);
+    give_back(run, indices.specular, std::move(maps.specular));
+    give_back(run, indices.sheen, std::move(maps.sheen));
+    run.irradiance[indices.irradiance] = std::move(maps.irradiance_over_pi);
 }
 
 }  // namespace domelight

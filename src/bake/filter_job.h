@@ -5,6 +5,7 @@
 #include "bake/plan.h"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace domelight {
@@ -21,32 +22,48 @@ class FilterJob {
     struct Maps {
         std::vector<FilteredMap> specular, sheen;
         FilteredMap irradiance_over_pi;
+        ImageF panorama;  ///< the environment, lat-long in the default convention
     };
     Maps take(std::size_t target);
     void give_back(std::size_t target, Maps maps);
 
-    const FilterResult& result() const { return result_; }
+    /// Of the run that made a target's maps.
+    const FilterResult& result(std::size_t target) const { return runs_[targets_[target].run].result; }
+    std::int64_t clamped() const;
+    int band_limit() const;
     /// SHA-256 of the rows that were read, as float32: what stands for the source's hash where there is no file.
     const std::string& rows_sha256() const { return rows_sha256_; }
 
   private:
     struct Indices {
+        std::size_t run = 0;
         std::vector<std::size_t> specular, sheen;
         std::size_t irradiance = 0;
+        std::optional<std::size_t> panorama;
+        bool panorama_is_level = false;  ///< it is the only level, of a target that wants nothing else
     };
-    std::size_t add(const LevelSpec& spec);
-    Result<void> filter_rows(RowSource& rows, const FilterOptions& filter, const BakeOptions& options);
-    Result<void> filter_cube(const Environment& environment, const FilterOptions& filter, const BakeOptions& options);
-    std::vector<FilteredMap> take(const std::vector<std::size_t>& indices);
-    void give_back(const std::vector<std::size_t>& indices, std::vector<FilteredMap> maps);
+    /// All maps of one layout: one analysis of the environment.
+    struct Run {
+        Layout layout = Layout::cube;
+        std::vector<LevelSpec> specs;         ///< distinct levels
+        std::vector<int> irradiance_sizes;    ///< distinct sizes
+        FilterResult result;                  ///< specular: one for each of specs
+        std::vector<FilteredMap> irradiance;  ///< E / pi, one for each of irradiance_sizes
+        std::size_t add(const LevelSpec& spec);
+        FilterOptions options(const Environment& environment, const BakeOptions& options) const;
+        /// Moves E / pi out of the result's levels, where all sizes but the first were computed.
+        void sort_out();
+    };
+    std::size_t run_of(Layout layout);
+    Result<void> read_rows(Environment& environment, const BakeOptions& options);
+    Result<void> filter_cube(Environment& environment, const BakeOptions& options);
+    static std::vector<FilteredMap> take(Run& run, const std::vector<std::size_t>& indices);
+    static void give_back(Run& run, const std::vector<std::size_t>& indices, std::vector<FilteredMap> maps);
 
-    Layout layout_ = Layout::cube;
+    std::vector<Run> runs_;
     std::vector<Indices> targets_;
-    std::vector<LevelSpec> specs_;         ///< distinct levels
-    std::vector<int> panorama_heights_;    ///< distinct lat-long resamplings for targets that filter by themselves
-    std::vector<int> irradiance_sizes_;    ///< distinct sizes
-    FilterResult result_;                  ///< specular: one for each of specs_, then one for each of panorama_heights_
-    std::vector<FilteredMap> irradiance_;  ///< E / pi, one for each of irradiance_sizes_
+    std::vector<int> panorama_rows_;  ///< distinct heights
+    std::vector<ImageF> panoramas_;
     std::string rows_sha256_;
 };
 

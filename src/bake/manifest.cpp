@@ -1,6 +1,9 @@
 #include "bake/manifest.h"
 
+#include "bake/panorama.h"
 #include "core/sha256.h"
+
+#include <fmt/core.h>
 
 #include <cmath>
 #include <fstream>
@@ -17,6 +20,12 @@ const char* const k_cube_convention =
 const char* const k_latlong_convention =
     "u = 1/2 + atan2(z, x) / 2 pi, v = theta / pi from +Y; the centre looks along +X, to the right of it lies +Z; "
     "right-handed, +Y up";
+
+/// The default convention by its formula, others by their axes.
+std::string latlong_text(const std::string& projection) {
+    if (projection == "latlong" || projection == "latlong/default") return k_latlong_convention;
+    return projection_convention(projection) + "; right-handed, +Y up";
+}
 
 const char* window_name(ShWindow window) {
     return window == ShWindow::hann ? "hann" : window == ShWindow::lanczos ? "lanczos" : "none";
@@ -118,7 +127,11 @@ Json map_json(const BakedMap& map) {
     json["quantity"] = quantity_name(map.quantity);
     if (map.quantity == Quantity::radiance) json["lobe"] = lobe_name(map.lobe);
     if (map.lobe == Lobe::charlie) json["least_roughness"] = k_charlie_least_roughness;
-    json["layout"] = map.layout == Layout::cube ? "cube" : "latlong";
+    const std::string projection = map.projection.substr(0, map.projection.find('/'));
+    json["layout"] = map.layout == Layout::cube                          ? "cube"
+                     : projection.empty() || projection == "latlong" ? "latlong"
+                                                                     : projection;
+    if (!map.projection.empty()) json["convention"] = latlong_text(map.projection);
     json["container"] = map.container;
     json["encoding"] = map.encoding;
     json["zstd"] = map.zstd;
@@ -155,11 +168,12 @@ Json brdf_json(const BrdfReport& brdf) {
 }
 
 Json convention_json(const TargetPlan& plan) {
-    if (plan.layout == Layout::latlong) return k_latlong_convention;
-    const CubeMirror mirror = plan.target->mirror;
-    if (mirror == CubeMirror::none) return k_cube_convention;
-    return std::string(k_cube_convention) + "; mirrored for " + plan.target->name + ", which reads texture(cube, " +
-           (mirror == CubeMirror::x ? "(-x, y, z)" : "(x, y, -z)") + ")";
+    const Target& target = *plan.target;
+    if (target.environment_only) return latlong_text(target.panorama);
+    if (plan.layout == Layout::latlong) return latlong_text("latlong/" + target.latlong);
+    if (target.mirror == CubeMirror::none) return k_cube_convention;
+    return fmt::format("{}; mirrored for {}, which reads texture(cube, {})", k_cube_convention, target.name,
+                       cube_mirror_direction(target.mirror));
 }
 
 Json vectors_json(const std::vector<Vec3d>& vectors) {

@@ -2,6 +2,7 @@
 
 #include "domelight/image_io.h"
 
+#include "bake/engine_files.h"
 #include "bake/mirror.h"
 #include "codec/chain_encoder.h"
 #include "core/sha256.h"
@@ -61,6 +62,8 @@ Result<TextureLayout> layout_of(const ChainEncoder& encoder, Container container
             return ktx1_layout(encoder.head(), bytes);
         case Container::dds:
             return dds_layout(encoder.head(), bytes);
+        case Container::dds9:
+            return dds9_layout(encoder.head(), bytes);
         default:
             return ktx2_layout(encoder.head(), bytes, Supercompression::none, bytes);
     }
@@ -97,7 +100,9 @@ void write_chain(BakedMap& report, std::span<FilteredMap> levels, const MapForma
                  Staging& staging, Background& background) {
     report.file.file = format.name + container_extension(format.container);
     const auto path = staging.stage(report.file.file);
-    if (format.container == Container::ktx2 && format.zstd)
+    if (is_engine_file(format.container))
+        write_engine_file(report, levels, format, options, path, background);
+    else if (format.container == Container::ktx2 && format.zstd)
         write_compressed_chain(report, levels, format, options, path, background);
     else
         background.done(write_plain_chain(report, levels, format, options, path));
@@ -170,14 +175,19 @@ void write_map(BakedMap& report, std::span<FilteredMap> levels, const MapFormat&
     report.encoding = format.container == Container::hdr ? "rgbe" : encoding_name(format.encoding);
     report.container = container_name(format.container);
     report.zstd = format.zstd;
-    for (FilteredMap& level : levels) mirror_cube(level.cube, format.mirror);
+    for (FilteredMap& level : levels) {
+        mirror_cube(level.cube, format.mirror);
+        turn_latlong(level.latlong, format.latlong_quarters);
+    }
     if (format.container == Container::exr || format.container == Container::hdr) {
         write_pictures(report, levels, format, options, staging, background);
     } else {
         write_chain(report, levels, format, options, staging, background);
     }
-    for (FilteredMap& level : levels)
-        mirror_cube(level.cube, format.mirror);  // back, for the picture and the next target
+    for (FilteredMap& level : levels) {  // back, for the picture and the next target
+        mirror_cube(level.cube, format.mirror);
+        turn_latlong(level.latlong, -format.latlong_quarters);
+    }
 }
 
 }  // namespace domelight

@@ -37,8 +37,13 @@ struct MapFormat {
     bool zstd = false;
     CubePicture cube_picture = CubePicture::cross;
     CubeMirror mirror = CubeMirror::none;
-    std::string name;  ///< without extension
+    int latlong_quarters = 0;  ///< turn_latlong()
+    std::string name;          ///< without extension
     std::map<std::string, std::string> metadata;
+    /// For containers that hold diffuse light too: radiance coefficients, and E / pi as a map (in the default
+    /// convention).
+    std::span<const Vec3d> radiance_sh = {};
+    const FilteredMap* irradiance_over_pi = nullptr;
 };
 
 /// Encodes a map's levels now and writes them, or starts to. Fills in `report`, whose role, lobe, quantity, layout and

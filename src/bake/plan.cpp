@@ -1,6 +1,8 @@
 #include "bake/plan.h"
 
+#include "bake/panorama.h"
 #include "io/scaled_bytes.h"
+#include "projection/latlong_convention.h"
 
 #include <fmt/core.h>
 
@@ -85,12 +87,21 @@ bool is_chain(Container container) {
     return container != Container::exr && container != Container::hdr;
 }
 
+bool is_openexr(Container container) {
+    return container == Container::exr || container == Container::exr_mip;
+}
+
 /// How many levels a lat-long map of a height can have in one texture. Its width halves with its height only while that
 /// is even: below 130 x 65 a texture has 65 x 32, which is no lat-long shape.
 int most_texture_levels(int height) {
     int levels = 1;
     for (; height % 2 == 0; height /= 2) ++levels;
     return levels;
+}
+
+/// Containers that one target alone has: what goes into them is laid down there.
+bool own_container(Container container) {
+    return container == Container::env || container == Container::gltf || container == Container::playcanvas_atlas;
 }
 
 /// Number of levels from the options, or from the target's smallest size. `chain`: they go into one texture.
@@ -121,9 +132,18 @@ Result<void> plan_encoding(TargetPlan& plan, const BakeOptions& o) {
     if (plan.zstd && plan.container != Container::ktx2)
         return option_error("--zstd", container_name(plan.container) + " has no supercompression",
                             "Use --format ktx2.");
-    if (plan.container == Container::exr && plan.encoding != Encoding::rgba16f && plan.encoding != Encoding::rgba32f)
-        return option_error("--encoding", encoding_name(plan.encoding) + " cannot be stored as exr",
-                            "exr holds rgba16f (half) and rgba32f (float).");
+    if (is_openexr(plan.container) && plan.encoding != Encoding::rgba16f && plan.encoding != Encoding::rgba32f)
+        return option_error("--encoding",
+                            encoding_name(plan.encoding) + " cannot be stored as " + container_name(plan.container),
+                            "It holds rgba16f (half) and rgba32f (float).");
+    if (plan.container == Container::dds9 && plan.encoding != Encoding::rgba16f &&
+        plan.encoding != Encoding::rgba32f && !is_scaled_bytes(plan.encoding))
+        return option_error("--encoding", encoding_name(plan.encoding) + " has no number in DDS headers of its time",
+                            "dds9 holds rgba16f, rgba32f, and as bytes rgbm, rgbd and rgbp.");
+    if (own_container(plan.container) && plan.encoding != target.encoding)
+        return option_error("--encoding", fmt::format("{} holds {} only", container_name(plan.container),
+                                                      encoding_name(target.encoding)),
+                            "Leave --encoding out, or choose a --format.");
     if (plan.container == Container::dds && is_scaled_bytes(plan.encoding))
         return option_error("--encoding", "dds cannot say that its bytes are " + encoding_name(plan.encoding),
                             "Use --format ktx2 or ktx1, where a key says so.");
@@ -143,8 +163,37 @@ Result<void> plan_environment_only(TargetPlan& plan, const BakeOptions& o) {
     if (o.lobe) return refuse("--lobe");
     if (o.layout && *o.layout == Layout::cube) return refuse("--layout cube");
     plan.layout = Layout::latlong;
-    plan.specular = {glossy_level(Lobe::ggx, o.size.value_or(2 * plan.target->size), 0)};
+    plan.panorama_size = o.size.value_or(2 * plan.target->size);
+    plan.panorama_rows = panorama_rows(plan.target->panorama, plan.panorama_size);
+    plan.specular = {glossy_level(Lobe::ggx, plan.panorama_size, 0)};
     return {};
+}
+
+/// What a container of one target alone cannot do without.
+Result<void> check_own_container(const TargetPlan& plan, const BakeOptions& o) {
+    if (!own_container(plan.container)) return {};
+    const std::string name = container_name(plan.container);
+    if (o.layout && *o.layout != plan.target->layout)
+        return option_error("--layout", fmt::format("{} holds {} maps", name,
+                                                    plan.target->layout == Layout::cube ? "cube" : "lat-long"));
+    const int size = plan.specular.front().spec.size;
+    const bool atlas = plan.container == Container::playcanvas_atlas;
+    if (atlas ? size != 512 : !std::has_single_bit(unsigned(size)))
+        return option_error("--size", atlas ? "the atlas has one size: 512 rows of level 0"
+                                            : fmt::format("{} holds cubes whose size is a power of two, not {}", name, size));
+    const int levels = int(plan.specular.size()), all = most_levels(size);
+    if (plan.container == Container::env && levels != all)
+        return option_error("--levels", fmt::format("a .env file of this size has {} levels, not {}", all, levels));
+    if (atlas && levels != 7) return option_error("--levels", fmt::format("the atlas has 7 levels, not {}", levels));
+    if (atlas && plan.irradiance_size != 64)
+        return option_error("--irradiance-size", "the atlas has one size of it, 32");
+    return {};
+}
+
+/// Quarter turns from the default convention to the target's.
+int quarters_of(const std::string& convention) {
+    const Vec3d centre = latlong_convention(convention)->centre;
+    return int(std::lround(std::atan2(centre.z, centre.x) * 2 / k_pi)) & 3;
 }
 
 }  // namespace
@@ -160,7 +209,7 @@ Result<TargetPlan> plan_target(const Target& target, const BakeOptions& o) {
     if (target.environment_only) {
         if (auto ok = plan_environment_only(plan, o); !ok) return ok.error();
     } else {
-        plan.layout = o.layout.value_or(Layout::cube);
+        plan.layout = o.layout.value_or(target.layout);
         const int scale =
             plan.layout == Layout::latlong ? 2 : 1;  // a lat-long map is as fine as a cube when it is twice as high
         const int size = o.size.value_or(scale * target.size);
@@ -178,6 +227,18 @@ Result<TargetPlan> plan_target(const Target& target, const BakeOptions& o) {
     }
     plan.irradiance_size =
         o.irradiance_size.value_or(target.irradiance_size) * (plan.layout == Layout::latlong ? 2 : 1);
+    if (!target.panorama_file.empty()) {
+        plan.panorama_size = 4 * plan.specular.front().spec.size / (plan.layout == Layout::latlong ? 2 : 1);
+        plan.panorama_rows = panorama_rows(target.panorama, plan.panorama_size);
+    }
+    if (const auto ok = check_own_container(plan, o); !ok) return ok.error();
+    plan.latlong_quarters = quarters_of(target.latlong);
+    if (plan.latlong_quarters % 2 && plan.layout == Layout::latlong && !target.environment_only)
+        for (const LevelPlan& level : plan.specular)
+            if (level.spec.size % 2)
+                return option_error("--size", fmt::format("a lat-long map {} high cannot be turned by a quarter: its "
+                                                          "width is no multiple of 4", level.spec.size),
+                                    "Use a size and a number of levels that keep every height even.");
     return plan;
 }
 

@@ -25,6 +25,10 @@ struct TargetPlan {
     int irradiance_size = 0;  ///< of the map that is computed: cube face, or height
     int brdf_size = 0;
     BrdfForm brdf_form = BrdfForm::none;
+    /// Of the environment as one image (0: none): `panorama_size` is the height of that image, `panorama_rows` of the
+    /// lat-long image in the default convention that it is made from.
+    int panorama_size = 0, panorama_rows = 0;
+    int latlong_quarters = 0;  ///< how far the target's lat-long maps are turned: turn_latlong() of bake/mirror.h
 };
 
 /// What to make for a target. Errors: options that contradict each other or the target; `where` is the option.

@@ -2,7 +2,10 @@
 
 #include "domelight/texture.h"
 
+#include "image/mirror_cube.h"
 #include "image/repair.h"
+#include "io/gltf_image_light.h"
+#include "io/texture_reading.h"
 
 #include <fmt/format.h>
 
@@ -17,11 +20,12 @@ std::string texture_container(std::span<const std::uint8_t> bytes) {
     if (start.starts_with("\xabKTX 20\xbb\r\n\x1a\n"sv)) return "KTX2";
     if (start.starts_with("\xabKTX 11\xbb\r\n\x1a\n"sv)) return "KTX";
     if (start.starts_with("DDS "sv)) return "DDS";
+    if (start.starts_with("\x86\x16\x87\x96\xf6\xd6\x96\x36"sv)) return "Babylon .env";
     return "";
 }
 
 Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_t max_bytes, float scale,
-                                  RepairReport& report) {
+                                  RepairReport& report, const std::string& decode) {
     const Result<TextureInfo> info = read_texture_info(file);
     if (!info) return info.error().at(file.string());
     if (info->faces != 6 || info->width != info->height || info->layers > 1)
@@ -33,7 +37,7 @@ Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_
         return Error{
             fmt::format("a cube of {} x {} faces needs more memory than the limit of {} bytes", size, size, max_bytes),
             file.string(), ""};
-    const Result<Texture> texture = read_texture(file);
+    const Result<Texture> texture = read_texture(file, decode);
     if (!texture) return texture.error().at(file.string());
     if (encoding_channels(texture->encoding) != 3)
         return Error{"texture has two channels, not a colour", file.string(), ""};
@@ -48,8 +52,30 @@ Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_
             repair_row({row, std::size_t(cube.size()) * 3}, repair, report);
         }
     }
+    if (info->container.starts_with("Babylon")) {
+        mirror_cube_x(cube);
+        return cube;
+    }
     report.warnings.push_back("the faces are taken to be in OpenGL's orientation; some tools write them mirrored");
+    if (info->eight_bits && texture->encoding == Encoding::rgba16f)
+        report.warnings.push_back("eight bits a channel are not HDR unless they are RGBM or its like: --decode rgbm");
     return cube;
+}
+
+Result<GltfEnvironment> read_gltf_environment(const std::filesystem::path& file, std::int64_t max_bytes, float scale,
+                                              RepairReport& report) {
+    const auto bytes = FileBytes::open(file, max_bytes);
+    if (!bytes) return bytes.error();
+    auto light = read_gltf_image_light(*bytes, file.parent_path(), max_bytes, 1);
+    if (!light) return light.error().at(file.string());
+    GltfEnvironment environment{std::move(light->levels.front()), light->rotation};
+    const RepairOptions repair{.scale = scale * float(light->intensity), .wraps = false};
+    for (int f = 0; f < 6; ++f)
+        for (int y = 0; y < environment.cube.size(); ++y)
+            repair_row({environment.cube.face(f).row(y), std::size_t(environment.cube.size()) * 3}, repair, report);
+    if (light->low_dynamic_range)
+        report.warnings.push_back("the light's pictures are not HDR: values above 1 are clipped");
+    return environment;
 }
 
 }  // namespace domelight

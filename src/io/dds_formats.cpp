@@ -162,6 +162,48 @@ std::optional<StoredTexels> dxgi_texels(std::uint32_t number) {
     }
 }
 
+std::optional<ScreenTexels> dxgi_screen_texels(std::uint32_t number) {
+    using Kind = ScreenTexels::Kind;
+    switch (number) {
+        case 28:  // RGBA, and as sRGB
+        case 29:
+            return ScreenTexels{};
+        case 87:  // BGRA
+        case 91:
+            return ScreenTexels{Kind::bytes, 4, {2, 1, 0, 3}};
+        case 88:  // BGRX
+        case 93:
+            return ScreenTexels{Kind::bytes, 4, {2, 1, 0, -1}};
+        case 71:
+        case 72:
+            return ScreenTexels{Kind::bc1, 0, {}};
+        case 74:
+        case 75:
+            return ScreenTexels{Kind::bc2, 0, {}};
+        case 77:
+        case 78:
+            return ScreenTexels{Kind::bc3, 0, {}};
+        default:
+            return std::nullopt;
+    }
+}
+
+/// Where channel masks are whole bytes: which byte each one is.
+std::optional<ScreenTexels> masked_screen_texels(bool luminance, bool alpha, std::uint32_t bits,
+                                                 const std::uint32_t (&masks)[4]) {
+    if (bits % 8 || bits < 8) return std::nullopt;
+    ScreenTexels texels{ScreenTexels::Kind::bytes, int(bits / 8), {}};
+    for (std::size_t c = 0; c < 4; ++c) {
+        const std::uint32_t mask = masks[luminance && c < 3 ? 0 : c];
+        texels.channel[c] = -1;
+        if (c == 3 && (!alpha || mask == 0)) continue;
+        for (int byte = 0; byte < texels.bytes; ++byte)
+            if (mask == 0xffu << 8 * byte) texels.channel[c] = byte;
+        if (texels.channel[c] < 0) return std::nullopt;
+    }
+    return texels;
+}
+
 constexpr std::uint32_t four_characters(const char (&s)[5]) {
     return std::uint32_t(s[0]) | std::uint32_t(s[1]) << 8 | std::uint32_t(s[2]) << 16 | std::uint32_t(s[3]) << 24;
 }
@@ -181,12 +223,13 @@ DdsFormat coded_format(std::uint32_t code) {
     const std::string name = four_character_name(code);
     switch (code) {
         case four_characters("DXT1"):
-            return {name, 4, 64, {}};
+            return {name, 4, 64, {}, dxgi_screen_texels(71)};
         case four_characters("DXT2"):
         case four_characters("DXT3"):
+            return {name, 4, 128, {}, dxgi_screen_texels(74)};
         case four_characters("DXT4"):
         case four_characters("DXT5"):
-            return {name, 4, 128, {}};
+            return {name, 4, 128, {}, dxgi_screen_texels(77)};
         case four_characters("ATI1"):
         case four_characters("BC4U"):
         case four_characters("BC4S"):
@@ -222,7 +265,22 @@ DdsFormat dxgi_format(std::uint32_t number) {
     if (number >= std::size(k_dxgi)) return {"DXGI_FORMAT " + std::to_string(number), 1, 0, {}};
     const Dxgi& facts = k_dxgi[number];
     return {std::string("DXGI_FORMAT_") + facts.name, facts.bits < 0 ? 4 : 1, facts.bits < 0 ? -facts.bits : facts.bits,
-            dxgi_texels(number)};
+            dxgi_texels(number), dxgi_screen_texels(number)};
+}
+
+std::uint32_t d3d_number(Encoding encoding) {
+    switch (encoding) {
+        case Encoding::rg16f:
+            return 112;
+        case Encoding::rgba16f:
+            return 113;
+        case Encoding::rg32f:
+            return 115;
+        case Encoding::rgba32f:
+            return 116;
+        default:
+            return 0;
+    }
 }
 
 std::uint32_t dxgi_number(Encoding encoding) {
@@ -271,7 +329,9 @@ DdsFormat legacy_dds_format(std::uint32_t flags, std::uint32_t four_cc, std::uin
         if (has_colour && !luminance && starts(masks[2])) name += 'B';
         if (flags & (k_alpha_pixels | k_alpha) && starts(masks[3])) name += 'A';
     }
-    return {name + " " + std::to_string(bits) + " bit", 1, int(bits), {}};
+    std::optional<ScreenTexels> screen;
+    if (has_colour) screen = masked_screen_texels(luminance, flags & k_alpha_pixels, bits, masks);
+    return {name + " " + std::to_string(bits) + " bit", 1, int(bits), {}, screen};
 }
 
 }  // namespace domelight

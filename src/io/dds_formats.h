@@ -1,5 +1,6 @@
 #pragma once
 
+#include "io/screen_texels.h"
 #include "io/texture_reading.h"
 
 #include <cstdint>
@@ -14,6 +15,7 @@ struct DdsFormat {
     int block = 1;       ///< texels along a side of a block
     int block_bits = 0;  ///< 0: unknown, so that the file's size cannot be checked
     std::optional<StoredTexels> texels;
+    std::optional<ScreenTexels> screen = std::nullopt;  ///< eight bits a channel; `texels` is then empty
 };
 
 /// A format by its DXGI_FORMAT number (DX10 header).
@@ -21,6 +23,9 @@ DdsFormat dxgi_format(std::uint32_t number);
 
 /// The DXGI_FORMAT of an encoding.
 std::uint32_t dxgi_number(Encoding encoding);  ///< 0: it has none
+
+/// The D3DFORMAT number of an encoding in the older header; 0: none.
+std::uint32_t d3d_number(Encoding encoding);
 
 /// A format of the older header: four characters or a D3DFORMAT number, or channel masks.
 DdsFormat legacy_dds_format(std::uint32_t flags, std::uint32_t four_cc, std::uint32_t bits,

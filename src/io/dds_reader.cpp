@@ -46,6 +46,16 @@ Result<void> check_size(ByteSource& source, const Dds& file) {
     return {};
 }
 
+/// Direct3D 9 lets a cube have some of its faces only: an environment needs all.
+Error partial_cube(std::uint32_t caps2) {
+    std::string missing;
+    constexpr const char* k_names[] = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
+    for (int f = 0; f < 6; ++f)
+        if (!(caps2 >> (10 + f) & 1u)) missing += (missing.empty() ? "" : " ") + std::string(k_names[f]);
+    return {"is a cube of " + std::to_string(std::popcount(caps2 & k_ddscaps2_all_faces)) + " faces, not 6", "",
+            "It lacks " + missing + "."};
+}
+
 Result<Dds> parse(ByteSource& source) {
     const auto head = source.take(0, k_dds_header_bytes, "header");
     if (!head) return head.error();
@@ -86,10 +96,7 @@ Result<Dds> parse(ByteSource& source) {
         file.format = legacy_dds_format(word(80), four_cc, word(88), masks);
         if (caps2 & k_ddscaps2_cube_map) {
             if (depth > 0) return Error{"states a cube that is also a volume", "", "the file is damaged"};
-            if ((caps2 & k_ddscaps2_all_faces) != k_ddscaps2_all_faces)
-                return Error{
-                    "is a cube of " + std::to_string(std::popcount(caps2 & k_ddscaps2_all_faces)) + " faces, not 6", "",
-                    ""};
+            if ((caps2 & k_ddscaps2_all_faces) != k_ddscaps2_all_faces) return partial_cube(caps2);
             faces = 6;
         }
     }
@@ -98,7 +105,8 @@ Result<Dds> parse(ByteSource& source) {
     file.info.format = file.format.name;
     done = check_size(source, file);
     if (!done) return done.error();
-    file.info.decodable = bool(texture_for(file.info, file.format.texels));
+    file.info.eight_bits = bool(file.format.screen);
+    file.info.decodable = bool(texture_for(file.info, file.format.screen ? StoredTexels{} : file.format.texels));
     return file;
 }
 
@@ -110,9 +118,35 @@ Result<TextureInfo> dds_info(ByteSource& source) {
     return std::move(file->info);
 }
 
-Result<Texture> dds_texture(ByteSource& source) {
+namespace {
+
+/// Levels of eight bits a channel.
+Result<Texture> screen_texture(ByteSource& source, const Dds& file, const std::string& decode) {
+    const auto encoding = screen_encoding(decode);
+    if (!encoding) return encoding.error();
+    auto texture = texture_for(file.info, StoredTexels{*encoding});
+    if (!texture) return texture;
+    for (int l = 0; l < file.info.levels; ++l)
+        texture->levels.emplace_back(texture->face_bytes(l) * std::size_t(texture->faces));
+    std::uint64_t at = file.data_offset;
+    for (int face = 0; face < texture->faces; ++face)
+        for (int l = 0; l < file.info.levels; ++l) {
+            const auto stored = source.take(at, image_bytes(file, l), "level");
+            if (!stored) return stored.error();
+            at += stored->size();
+            decode_screen_texels(*file.format.screen, decode, stored->data(), texture->level_width(l),
+                                 texture->level_height(l),
+                                 texture->levels[std::size_t(l)].data() + texture->face_bytes(l) * std::size_t(face));
+        }
+    return texture;
+}
+
+}  // namespace
+
+Result<Texture> dds_texture(ByteSource& source, const std::string& decode) {
     const auto file = parse(source);
     if (!file) return file.error();
+    if (file->format.screen) return screen_texture(source, *file, decode);
     auto texture = texture_for(file->info, file->format.texels);
     if (!texture) return texture;
     const StoredTexels& texels = *file->format.texels;

@@ -2,6 +2,8 @@
 
 #include "io/cube_input.h"
 #include "io/cube_texture_reader.h"
+#include "io/gltf_document.h"
+#include "io/gltf_image_light.h"
 #include "io/image_reader.h"
 #include "io/radiance_reader.h"
 #include "projection/latlong_convention.h"
@@ -78,9 +80,9 @@ Result<Request> check_options(const EnvironmentOptions& options) {
         if (!other) return other.error().at("--projection");
         request.other = *std::move(other);
     }
-    if (!one_of(options.decode, {"auto", "srgb", "gamma22", "linear"}))
+    if (!one_of(options.decode, {"auto", "srgb", "gamma22", "linear", "rgbm", "rgbd", "rgbp"}))
         return Error{"unknown decoding \"" + options.decode + "\"", "--decode",
-                     "Accepted: auto, srgb, gamma22, linear."};
+                     "Accepted: auto, srgb, gamma22, linear; for DDS also rgbm, rgbd, rgbp."};
     if (!std::isfinite(options.rotate_y_deg)) return Error{"angle is not a number", "--rotate-y-deg", ""};
     if (!(std::abs(options.exposure) <= 64))
         return Error{"exposure must lie between -64 and 64 stops", "--exposure", ""};
@@ -280,10 +282,34 @@ Result<Environment> open_texture(const std::filesystem::path& file, const std::s
     environment.file = file;
     environment.format = container;
     environment.report = std::make_shared<RepairReport>();
-    Result<Cubemap> cube = read_cube_texture(file, request.options.max_bytes, request.scale, *environment.report);
+    Result<Cubemap> cube = read_cube_texture(file, request.options.max_bytes, request.scale,
+                                             *environment.report, request.options.decode);
     if (!cube) return cube.error();
     environment.width = environment.height = cube->size();
     return finish_cube(std::move(environment), std::move(*cube), request);
+}
+
+/// A matrix that turns directions as the unit quaternion x, y, z, w does.
+Mat3 turn_of(const std::array<float, 4>& q) {
+    const Affine turn = affine_of_trs({}, q, {1, 1, 1});
+    return Mat3{{Vec3d(turn.x), Vec3d(turn.y), Vec3d(turn.z)}}.transposed();
+}
+
+/// The light that a glTF file brings with it.
+Result<Environment> open_gltf_light(const std::filesystem::path& file, const Request& request) {
+    if (const std::string& projection = request.options.projection; projection != "auto")
+        return Error{"a glTF file's light is a cube: leave " + projection + " out", "--projection", ""};
+    Environment environment;
+    environment.file = file;
+    environment.format = "glTF EXT_lights_image_based";
+    environment.report = std::make_shared<RepairReport>();
+    auto light = read_gltf_environment(file, request.options.max_bytes, request.scale, *environment.report);
+    if (!light) return light.error();
+    environment.width = environment.height = light->cube.size();
+    Environment finished = finish_cube(std::move(environment), std::move(light->cube), request);
+    // Light turned by R arrives from d if it came from R^T d before.
+    finished.world_to_source = turn_of(light->rotation).transposed() * finished.world_to_source;
+    return finished;
 }
 
 Result<Environment> open_picture(const std::filesystem::path& file, const Request& request) {
@@ -291,6 +317,7 @@ Result<Environment> open_picture(const std::filesystem::path& file, const Reques
     if (!bytes) return bytes.error();
     if (const std::string container = texture_container((*bytes)->bytes()); !container.empty())
         return open_texture(file, container, request);
+    if (may_be_gltf_image_light((*bytes)->bytes())) return open_gltf_light(file, request);
     auto image = open_image_reader(std::move(*bytes), reader_options(request.options));
     if (!image) return image.error();
     const ImageFacts& facts = (*image)->facts();

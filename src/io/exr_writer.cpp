@@ -3,7 +3,7 @@
 #include "domelight/parallel.h"
 
 #include "codec/half.h"
-#include "io/exr_output_stream.h"
+#include "io/exr_writing.h"
 #include "io/output_file.h"
 
 #include <ImfChannelList.h>
@@ -51,21 +51,21 @@ Result<Imf::Compression> compression_from_name(const std::string& name) {
     return Error{"\"" + name + "\" is not an OpenEXR compression", "", "accepted: " + accepted};
 }
 
-/// Names of 1 to 4 interleaved channels.
-std::vector<const char*> channel_names(int channels) {
+}  // namespace
+
+std::vector<const char*> exr_channel_names(int channels) {
     if (channels == 1) return {"Y"};
     std::vector<const char*> names{"R", "G", "B", "A"};
     names.resize(std::size_t(channels));
     return names;
 }
 
-/// May throw what OpenEXR throws (an attribute with a name of another type).
-Result<Imf::Header> make_header(int width, int height, int channels, const ExrWriteOptions& options) {
+Result<Imf::Header> exr_header(int width, int height, int channels, const ExrWriteOptions& options) {
     const auto compression = compression_from_name(options.compression);
     if (!compression) return compression.error();
     Imf::Header header(width, height);
     header.compression() = *compression;
-    for (const char* name : channel_names(channels))
+    for (const char* name : exr_channel_names(channels))
         header.channels().insert(name, Imf::Channel(options.half ? Imf::HALF : Imf::FLOAT));
     Imf::addChromaticities(header, Imf::Chromaticities());  // its default is Rec. 709
     if (options.envmap == "latlong")
@@ -82,11 +82,13 @@ Result<Imf::Header> make_header(int width, int height, int channels, const ExrWr
     return header;
 }
 
+namespace {
+
 /// Rows as OpenEXR takes them: halves in a buffer of our own, floats where they lie.
 class RowWriter {
   public:
     RowWriter(Imf::OutputFile& file, int channels, bool half)
-        : file_(file), names_(channel_names(channels)), half_(half) {}
+        : file_(file), names_(exr_channel_names(channels)), half_(half) {}
 
     void write(ImageView<const float> rows, int threads) {
         if (half_) convert(rows, threads);
@@ -132,7 +134,7 @@ using NextRows = std::function<Result<ImageView<const float>>(int first, int cou
 /// May throw.
 Result<void> write_image(ExrOutputStream& stream, int width, int height, int channels, const ExrWriteOptions& options,
                          const NextRows& next) {
-    auto header = make_header(width, height, channels, options);
+    auto header = exr_header(width, height, channels, options);
     if (!header) return header.error();
     // The pool is the process's; it only grows. With one thread everything happens here.
     const int threads = resolve_threads(options.threads);
@@ -149,12 +151,20 @@ Result<void> write_image(ExrOutputStream& stream, int width, int height, int cha
 
 Result<void> write_exr_rows(const std::filesystem::path& file, int width, int height, int channels,
                             const ExrWriteOptions& options, const NextRows& next) {
+    return write_exr_file(
+        file, [&](ExrOutputStream& stream) { return write_image(stream, width, height, channels, options, next); });
+}
+
+}  // namespace
+
+Result<void> write_exr_file(const std::filesystem::path& file,
+                            const std::function<Result<void>(ExrOutputStream& stream)>& write) {
     return write_file_atomically(file, [&](const std::filesystem::path& path) -> Result<void> {
         OutputFile out(path);
         ExrOutputStream stream(out);
         Result<void> written;
         try {
-            written = write_image(stream, width, height, channels, options, next);
+            written = write(stream);
             stream.flush();
         } catch (const std::exception& e) {
             written = Error{std::string("OpenEXR: ") + e.what(), "", ""};
@@ -165,8 +175,8 @@ Result<void> write_exr_rows(const std::filesystem::path& file, int width, int he
     });
 }
 
-/// Faces from OpenGL's orientation to OpenEXR's (ImfEnvmap.h draws it): seen along its axis each face is the mirror
-/// image, +X -X +Z -Z left to right, +Y -Y top to bottom.
+// ImfEnvmap.h draws OpenEXR's: seen along its axis each face is the mirror image of OpenGL's, +X -X +Z -Z left to
+// right, +Y -Y top to bottom.
 ImageF exr_cube_strip(ImageView<const float> strip) {
     ImageF turned(strip.width, strip.height, strip.channels);
     const int size = strip.width, channels = strip.channels;
@@ -184,8 +194,6 @@ ImageF exr_cube_strip(ImageView<const float> strip) {
     }
     return turned;
 }
-
-}  // namespace
 
 Result<void> write_exr(const std::filesystem::path& file, ImageView<const float> pixels,
                        const ExrWriteOptions& options) {

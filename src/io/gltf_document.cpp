@@ -19,6 +19,9 @@ constexpr const char* k_known_extensions[] = {
     "KHR_materials_ior",       "KHR_materials_sheen",      "KHR_materials_specular",  "KHR_materials_transmission",
     "KHR_materials_unlit",     "KHR_materials_volume",     "KHR_mesh_quantization",   "KHR_texture_transform"};
 
+/// Read by itself, as an environment (gltf_image_light.h).
+constexpr const char* k_image_light = "EXT_lights_image_based";
+
 bool known_extension(const std::string& name) {
     return std::find(std::begin(k_known_extensions), std::end(k_known_extensions), name) !=
            std::end(k_known_extensions);
@@ -65,10 +68,12 @@ void DocumentParser::read_asset() {
     if (version.substr(0, 2) != "2.")
         root_.fail("asset.version", fmt::format("is \"{}\", but only glTF 2.0 is read", version.substr(0, 20)));
     for (const std::string& name : root_.texts("extensionsRequired"))
-        if (!known_extension(name))
+        if (!known_extension(name) && name != k_image_light)
             root_.fail("extensionsRequired", fmt::format("{} is not supported", name.substr(0, 60)));
     for (const std::string& name : root_.texts("extensionsUsed"))
-        if (!known_extension(name))
+        if (name == k_image_light)
+            document_.warnings.push_back("the file's own light from all around is left out: pass the file as --env");
+        else if (!known_extension(name))
             document_.warnings.push_back(fmt::format("{} is not supported: left out", name.substr(0, 60)));
 }
 
@@ -344,16 +349,9 @@ Affine affine_of_trs(const Vec3f& translation, const std::array<float, 4>& rotat
 }
 
 Result<GltfDocument> parse_gltf_document(std::string_view text, const SceneOptions& options) {
-    nlohmann::json json;
-    try {
-        json = nlohmann::json::parse(text.begin(), text.end());
-    } catch (const nlohmann::json::exception& e) {
-        // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
-        const std::string_view message = e.what();
-        const std::size_t end = message.find("] ");
-        return Error{"broken JSON: " + printable(message.substr(end == message.npos ? 0 : end + 2), 160), "", ""};
-    }
-    return DocumentParser(json, options).parse();
+    const auto json = parse_json(text);
+    if (!json) return json.error();
+    return DocumentParser(*json, options).parse();
 }
 
 }  // namespace domelight

@@ -1,4 +1,4 @@
-#include "io/byte_source.h"
+#include "io/gltf_chunks.h"
 #include "io/gltf_data.h"
 #include "io/gltf_meshes.h"
 #include "io/scene_images.h"
@@ -13,42 +13,6 @@
 namespace domelight {
 
 namespace {
-
-/// The two chunks of a .glb (glTF 2.0, section 4.4), or a .gltf as its JSON alone.
-struct Chunks {
-    std::string_view json;
-    std::span<const std::uint8_t> binary;
-};
-
-Result<Chunks> split(std::span<const std::uint8_t> bytes) {
-    const auto text = [](std::span<const std::uint8_t> b) {
-        return std::string_view(reinterpret_cast<const char*>(b.data()), b.size());
-    };
-    if (bytes.size() < 4 || text(bytes.first(4)) != "glTF") return Chunks{text(bytes), {}};
-    if (bytes.size() < 20) return Error{"file ends too early: a .glb has a header of 20 bytes", "", ""};
-    if (const std::uint32_t version = u32_at(bytes, 4); version != 2)
-        return Error{fmt::format("version {}, but only glTF 2.0 is read", version), "", ""};
-    const std::uint64_t length = u32_at(bytes, 8);
-    if (length > bytes.size() || length < 20)
-        return Error{fmt::format("file ends too early: {} bytes, but its header says {}", bytes.size(), length), "",
-                     "The file is truncated."};
-    Chunks chunks;
-    for (std::uint64_t at = 12; at + 8 <= length;) {
-        const std::uint64_t size = u32_at(bytes, at);
-        const std::uint32_t type = u32_at(bytes, at + 4);
-        if (size > length - at - 8)
-            return Error{fmt::format("a chunk of {} bytes does not fit into the file", size), "",
-                         "The file is truncated."};
-        const auto chunk = bytes.subspan(at + 8, size);
-        if (at == 12 && type != 0x4e4f534a) return Error{"its first chunk is not JSON", "", ""};
-        if (at == 12)
-            chunks.json = text(chunk);
-        else if (type == 0x004e4942 && chunks.binary.empty())
-            chunks.binary = chunk;
-        at += 8 + (size + 3) / 4 * 4;
-    }
-    return chunks;
-}
 
 bool finite(const Affine& a) {
     for (const Vec3f& v : {a.x, a.y, a.z, a.translation})
@@ -308,7 +272,7 @@ Result<Scene> SceneBuilder::build() {
 
 Result<Scene> read_gltf(std::shared_ptr<const FileBytes> bytes, const std::filesystem::path& folder,
                         const SceneOptions& options) {
-    const auto chunks = split(bytes->bytes());
+    const auto chunks = split_gltf(bytes->bytes());
     if (!chunks) return chunks.error();
     auto document = parse_gltf_document(chunks->json, options);
     if (!document) return document.error();

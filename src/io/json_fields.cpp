@@ -15,6 +15,17 @@ const nlohmann::json k_nothing;
 
 }  // namespace
 
+Result<nlohmann::json> parse_json(std::string_view text) {
+    try {
+        return nlohmann::json::parse(text.begin(), text.end());
+    } catch (const nlohmann::json::exception& e) {
+        // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
+        const std::string_view message = e.what();
+        const std::size_t end = message.find("] ");
+        return Error{"broken JSON: " + printable(message.substr(end == message.npos ? 0 : end + 2), 160), "", ""};
+    }
+}
+
 JsonFields::JsonFields(const nlohmann::json& value, std::string place, std::optional<Error>& error)
     : value_(&value), place_(std::move(place)), error_(&error) {}
 

@@ -11,6 +11,9 @@
 
 namespace domelight {
 
+/// Errors: it is no JSON; says where.
+Result<nlohmann::json> parse_json(std::string_view text);
+
 /// The members of a JSON object, read with their types checked. The first thing found wrong is kept in an error that
 /// all objects of one document share, and reading goes on with defaults: the caller looks at the error once, at the
 /// end.

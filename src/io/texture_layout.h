@@ -30,6 +30,8 @@ struct TextureLayout {
 /// `texture` itself has in its levels does not matter. Errors: what the container cannot hold.
 Result<TextureLayout> ktx1_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes);
 Result<TextureLayout> dds_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes);
+/// DDS with the header from before DX10: half and float RGBA, RG only, as D3DFORMAT numbers.
+Result<TextureLayout> dds9_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes);
 /// `stored_bytes`: of each level in the file, where they are compressed; else equal to `level_bytes`.
 Result<TextureLayout> ktx2_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes,
                                   Supercompression compression, std::span<const std::uint64_t> stored_bytes);

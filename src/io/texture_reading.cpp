@@ -1,6 +1,7 @@
 // Reading of textures: which container, and what all three need.
 #include "io/texture_reading.h"
 
+#include "io/env.h"
 #include "io/ktx1.h"
 #include "io/ktx2.h"
 
@@ -135,17 +136,18 @@ std::string metadata_text(std::span<const std::uint8_t> value) {
 
 namespace {
 
-enum class Container { ktx2, ktx1, dds };
+enum class Format { ktx2, ktx1, dds, env };
 
-Result<Container> recognise(ByteSource& source) {
+Result<Format> recognise(ByteSource& source) {
     std::uint8_t head[12] = {};
     const std::size_t count = std::size_t(std::min<std::uint64_t>(source.size(), sizeof head));
     Result<void> done = source.read(0, std::span(head).first(count), "identifier");
     if (!done) return done.error();
-    if (std::equal(k_ktx2_identifier.begin(), k_ktx2_identifier.end(), head)) return Container::ktx2;
-    if (std::equal(k_ktx1_identifier.begin(), k_ktx1_identifier.end(), head)) return Container::ktx1;
-    if (std::memcmp(head, "DDS ", 4) == 0) return Container::dds;
-    return Error{"is not a KTX2, KTX or DDS texture", "", ""};
+    if (std::equal(k_ktx2_identifier.begin(), k_ktx2_identifier.end(), head)) return Format::ktx2;
+    if (std::equal(k_ktx1_identifier.begin(), k_ktx1_identifier.end(), head)) return Format::ktx1;
+    if (std::memcmp(head, "DDS ", 4) == 0) return Format::dds;
+    if (std::equal(k_env_magic.begin(), k_env_magic.end(), head)) return Format::env;
+    return Error{"is not a KTX2, KTX, DDS or Babylon .env texture", "", ""};
 }
 
 template <typename Read>
@@ -161,21 +163,43 @@ auto read_from(const std::filesystem::path& file, Read read) -> decltype(read(st
 
 Result<TextureInfo> read_texture_info(const std::filesystem::path& file) {
     return read_from(file, [](ByteSource& source) -> Result<TextureInfo> {
-        const Result<Container> container = recognise(source);
-        if (!container) return container.error();
-        return *container == Container::ktx2   ? ktx2_info(source)
-               : *container == Container::ktx1 ? ktx1_info(source)
-                                               : dds_info(source);
+        const Result<Format> format = recognise(source);
+        if (!format) return format.error();
+        switch (*format) {
+            case Format::ktx2:
+                return ktx2_info(source);
+            case Format::ktx1:
+                return ktx1_info(source);
+            case Format::dds:
+                return dds_info(source);
+            case Format::env:
+                break;
+        }
+        return env_info(source);
     });
 }
 
 Result<Texture> read_texture(const std::filesystem::path& file) {
-    return read_from(file, [](ByteSource& source) -> Result<Texture> {
-        const Result<Container> container = recognise(source);
-        if (!container) return container.error();
-        return *container == Container::ktx2   ? ktx2_texture(source)
-               : *container == Container::ktx1 ? ktx1_texture(source)
-                                               : dds_texture(source);
+    return read_texture(file, "auto");
+}
+
+Result<Texture> read_texture(const std::filesystem::path& file, const std::string& decode) {
+    return read_from(file, [&](ByteSource& source) -> Result<Texture> {
+        const Result<Format> format = recognise(source);
+        if (!format) return format.error();
+        switch (*format) {
+            case Format::ktx2:
+                return ktx2_texture(source);
+            case Format::ktx1:
+                return ktx1_texture(source);
+            case Format::dds:
+                return dds_texture(source, decode);
+            case Format::env:
+                break;
+        }
+        auto env = env_file(source);
+        if (!env) return env.error();
+        return std::move(env->cube);
     });
 }
 

@@ -60,6 +60,10 @@ Result<Texture> ktx2_texture(ByteSource& source);
 Result<TextureInfo> ktx1_info(ByteSource& source);
 Result<Texture> ktx1_texture(ByteSource& source);
 Result<TextureInfo> dds_info(ByteSource& source);
-Result<Texture> dds_texture(ByteSource& source);
+/// `decode`: what texels of eight bits a channel mean (screen_texels.h).
+Result<Texture> dds_texture(ByteSource& source, const std::string& decode = "auto");
+
+/// read_texture() with that.
+Result<Texture> read_texture(const std::filesystem::path& file, const std::string& decode);
 
 }  // namespace domelight

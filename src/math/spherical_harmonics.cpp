@@ -92,4 +92,24 @@ std::vector<Vec3d> sh_filament(std::span<const Vec3d> radiance) {
     return out;
 }
 
+Vec3d QuadraticPolynomial::operator()(const Vec3d& d) const {
+    return x * d.x + y * d.y + z * d.z + xx * (d.x * d.x) + yy * (d.y * d.y) + zz * (d.z * d.z) + yz * (d.y * d.z) +
+           zx * (d.z * d.x) + xy * (d.x * d.y);
+}
+
+QuadraticPolynomial sh_polynomial(std::span<const Vec3d> coefficients) {
+    std::vector<Vec3d> a(coefficients.begin(), coefficients.begin() + std::min<std::ptrdiff_t>(9, std::ssize(coefficients)));
+    a.resize(9);
+    // Ramamoorthi and Hanrahan 2001, eq. 3, with 1 = x^2 + y^2 + z^2 and 3 z^2 - 1 = 2 z^2 - x^2 - y^2.
+    const double c0 = std::sqrt(1 / (4 * k_pi)), c1 = std::sqrt(3 / (4 * k_pi)), c2 = std::sqrt(15 / (4 * k_pi)),
+                 c20 = std::sqrt(5 / (16 * k_pi));
+    QuadraticPolynomial p;
+    p.x = a[3] * c1, p.y = a[1] * c1, p.z = a[2] * c1;
+    p.xx = a[0] * c0 - a[6] * c20 + a[8] * (c2 / 2);
+    p.yy = a[0] * c0 - a[6] * c20 - a[8] * (c2 / 2);
+    p.zz = a[0] * c0 + a[6] * (2 * c20);
+    p.yz = a[5] * c2, p.zx = a[7] * c2, p.xy = a[4] * c2;
+    return p;
+}
+
 }  // namespace domelight

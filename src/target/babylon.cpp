@@ -14,22 +14,19 @@ double babylon_roughness(int level, int, int size) {
 
 }  // namespace
 
-/// Babylon.js: a prefiltered DDS cube, RGBA16F, with every level down to 1^2, from which it computes its own polynomial
-/// for diffuse light. Its world is left-handed by default: a glTF direction (x, y, z) is (-x, y, z) there, so the cube
-/// is mirrored in x. That reading is from its source; the picture has not been compared in a browser yet. Its own
-/// container, .env, is not written yet.
+/// Babylon.js: its own .env, RGBD pictures with every level down to 1^2 and a polynomial for diffuse light. Its world
+/// is left-handed by default: a glTF direction (x, y, z) is (-x, y, z) there, so the cube is mirrored in x.
 Target babylon_target() {
     Target t;
     t.name = "babylon";
-    t.consumer = "Babylon.js: prefiltered DDS cube, RGBA16F (CubeTexture.CreateFromPrefilteredData)";
-    t.note =
-        "its own container, .env, is not written yet; Babylon loads the DDS as it is and computes its diffuse "
-        "polynomial itself";
+    t.consumer = "Babylon.js: .env, a cube of RGBD pictures and diffuse light as a polynomial (CubeTexture)";
+    t.note = "RGBD ends at 255: the manifest says what was clipped; --format dds keeps half floats";
     t.size = 256;
     t.smallest = 1;
     t.roughness = babylon_roughness;
     t.mirror = CubeMirror::x;
-    t.container = Container::dds;
+    t.encoding = Encoding::rgbd;
+    t.container = Container::env;
     t.specular_file = "{stem}";
     t.irradiance_file = "";
     t.brdf_file = "";

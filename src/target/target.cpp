@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 namespace domelight {
 
@@ -22,30 +23,54 @@ std::string quantity_name(Quantity quantity) {
     return {};
 }
 
+namespace {
+
+struct ContainerFacts {
+    const char *name, *extension;
+    bool fits_any_target;
+};
+
+/// In the order of the enumeration.
+constexpr ContainerFacts k_containers[] = {
+    {"ktx2", ".ktx2", true},  {"ktx1", ".ktx", true},
+    {"dds", ".dds", true},    {"dds9", ".dds", true},
+    {"exr", ".exr", true},    {"exr-mip", ".exr", true},
+    {"hdr", ".hdr", true},    {"env", ".env", false},
+    {"gltf", ".gltf", false}, {"playcanvas-atlas", ".png", false},
+};
+
+}  // namespace
+
 std::string container_name(Container container) {
-    switch (container) {
-        case Container::ktx2:
-            return "ktx2";
-        case Container::ktx1:
-            return "ktx1";
-        case Container::dds:
-            return "dds";
-        case Container::exr:
-            return "exr";
-        case Container::hdr:
-            return "hdr";
-    }
-    return {};
+    return k_containers[std::size_t(container)].name;
 }
 
 std::string container_extension(Container container) {
-    return container == Container::ktx1 ? ".ktx" : fmt::format(".{}", container_name(container));
+    return k_containers[std::size_t(container)].extension;
 }
 
 Result<Container> container_from_name(const std::string& name) {
-    for (const auto container : {Container::ktx2, Container::ktx1, Container::dds, Container::exr, Container::hdr})
-        if (container_name(container) == name) return container;
-    return Error{fmt::format("\"{}\" is not a format; accepted are ktx2, ktx1, dds, exr, hdr", name), "", ""};
+    std::string accepted;
+    for (std::size_t i = 0; i < std::size(k_containers); ++i) {
+        if (!k_containers[i].fits_any_target) continue;
+        if (k_containers[i].name == name) return Container(i);
+        accepted += (accepted.empty() ? "" : ", ") + std::string(k_containers[i].name);
+    }
+    return Error{fmt::format("\"{}\" is not a format; accepted are {}", name, accepted), "", ""};
+}
+
+std::string cube_mirror_direction(CubeMirror mirror) {
+    switch (mirror) {
+        case CubeMirror::none:
+            return "d";
+        case CubeMirror::x:
+            return "(-x, y, z)";
+        case CubeMirror::z:
+            return "(x, y, -z)";
+        case CubeMirror::swap_yz:
+            return "(x, z, y)";
+    }
+    return {};
 }
 
 std::string brdf_form_name(BrdfForm form) {
@@ -93,8 +118,11 @@ double quadratic_roughness(int level, int levels, int) {
 }
 
 std::span<const Target> targets() {
-    static const std::array all{generic_target(), khronos_target(), filament_target(),     babylon_target(),
-                                bevy_target(),    three_target(),   three_latlong_target()};
+    static const std::array all{generic_target(),  khronos_target(), filament_target(),      babylon_target(),
+                                bevy_target(),     three_target(),   three_latlong_target(), playcanvas_target(),
+                                gltf_target(),     godot_target(),   unity_target(),         unreal_target(),
+                                blender_target(),  mitsuba_target(), pbrt_target(),          usd_target(),
+                                materialx_target()};
     return all;
 }
 

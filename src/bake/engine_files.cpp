@@ -1,0 +1,135 @@
+#include "bake/engine_files.h"
+
+#include "domelight/babylon_env.h"
+#include "domelight/image_io.h"
+#include "domelight/reproject.h"
+
+#include "bake/mirror.h"
+#include "io/gltf_image_light.h"
+#include "io/playcanvas_atlas.h"
+
+#include <fmt/core.h>
+
+#include <memory>
+#include <utility>
+
+namespace domelight {
+namespace {
+
+void take_reports(BakedMap& report, const std::vector<EncodingReport>& encoded) {
+    for (std::size_t l = 0; l < report.levels.size() && l < encoded.size(); ++l)
+        report.levels[l].encoding = encoded[l];
+}
+
+/// Lets `write` make the file in the background, then hashes it.
+void start_writing(BakedMap& report, const BakeOptions& options, const std::filesystem::path& path,
+                   Background& background, std::function<Result<void>(const std::filesystem::path&)> write) {
+    background.start([write = std::move(write), path, &file = report.file, hashes = options.hashes]() -> Result<void> {
+        if (auto ok = write(path); !ok) return ok;
+        return hash_into(file, path, hashes);
+    });
+}
+
+Texture encode_chain(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
+                     const BakeOptions& options) {
+    std::vector<EncodingReport> encoded;
+    Texture texture = encode_texture(levels, format.encoding, options.threads, &encoded);
+    take_reports(report, encoded);
+    return texture;
+}
+
+void write_babylon(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
+                   const BakeOptions& options, const std::filesystem::path& path, Background& background) {
+    auto env = std::make_shared<BabylonEnv>();
+    env->cube = encode_chain(report, levels, format, options);
+    env->irradiance = babylon_polynomial(format.radiance_sh);
+    start_writing(report, options, path, background,
+                  [env, threads = options.threads](const auto& file) { return write_env(file, *env, threads); });
+}
+
+void write_gltf(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
+                const std::filesystem::path& path, Background& background) {
+    auto light = std::make_shared<GltfImageLightFile>();
+    light->cube = encode_chain(report, levels, format, options);
+    light->name = std::filesystem::path(format.name).filename().string();
+    light->generator = fmt::format("Domelight {}", version());
+    for (const Vec3d& v : sh_irradiance_over_pi(format.radiance_sh)) light->irradiance.push_back(v * k_pi);
+    light->irradiance.resize(9);
+    start_writing(report, options, path, background, [light, threads = options.threads](const auto& file) {
+        return write_gltf_image_light(file, *light, threads);
+    });
+}
+
+void write_playcanvas(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
+                      const BakeOptions& options, const std::filesystem::path& path, Background& background) {
+    std::vector<const ImageF*> maps;
+    for (const FilteredMap& level : levels) maps.push_back(&level.latlong);
+    ImageF diffuse = format.irradiance_over_pi->latlong;
+    turn_latlong(diffuse, format.latlong_quarters);
+    std::vector<EncodingReport> encoded;
+    auto atlas =
+        std::make_shared<Image<std::uint8_t>>(make_playcanvas_atlas(maps, diffuse, options.threads, &encoded));
+    take_reports(report, encoded);
+    start_writing(report, options, path, background,
+                  [atlas](const auto& file) { return write_playcanvas_atlas(file, *atlas); });
+}
+
+/// Levels as OpenEXR's `envmap` wants them: samples on the edges, its own lat-long centre.
+ImageF openexr_level(const FilteredMap& level, int threads) {
+    if (level.cube.empty()) {
+        const ProjectedImage source{*projection_from_name("latlong"), level.latlong};
+        return reproject(source, *projection_from_name("latlong/openexr"), level.latlong.width(),
+                         level.latlong.height(), threads)
+            .pixels;
+    }
+    ImageF strip(level.cube.size(), 6 * level.cube.size(), 3);
+    std::copy(level.cube.pixels().begin(), level.cube.pixels().end(), strip.pixels().begin());
+    const ProjectedImage source{*projection_from_name("cube"), std::move(strip)};
+    return reproject(source, *projection_from_name("cube/openexr"), level.cube.size(), level.cube.size(), threads)
+        .pixels;
+}
+
+void write_openexr(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
+                   const BakeOptions& options, const std::filesystem::path& path, Background& background) {
+    const bool cube = !levels.front().cube.empty();
+    ExrWriteOptions exr;
+    exr.half = format.encoding == Encoding::rgba16f;
+    exr.attributes = format.metadata;
+    exr.threads = options.threads;
+    // A convention of its own is not what the attribute stands for.
+    const bool envmap = format.mirror == CubeMirror::none && format.latlong_quarters == 0;
+    if (envmap) exr.envmap = cube ? "cube" : "latlong";
+    if (exr.half) encode_chain(report, levels, format, options);  // half floats clip alike in every container
+    auto pictures = std::make_shared<std::vector<ImageF>>();
+    for (const FilteredMap& level : levels)
+        pictures->push_back(envmap ? openexr_level(level, options.threads)
+                            : cube ? cube_layout(level.cube, "vertical-strip")
+                                   : level.latlong);
+    start_writing(report, options, path, background, [pictures, exr](const auto& file) {
+        std::vector<ImageView<const float>> views(pictures->begin(), pictures->end());
+        return write_exr_levels(file, views, exr);
+    });
+}
+
+}  // namespace
+
+bool is_engine_file(Container container) {
+    return container == Container::env || container == Container::gltf || container == Container::playcanvas_atlas ||
+           container == Container::exr_mip;
+}
+
+void write_engine_file(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
+                       const BakeOptions& options, const std::filesystem::path& path, Background& background) {
+    switch (format.container) {
+        case Container::env:
+            return write_babylon(report, levels, format, options, path, background);
+        case Container::gltf:
+            return write_gltf(report, levels, format, options, path, background);
+        case Container::playcanvas_atlas:
+            return write_playcanvas(report, levels, format, options, path, background);
+        default:
+            return write_openexr(report, levels, format, options, path, background);
+    }
+}
+
+}  // namespace domelight
