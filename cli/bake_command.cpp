@@ -74,8 +74,9 @@ void declare(Arguments& a, BakeWords& w) {
              "texels of the maps (the target's)");
     a.choice("--encoding-quality", w.encoding_quality, {"fast", "default", "high", "exhaustive"},
              "how hard bc6h, uastc-hdr and astc search for the best block; exhaustive takes minutes (default)");
-    a.choice("--format", w.format, {"ktx2", "ktx1", "dds", "exr", "hdr"},
-             "container of the maps; exr and hdr hold one level a file (the target's)");
+    a.choice("--format", w.format, {"ktx2", "ktx1", "dds", "dds9", "exr", "exr-mip", "hdr"},
+             "container of the maps; dds9 is DDS with the old header; exr and hdr hold one level a file, exr-mip all "
+             "of them with OpenEXR's envmap attribute (the target's)");
     a.choice("--cube-picture", w.cube_picture, {"cross", "strip", "faces"},
              "a cube in exr and hdr: one picture or six (cross)");
     a.flag("--zstd", w.zstd, "compress ktx2 without loss");

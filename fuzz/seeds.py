@@ -33,6 +33,9 @@ MAGIC = {
     "ktx1": [b"\xabKTX 11"],
     "ktx": [b"\xabKTX"],
     "dds": [b"DDS "],
+    "env": [b"\x86\x16\x87\x96\xf6\xd6\x96\x36"],
+    "atlas": [b"\x89PNG"],
+    "imagelight": [b"glTF", b"{"],
     "gltf": [b"glTF", b"{"],
     "obj": [b"# obj"],
     "ply": [b"ply"],
@@ -54,7 +57,9 @@ def make(program, folder):
     run("sky", "--axes", "--height", "16", "-o", folder / "axes.png")
     for encoding in ("rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "bc6h", "rgbm"):
         bake(encoding, "--size", "8", "--levels", "2", "--encoding", encoding)
-    for container in ("ktx1", "dds", "exr", "hdr"):
+    for target in ("babylon", "gltf", "playcanvas"):
+        run("bake", folder / "sky.hdr", "-o", folder / target, "--for", target, "--no-preview", "--no-hashes", *([] if target == "playcanvas" else ["--size", "8"]))
+    for container in ("ktx1", "dds", "dds9", "exr", "exr-mip", "hdr"):
         bake(container, "--size", "8", "--levels", "2", "--format", container)
     for container in ("ktx1", "dds"):
         bake(f"bc6h-{container}", "--size", "8", "--levels", "2", "--format", container, "--encoding", "bc6h")

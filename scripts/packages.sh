@@ -16,7 +16,8 @@ build_packages=(
     libfmt-dev nlohmann-json3-dev libcli11-dev
 )
 # ./test: the test framework, the benchmarks, and the scripts that drive the program.
-test_packages=("${build_packages[@]}" doctest-dev libbenchmark-dev python3)
+test_packages=("${build_packages[@]}" doctest-dev libbenchmark-dev python3
+    glslang-tools)      # compiles docs/shaders
 # ./test --fuzz: libFuzzer comes with clang.
 fuzz_packages=("${test_packages[@]}" clang-19 libclang-rt-19-dev)
 # tests/consumers: the browser that runs the engines, Node to drive it, and OpenEXR's own tools.

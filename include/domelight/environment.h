@@ -36,9 +36,9 @@ struct EnvironmentOptions {
     std::string latlong = "";
     /// PNG, JPEG and DDS of eight bits a channel: auto (= srgb) | srgb | gamma22 | linear; DDS also rgbm | rgbd | rgbp
     std::string decode = "auto";
-    double rotate_y_deg = 0;      ///< turns the light about +Y: +X moves towards +Z
-    std::string up = "+Y";        ///< the world axis (of the file's author) that the image's top shows: +Y, +Z, ...
-    double exposure = 0;          ///< stops: radiance is multiplied by 2^exposure
+    double rotate_y_deg = 0;  ///< turns the light about +Y: +X moves towards +Z
+    std::string up = "+Y";    ///< the world axis (of the file's author) that the image's top shows: +Y, +Z, ...
+    double exposure = 0;      ///< stops: radiance is multiplied by 2^exposure
     std::int64_t max_bytes = std::int64_t(1) << 30;  ///< refuses images whose decoding would need more memory than this
     int threads = 0;                                 ///< for decoding; 0: all
     bool keep_projection = false;                    ///< leaves other projections as they are, in Environment::picture

@@ -25,7 +25,7 @@ std::string container_extension(Container container);  ///< ".ktx2", ".ktx", ...
 
 /// How a consumer's lookup differs from texture(cube, d) for the light that arrives from world direction d = (x, y, z).
 enum class CubeMirror {
-    none,  ///< it does not
+    none,     ///< it does not
     x,        ///< it reads texture(cube, (-x, y, z))
     z,        ///< it reads texture(cube, (x, y, -z))
     swap_yz,  ///< it reads texture(cube, (x, z, y))
@@ -50,9 +50,9 @@ struct Target {
     int size = 512;    ///< face size of level 0
     int smallest = 8;  ///< by default levels go down to this face size
     RoughnessCurve roughness = nullptr;
-    Layout layout = Layout::cube;        ///< of the maps, unless asked otherwise
+    Layout layout = Layout::cube;  ///< of the maps, unless asked otherwise
     CubeMirror mirror = CubeMirror::none;
-    std::string latlong = "default";     ///< convention of lat-long maps: one that only turns the default about +Y
+    std::string latlong = "default";  ///< convention of lat-long maps: one that only turns the default about +Y
     Encoding encoding = Encoding::rgba16f;
     Container container = Container::ktx2;
     bool zstd = false;
@@ -62,8 +62,8 @@ struct Target {
     std::string panorama = "latlong";  ///< name and convention, as projections.h takes them
 
     std::string specular_file = "specular";
-    std::string sheen_file;   ///< a second chain with Charlie's lobe
-    std::string skybox_file;  ///< level 0 alone
+    std::string sheen_file;     ///< a second chain with Charlie's lobe
+    std::string skybox_file;    ///< level 0 alone
     std::string panorama_file;  ///< the environment as one .exr beside the maps
     std::string irradiance_file = "irradiance";
     int irradiance_size = 64;

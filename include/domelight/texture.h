@@ -113,7 +113,7 @@ struct TextureInfo {
     std::string supercompression;   ///< "none", "zstd", ...
     int width = 0, height = 0, depth = 0, faces = 1, layers = 0, levels = 1;
     std::map<std::string, std::string> metadata;
-    bool decodable = false;  ///< read_texture can decode it
+    bool decodable = false;   ///< read_texture can decode it
     bool eight_bits = false;  ///< a channel: made for a screen, or RGBM and its like
 };
 Result<TextureInfo> read_texture_info(const std::filesystem::path& file);

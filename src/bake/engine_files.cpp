@@ -17,8 +17,7 @@ namespace domelight {
 namespace {
 
 void take_reports(BakedMap& report, const std::vector<EncodingReport>& encoded) {
-    for (std::size_t l = 0; l < report.levels.size() && l < encoded.size(); ++l)
-        report.levels[l].encoding = encoded[l];
+    for (std::size_t l = 0; l < report.levels.size() && l < encoded.size(); ++l) report.levels[l].encoding = encoded[l];
 }
 
 /// Lets `write` make the file in the background, then hashes it.
@@ -38,8 +37,8 @@ Texture encode_chain(BakedMap& report, std::span<FilteredMap> levels, const MapF
     return texture;
 }
 
-void write_babylon(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
-                   const BakeOptions& options, const std::filesystem::path& path, Background& background) {
+void write_babylon(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
+                   const std::filesystem::path& path, Background& background) {
     auto env = std::make_shared<BabylonEnv>();
     env->cube = encode_chain(report, levels, format, options);
     env->irradiance = babylon_polynomial(format.radiance_sh);
@@ -67,8 +66,7 @@ void write_playcanvas(BakedMap& report, std::span<FilteredMap> levels, const Map
     ImageF diffuse = format.irradiance_over_pi->latlong;
     turn_latlong(diffuse, format.latlong_quarters);
     std::vector<EncodingReport> encoded;
-    auto atlas =
-        std::make_shared<Image<std::uint8_t>>(make_playcanvas_atlas(maps, diffuse, options.threads, &encoded));
+    auto atlas = std::make_shared<Image<std::uint8_t>>(make_playcanvas_atlas(maps, diffuse, options.threads, &encoded));
     take_reports(report, encoded);
     start_writing(report, options, path, background,
                   [atlas](const auto& file) { return write_playcanvas_atlas(file, *atlas); });
@@ -89,8 +87,8 @@ ImageF openexr_level(const FilteredMap& level, int threads) {
         .pixels;
 }
 
-void write_openexr(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
-                   const BakeOptions& options, const std::filesystem::path& path, Background& background) {
+void write_openexr(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
+                   const std::filesystem::path& path, Background& background) {
     const bool cube = !levels.front().cube.empty();
     ExrWriteOptions exr;
     exr.half = format.encoding == Encoding::rgba16f;

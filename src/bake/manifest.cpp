@@ -128,7 +128,7 @@ Json map_json(const BakedMap& map) {
     if (map.quantity == Quantity::radiance) json["lobe"] = lobe_name(map.lobe);
     if (map.lobe == Lobe::charlie) json["least_roughness"] = k_charlie_least_roughness;
     const std::string projection = map.projection.substr(0, map.projection.find('/'));
-    json["layout"] = map.layout == Layout::cube                          ? "cube"
+    json["layout"] = map.layout == Layout::cube                      ? "cube"
                      : projection.empty() || projection == "latlong" ? "latlong"
                                                                      : projection;
     if (!map.projection.empty()) json["convention"] = latlong_text(map.projection);

@@ -65,10 +65,9 @@ std::string projection_convention(const std::string& name) {
     const char* grid = projection->grid() == SampleGrid::rows_on_poles   ? ", the first and last row on the poles"
                        : projection->grid() == SampleGrid::both_on_edges ? ", samples from edge to edge"
                                                                          : "";
-    return fmt::format("{}, centre {}, right {}, up {}{}",
-                       projection->name() == "latlong" ? "lat-long" : projection->name(),
-                       axis(to_world * Vec3d{0, 0, 1}), axis(to_world * Vec3d{1, 0, 0}),
-                       axis(to_world * Vec3d{0, 1, 0}), grid);
+    return fmt::format(
+        "{}, centre {}, right {}, up {}{}", projection->name() == "latlong" ? "lat-long" : projection->name(),
+        axis(to_world * Vec3d{0, 0, 1}), axis(to_world * Vec3d{1, 0, 0}), axis(to_world * Vec3d{0, 1, 0}), grid);
 }
 
 }  // namespace domelight

@@ -136,14 +136,15 @@ Result<void> plan_encoding(TargetPlan& plan, const BakeOptions& o) {
         return option_error("--encoding",
                             encoding_name(plan.encoding) + " cannot be stored as " + container_name(plan.container),
                             "It holds rgba16f (half) and rgba32f (float).");
-    if (plan.container == Container::dds9 && plan.encoding != Encoding::rgba16f &&
-        plan.encoding != Encoding::rgba32f && !is_scaled_bytes(plan.encoding))
+    if (plan.container == Container::dds9 && plan.encoding != Encoding::rgba16f && plan.encoding != Encoding::rgba32f &&
+        !is_scaled_bytes(plan.encoding))
         return option_error("--encoding", encoding_name(plan.encoding) + " has no number in DDS headers of its time",
                             "dds9 holds rgba16f, rgba32f, and as bytes rgbm, rgbd and rgbp.");
     if (own_container(plan.container) && plan.encoding != target.encoding)
-        return option_error("--encoding", fmt::format("{} holds {} only", container_name(plan.container),
-                                                      encoding_name(target.encoding)),
-                            "Leave --encoding out, or choose a --format.");
+        return option_error(
+            "--encoding",
+            fmt::format("{} holds {} only", container_name(plan.container), encoding_name(target.encoding)),
+            "Leave --encoding out, or choose a --format.");
     if (plan.container == Container::dds && is_scaled_bytes(plan.encoding))
         return option_error("--encoding", "dds cannot say that its bytes are " + encoding_name(plan.encoding),
                             "Use --format ktx2 or ktx1, where a key says so.");
@@ -179,8 +180,9 @@ Result<void> check_own_container(const TargetPlan& plan, const BakeOptions& o) {
     const int size = plan.specular.front().spec.size;
     const bool atlas = plan.container == Container::playcanvas_atlas;
     if (atlas ? size != 512 : !std::has_single_bit(unsigned(size)))
-        return option_error("--size", atlas ? "the atlas has one size: 512 rows of level 0"
-                                            : fmt::format("{} holds cubes whose size is a power of two, not {}", name, size));
+        return option_error("--size",
+                            atlas ? "the atlas has one size: 512 rows of level 0"
+                                  : fmt::format("{} holds cubes whose size is a power of two, not {}", name, size));
     const int levels = int(plan.specular.size()), all = most_levels(size);
     if (plan.container == Container::env && levels != all)
         return option_error("--levels", fmt::format("a .env file of this size has {} levels, not {}", all, levels));
@@ -236,8 +238,10 @@ Result<TargetPlan> plan_target(const Target& target, const BakeOptions& o) {
     if (plan.latlong_quarters % 2 && plan.layout == Layout::latlong && !target.environment_only)
         for (const LevelPlan& level : plan.specular)
             if (level.spec.size % 2)
-                return option_error("--size", fmt::format("a lat-long map {} high cannot be turned by a quarter: its "
-                                                          "width is no multiple of 4", level.spec.size),
+                return option_error("--size",
+                                    fmt::format("a lat-long map {} high cannot be turned by a quarter: its "
+                                                "width is no multiple of 4",
+                                                level.spec.size),
                                     "Use a size and a number of levels that keep every height even.");
     return plan;
 }

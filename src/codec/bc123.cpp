@@ -58,11 +58,12 @@ Rgba8Block decode_bc3(const std::uint8_t* block) {
     for (int i = 0; i < 6; ++i) indices |= std::uint64_t(block[2 + i]) << 8 * i;
     for (std::size_t i = 0; i < 16; ++i, indices >>= 3) {
         const int index = int(indices & 7);
-        texels[i][3] = std::uint8_t(index == 0                   ? a
-                                    : index == 1                 ? b
-                                    : between == 5 && index == 6 ? 0
-                                    : between == 5 && index == 7 ? 255
-                                                                 : (a * (between + 1 - index) + b * (index - 1)) / between);
+        texels[i][3] =
+            std::uint8_t(index == 0                   ? a
+                         : index == 1                 ? b
+                         : between == 5 && index == 6 ? 0
+                         : between == 5 && index == 7 ? 255
+                                                      : (a * (between + 1 - index) + b * (index - 1)) / between);
     }
     return texels;
 }

@@ -25,8 +25,7 @@ std::vector<std::vector<Share>> shares(int count, int targets, Measure measure) 
         const int last = std::min(count - 1, int(std::ceil(end * count)) - 1);
         for (int i = int(begin * count); i <= last; ++i) {
             const double a = std::max(begin, double(i) / count), b = std::min(end, double(i + 1) / count);
-            if (b > a)
-                all[std::size_t(t)].push_back({i, (measure(b) - measure(a)) / (measure(end) - measure(begin))});
+            if (b > a) all[std::size_t(t)].push_back({i, (measure(b) - measure(a)) / (measure(end) - measure(begin))});
         }
     }
     return all;

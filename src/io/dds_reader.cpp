@@ -51,9 +51,9 @@ Error partial_cube(std::uint32_t caps2) {
     std::string missing;
     constexpr const char* k_names[] = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
     for (int f = 0; f < 6; ++f)
-        if (!(caps2 >> (10 + f) & 1u)) missing += (missing.empty() ? "" : " ") + std::string(k_names[f]);
+        if (!(caps2 >> (10 + f) & 1u)) missing.append(" ").append(k_names[f]);
     return {"is a cube of " + std::to_string(std::popcount(caps2 & k_ddscaps2_all_faces)) + " faces, not 6", "",
-            "It lacks " + missing + "."};
+            "It lacks" + missing + "."};
 }
 
 Result<Dds> parse(ByteSource& source) {

@@ -82,8 +82,7 @@ Result<Header> read_header(ByteSource& source) {
         specular.fail("mipmaps", fmt::format("{} pictures, but a cube {} wide has 6 for each of up to {} levels",
                                              pictures.size(), width, most / 6));
     for (JsonFields& picture : pictures) {
-        const Place place{picture.require("position").size("position", 0),
-                          picture.require("length").size("length", 0)};
+        const Place place{picture.require("position").size("position", 0), picture.require("length").size("length", 0)};
         if (!source.contains(data, place.offset) || !source.contains(data + place.offset, place.length))
             picture.fail("position", fmt::format("{} bytes at {} lie past the file's end", place.length, place.offset));
         header.pictures.push_back({data + place.offset, place.length});
@@ -101,8 +100,9 @@ Result<SceneImage> read_face(ByteSource& source, const Place& place, int size) {
     const auto claimed = texture_image_size(*bytes);
     if (!claimed) return claimed.error();
     if (claimed->width != size || claimed->height != size)
-        return Error{fmt::format("a picture of {} x {} where {} x {} belongs", claimed->width, claimed->height, size, size),
-                     "", "The file is damaged."};
+        return Error{
+            fmt::format("a picture of {} x {} where {} x {} belongs", claimed->width, claimed->height, size, size), "",
+            "The file is damaged."};
     return decode_texture_image(*bytes);
 }
 
@@ -122,8 +122,7 @@ Result<TexelBytes> read_level(ByteSource& source, std::span<const Place> faces, 
 
 void flip_faces(Texture& cube) {
     for (std::size_t l = 0; l < cube.levels.size(); ++l) {
-        const std::size_t height = std::size_t(cube.level_height(int(l))),
-                          row = cube.face_bytes(int(l)) / height;
+        const std::size_t height = std::size_t(cube.level_height(int(l))), row = cube.face_bytes(int(l)) / height;
         for (std::size_t face = 0; face < std::size_t(cube.faces); ++face) {
             std::uint8_t* first = cube.levels[l].data() + face * row * height;
             for (std::size_t y = 0; y < height / 2; ++y)

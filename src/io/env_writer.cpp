@@ -23,9 +23,9 @@ Result<void> check_cube(const Texture& cube) {
         return Error{"a .env file holds rgbd, not " + encoding_name(cube.encoding), "", ""};
     if (cube.faces != 6 || cube.width != cube.height || !std::has_single_bit(unsigned(cube.width)) ||
         cube.width > k_max_env_width)
-        return Error{fmt::format("a .env file holds a cube whose width is a power of two, not {} x {}", cube.width,
-                                 cube.height),
-                     "", ""};
+        return Error{
+            fmt::format("a .env file holds a cube whose width is a power of two, not {} x {}", cube.width, cube.height),
+            "", ""};
     const int levels = std::bit_width(unsigned(cube.width));
     if (int(cube.levels.size()) != levels)
         return Error{fmt::format("a .env file {} wide has {} levels, down to one texel, not {}", cube.width, levels,
@@ -59,8 +59,8 @@ std::string header_json(const BabylonEnv& env, const std::vector<PngBytes>& pict
 }  // namespace
 
 QuadraticPolynomial babylon_polynomial(std::span<const Vec3d> radiance) {
-    QuadraticPolynomial p = sh_polynomial(sh_irradiance_over_pi(sh_irradiance_over_pi(radiance.first(
-        std::min<std::size_t>(9, radiance.size())))));
+    QuadraticPolynomial p = sh_polynomial(
+        sh_irradiance_over_pi(sh_irradiance_over_pi(radiance.first(std::min<std::size_t>(9, radiance.size())))));
     p.x = -p.x, p.zx = -p.zx, p.xy = -p.xy;  // its world: x the other way
     return p;
 }

@@ -282,8 +282,8 @@ Result<Environment> open_texture(const std::filesystem::path& file, const std::s
     environment.file = file;
     environment.format = container;
     environment.report = std::make_shared<RepairReport>();
-    Result<Cubemap> cube = read_cube_texture(file, request.options.max_bytes, request.scale,
-                                             *environment.report, request.options.decode);
+    Result<Cubemap> cube =
+        read_cube_texture(file, request.options.max_bytes, request.scale, *environment.report, request.options.decode);
     if (!cube) return cube.error();
     environment.width = environment.height = cube->size();
     return finish_cube(std::move(environment), std::move(*cube), request);

@@ -27,7 +27,8 @@ Result<void> check_sizes(std::span<const ImageView<const float>> levels, bool cu
     for (std::size_t l = 1; l < levels.size(); ++l) {
         const int width = std::max(1, levels[0].width >> l), height = std::max(1, levels[0].height >> l);
         const bool strip = !cube || (levels[l].height == 6 * levels[l].width);
-        if (levels[l].width != width || levels[l].height != height || !strip || levels[l].channels != levels[0].channels)
+        if (levels[l].width != width || levels[l].height != height || !strip ||
+            levels[l].channels != levels[0].channels)
             return wrong_size(l, levels[l]);
     }
     return {};

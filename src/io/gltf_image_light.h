@@ -19,7 +19,7 @@
 namespace domelight {
 
 struct GltfImageLightFile {
-    Texture cube;  ///< rgbd, OpenGL's orientation; the levels' roughness runs evenly from 0 to 1
+    Texture cube;                   ///< rgbd, OpenGL's orientation; the levels' roughness runs evenly from 0 to 1
     std::vector<Vec3d> irradiance;  ///< nine coefficients of E
     std::string name, generator;
 };
@@ -30,11 +30,11 @@ Result<void> write_gltf_image_light(const std::filesystem::path& file, const Glt
 
 /// The light of a file's scene (else its first light).
 struct GltfImageLight {
-    double intensity = 1;                             ///< times which all light is meant
-    std::array<float, 4> rotation{0, 0, 0, 1};        ///< of the environment: a quaternion x, y, z, w
-    std::vector<Vec3d> irradiance;                    ///< as stored, without the intensity
-    std::vector<Cubemap> levels;                      ///< as stored, without intensity and rotation
-    bool low_dynamic_range = false;                   ///< pictures without the fourth channel: sRGB
+    double intensity = 1;                       ///< times which all light is meant
+    std::array<float, 4> rotation{0, 0, 0, 1};  ///< of the environment: a quaternion x, y, z, w
+    std::vector<Vec3d> irradiance;              ///< as stored, without the intensity
+    std::vector<Cubemap> levels;                ///< as stored, without intensity and rotation
+    bool low_dynamic_range = false;             ///< pictures without the fourth channel: sRGB
 };
 
 /// Whether the bytes may be a glTF file with such a light, by a look at the start and for the extension's name.

@@ -72,7 +72,8 @@ Result<Definition> definition_of(const nlohmann::json& json, std::size_t images)
     d.intensity = fields.number("intensity", 1, 0, 1e20f);
     if (const auto rotation = fields.numbers("rotation", 4); rotation.size() == 4)
         std::copy(rotation.begin(), rotation.end(), d.rotation.begin());
-    for (const auto& v : numbers_of(fields, light, "irradianceCoefficients", 3)) d.irradiance.push_back({v[0], v[1], v[2]});
+    for (const auto& v : numbers_of(fields, light, "irradianceCoefficients", 3))
+        d.irradiance.push_back({v[0], v[1], v[2]});
     if (!error && d.irradiance.size() != 9)
         fields.fail("irradianceCoefficients", fmt::format("{} of them, not 9", d.irradiance.size()));
     const std::uint64_t size = fields.require("specularImageSize").size("specularImageSize", 0);
@@ -115,8 +116,8 @@ Result<void> decode_face(std::span<const std::uint8_t> bytes, ImageView<float> f
     const std::uint8_t* p = image->rgba.data();
     for (int y = 0; y < face.height; ++y)
         for (int x = 0; x < face.width; ++x, p += 4) {
-            const Vec3f v = rgbd ? rgb_from_rgbd({p[0], p[1], p[2], p[3]})
-                                 : Vec3f{linear[p[0]], linear[p[1]], linear[p[2]]};
+            const Vec3f v =
+                rgbd ? rgb_from_rgbd({p[0], p[1], p[2], p[3]}) : Vec3f{linear[p[0]], linear[p[1]], linear[p[2]]};
             float* out = face.at(x, y);
             out[0] = v.x, out[1] = v.y, out[2] = v.z;
         }
@@ -177,8 +178,10 @@ Result<GltfImageLight> read_gltf_image_light(std::shared_ptr<const FileBytes> by
                 if (!claimed) return at(f, claimed.error());
                 if (claimed->width != size || claimed->height != size)
                     return at(f, {fmt::format("a picture of {} x {} where {} x {} belongs", claimed->width,
-                                              claimed->height, size, size), "", ""});
-                if (auto room = budget.take(std::uint64_t(size) * std::uint64_t(size), 6 * 3 * sizeof(float), "a cube"); !room)
+                                              claimed->height, size, size),
+                                  "", ""});
+                if (auto room = budget.take(std::uint64_t(size) * std::uint64_t(size), 6 * 3 * sizeof(float), "a cube");
+                    !room)
                     return at(f, room.error());
                 light.levels.emplace_back(size);
             }

@@ -10,8 +10,8 @@ Result<std::vector<PngBytes>> encode_faces(const Texture& texture, int threads) 
     std::vector<Result<void>> done(pictures.size());
     parallel_for(int(pictures.size()), threads, [&](int i) {
         const int level = i / texture.faces;
-        const std::uint8_t* face = texture.levels[std::size_t(level)].data() +
-                                   texture.face_bytes(level) * std::size_t(i % texture.faces);
+        const std::uint8_t* face =
+            texture.levels[std::size_t(level)].data() + texture.face_bytes(level) * std::size_t(i % texture.faces);
         auto png = encode_png({face, texture.level_width(level), texture.level_height(level), 4});
         if (png)
             pictures[std::size_t(i)] = std::move(*png);

@@ -21,8 +21,7 @@ void for_texels(const ScreenTexels& texels, const std::uint8_t* stored, int widt
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x, stored += texels.bytes) {
                 Rgba texel;
-                for (std::size_t c = 0; c < 4; ++c)
-                    texel[c] = texels.channel[c] < 0 ? 255 : stored[texels.channel[c]];
+                for (std::size_t c = 0; c < 4; ++c) texel[c] = texels.channel[c] < 0 ? 255 : stored[texels.channel[c]];
                 use(x, y, texel);
             }
         return;
@@ -30,7 +29,7 @@ void for_texels(const ScreenTexels& texels, const std::uint8_t* stored, int widt
     const bool bc1 = texels.kind == ScreenTexels::Kind::bc1;
     for (int top = 0; top < height; top += 4)
         for (int left = 0; left < width; left += 4, stored += bc1 ? 8 : 16) {
-            const Rgba8Block block = bc1                                        ? decode_bc1(stored)
+            const Rgba8Block block = bc1                                      ? decode_bc1(stored)
                                      : texels.kind == ScreenTexels::Kind::bc2 ? decode_bc2(stored)
                                                                               : decode_bc3(stored);
             for (int y = top; y < std::min(top + 4, height); ++y)

@@ -98,7 +98,8 @@ Vec3d QuadraticPolynomial::operator()(const Vec3d& d) const {
 }
 
 QuadraticPolynomial sh_polynomial(std::span<const Vec3d> coefficients) {
-    std::vector<Vec3d> a(coefficients.begin(), coefficients.begin() + std::min<std::ptrdiff_t>(9, std::ssize(coefficients)));
+    std::vector<Vec3d> a(coefficients.begin(),
+                         coefficients.begin() + std::min<std::ptrdiff_t>(9, std::ssize(coefficients)));
     a.resize(9);
     // Ramamoorthi and Hanrahan 2001, eq. 3, with 1 = x^2 + y^2 + z^2 and 3 z^2 - 1 = 2 z^2 - x^2 - y^2.
     const double c0 = std::sqrt(1 / (4 * k_pi)), c1 = std::sqrt(3 / (4 * k_pi)), c2 = std::sqrt(15 / (4 * k_pi)),

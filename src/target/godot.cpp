@@ -1,5 +1,5 @@
-#include "target/environment_target.h"
 #include "target/all.h"
+#include "target/environment_target.h"
 
 namespace domelight {
 

@@ -16,8 +16,8 @@ double unity_roughness(int level, int levels, int) {
 
 /// Unity: a DDS cube of half floats with the seven levels that its shaders read, and the environment as a lat-long EXR
 /// for the importer (Texture Shape: Cube). Unity's world is left-handed with +Y up; its glTF importers turn (x, y, z)
-/// into (-x, y, z), so the cube is mirrored in x. Its lat-long pictures have +Z in the centre and +X on the right, which
-/// is -X in glTF's world.
+/// into (-x, y, z), so the cube is mirrored in x. Its lat-long pictures have +Z in the centre and +X on the right,
+/// which is -X in glTF's world.
 Target unity_target() {
     Target t;
     t.name = "unity";

@@ -15,10 +15,10 @@ double unreal_roughness(int level, int levels, int) {
 
 }  // namespace
 
-/// Unreal Engine: the environment as a lat-long EXR, which its importer turns into a cube for a sky light (and filters),
-/// and a DDS cube with the levels that its reflection captures use. Unreal's world is left-handed with +Z up: glTF's
-/// (x, y, z) is (x, z, y) there, and that is how the cube is looked up. Its importer reads a lat-long picture at u =
-/// 1/2 + atan2(X, -Y) / 2 pi, so glTF's -Z is in the centre and to the right of it lies +X.
+/// Unreal Engine: the environment as a lat-long EXR, which its importer turns into a cube for a sky light (and
+/// filters), and a DDS cube with the levels that its reflection captures use. Unreal's world is left-handed with +Z up:
+/// glTF's (x, y, z) is (x, z, y) there, and that is how the cube is looked up. Its importer reads a lat-long picture at
+/// u = 1/2 + atan2(X, -Y) / 2 pi, so glTF's -Z is in the centre and to the right of it lies +X.
 Target unreal_target() {
     Target t;
     t.name = "unreal";

@@ -94,7 +94,7 @@ TEST_CASE("sha256: the test vectors of FIPS 180-4, at once and in pieces") {
 
 TEST_CASE("mirror_cube: texture(cube, M d) of the mirrored cube is texture(cube, d), and twice is nothing") {
     for (const int size : {1, 4, 5})
-        for (const CubeMirror mirror : {CubeMirror::x, CubeMirror::z}) {
+        for (const CubeMirror mirror : {CubeMirror::x, CubeMirror::z, CubeMirror::swap_yz}) {
             Cubemap cube(size);
             for (std::size_t i = 0; i < cube.pixels().size(); ++i) cube.pixels()[i] = float(i);
             Cubemap mirrored = cube;
@@ -103,8 +103,9 @@ TEST_CASE("mirror_cube: texture(cube, M d) of the mirrored cube is texture(cube,
                 for (int y = 0; y < size; ++y)
                     for (int x = 0; x < size; ++x) {
                         const Vec3d d = cube_direction(f, {(x + 0.5) / size, (y + 0.5) / size});
-                        const CubePoint p =
-                            cube_point(mirror == CubeMirror::x ? Vec3d{-d.x, d.y, d.z} : Vec3d{d.x, d.y, -d.z});
+                        const CubePoint p = cube_point(mirror == CubeMirror::x   ? Vec3d{-d.x, d.y, d.z}
+                                                       : mirror == CubeMirror::z ? Vec3d{d.x, d.y, -d.z}
+                                                                                 : Vec3d{d.x, d.z, d.y});
                         CHECK(mirrored.face(p.face).at(int(p.uv.u * size), int(p.uv.v * size))[1] ==
                               cube.face(f).at(x, y)[1]);
                     }

@@ -92,9 +92,9 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["bake", "-o", "o", "--nonsense"], "--lobe"),
         (["bake"], "-o DIR"),
         (["bake", "-o", "o", "--lobe", "blinn"], "ggx, charlie, phong, phong-plain"),
-        (["bake", "-o", "o", "--for", "quake"], "generic, khronos, filament, babylon, bevy, three"),
+        (["bake", "-o", "o", "--for", "quake"], "playcanvas, gltf, godot, unity, unreal, blender, mitsuba, pbrt, usd, materialx"),
         (["bake", "-o", "o", "--encoding", "rgb8"], "rgba16f, rgba32f, rgb9e5, r11g11b10f"),
-        (["bake", "-o", "o", "--format", "tga"], "ktx2, ktx1, dds, exr, hdr"),
+        (["bake", "-o", "o", "--format", "tga"], "ktx2, ktx1, dds, dds9, exr, exr-mip, hdr"),
         (["bake", "-o", "o", "--method", "guess"], "exact, bruteforce, riemann, montecarlo"),
         (["bake", "-o", "o", "--layout", "dome"], "cube, latlong"),
         (["bake", "-o", "o", "--brdf-g", "ashikhmin"], "correlated, smith, karis"),
@@ -120,6 +120,10 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["bake", "-o", "o", "--threads", "-1"], "0 to 1024"),
         (["bake", "-o", "o", "--exposure", "much"], "number"),
         (["bake", "-o", "o", "--for", "three-latlong", "--levels", "5"], "filters it itself"),
+        (["bake", "-o", "o", "--for", "babylon", "--size", "100"], "power of two"),
+        (["bake", "-o", "o", "--for", "playcanvas", "--size", "64"], "one size"),
+        (["bake", "-o", "o", "--for", "gltf", "--encoding", "rgb9e5"], "rgbd only"),
+        (["bake", "-o", "o", "--format", "exr-mip", "--encoding", "bc6h"], "rgba16f"),
         (["bake", "-o", "o", "--for", "generic", "--for", "generic"], "twice"),
         (["bake", "studio.hdr", "-o", "o", "--latlong", "sideways"], "materialx"),
         (["bake", "studio.hdr", "-o", "o", "--projection", "fisheye"], "cube-cross"),
@@ -340,12 +344,39 @@ def test_charlie_states_its_least_roughness(folder):
     assert [l["roughness"] for l in specular["levels"]] == [least, 1] and not specular["levels"][0]["environment_itself"]
 
 
+def test_every_target_writes_what_it_says(folder):
+    files = {
+        "generic": {"specular.ktx2", "irradiance.ktx2", "brdf.ktx2"}, "khronos": {"ggx/specular.ktx2"}, "filament": {"studio_ibl.ktx"}, "bevy": {"studio_specular.ktx2"},
+        "babylon": {"studio.env"}, "playcanvas": {"studio-env-atlas.png"}, "gltf": {"studio.gltf"}, "unity": {"studio.dds", "studio_latlong.exr"},
+        "unreal": {"studio.dds", "studio_latlong.exr"}, "materialx": {"studio.exr", "studio_irradiance.exr"}, "godot": {"studio.exr"},
+        "blender": {"studio.exr"}, "mitsuba": {"studio.exr"}, "pbrt": {"studio.exr"}, "usd": {"studio.exr"}}
+    for target, expected in files.items():
+        size = [] if target == "playcanvas" else ["--size", "32"]
+        irradiance = [] if target == "playcanvas" else ["--irradiance-size", "8"]
+        run("bake", "studio.hdr", "-o", target, "--for", target, *size, *irradiance, "--brdf-size", "8", "--no-preview", folder=folder)
+        assert set(files_of(folder / target)) >= expected | {"manifest.json", "sh.json"}, target
+        manifest = manifest_of(folder / target)
+        assert manifest["target"]["name"] == target and manifest["convention"]
+        for role in ("specular", "environment"):
+            for level in manifest.get(role, {}).get("levels", []):
+                assert 0 <= level["roughness"] <= 1 and level["clipped_energy"] < 0.5, (target, level)
+    # What others can open, we can.
+    for file in ["babylon/studio.env", "gltf/studio.gltf", "unity/studio.dds", "pbrt/studio.exr", "mitsuba/studio.exr", "materialx/studio.exr"]:
+        words = {"pbrt": ["--latlong", "pbrt"], "mitsuba": ["--latlong", "mitsuba"], "materialx": ["--latlong", "materialx"]}.get(file.split("/")[0], [])
+        info = json.loads(run("info", file, "--json", *words, folder=folder).stdout)
+        assert info["kind"] == "environment" or info["faces"] == 6, file
+    run("bake", "babylon/studio.env", "gltf/studio.gltf", "-o", "again", *SMALL, folder=folder)
+    assert manifest_of(folder / "playcanvas")["specular"]["encoding"] == "rgbp"
+    assert manifest_of(folder / "pbrt")["environment"]["layout"] == "equal-area-octahedral"
+    assert "centre +Z, right -X" in manifest_of(folder / "usd")["convention"]
+
+
 def test_targets_share_a_reading_and_get_folders(folder):
     run("bake", "studio.hdr", "-o", "all", *SMALL, *[w for t in ["generic", "khronos", "filament", "babylon", "bevy", "three", "three-latlong"] for w in ("--for", t)],
         folder=folder)
     files = set(files_of(folder / "all"))
     assert files >= {"khronos/ggx/specular.ktx2", "khronos/charlie/sheen.ktx2", "khronos/lambertian/diffuse.ktx2", "filament/studio_ibl.ktx",
-                     "filament/studio_skybox.ktx", "filament/sh.txt", "babylon/studio.dds", "bevy/studio_specular.ktx2", "bevy/studio_diffuse.ktx2",
+                     "filament/studio_skybox.ktx", "filament/sh.txt", "babylon/studio.env", "bevy/studio_specular.ktx2", "bevy/studio_diffuse.ktx2",
                      "three/studio.pmrem.ktx2", "three-latlong/studio.exr", "generic/specular.ktx2"}, files
     # The same light as each baked on its own; only the last digits may depend on the company.
     for target in ["khronos", "bevy", "three", "three-latlong"]:

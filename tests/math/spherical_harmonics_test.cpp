@@ -134,3 +134,17 @@ TEST_CASE("spherical_harmonics: Filament's nine numbers of a real environment ar
         CHECK_MESSAGE(length(expected - theirs[i]) < 0.02, i, ": ", expected.x, " for ", theirs[i].x);
     }
 }
+
+TEST_CASE("sh_polynomial: the expansion's own values, for any number of coefficients") {
+    for (const int count : {1, 4, 9, 16}) {
+        std::vector<Vec3d> a;
+        for (int i = 0; i < count; ++i) a.push_back({std::sin(1.0 + i), std::cos(2.0 * i), 0.1 * i - 0.4});
+        const QuadraticPolynomial p = sh_polynomial(a);
+        a.resize(std::min<std::size_t>(a.size(), 9));
+        for (const Vec3d& d : k_directions) CHECK(length(p(d) - sh_evaluate(a, d)) < 1e-12);
+    }
+    const QuadraticPolynomial one = sh_polynomial(std::vector<Vec3d>{{1, 2, 3}});
+    CHECK(one.xx.z == doctest::Approx(3 * 0.282095).epsilon(1e-5));  // a constant is spread over the squares
+    CHECK(one.yy == one.xx);
+    CHECK(one.zz == one.xx);
+}

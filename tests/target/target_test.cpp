@@ -3,6 +3,8 @@
 #include "bake/plan.h"
 #include "test.h"
 
+#include <cmath>
+
 using namespace domelight;
 
 namespace {
@@ -110,9 +112,68 @@ TEST_CASE("target: three-latlong gets one lat-long image four times as wide as t
 TEST_CASE("target: an unknown name lists the known ones") {
     const auto target = find_target("quake");
     REQUIRE_FALSE(target);
-    CHECK(target.error().what.find("generic, khronos, filament, babylon, bevy, three, three-latlong") !=
-          std::string::npos);
+    CHECK(target.error().what.find("generic, khronos, filament, babylon, bevy, three, three-latlong, playcanvas, gltf, godot, "
+                                   "unity, unreal, blender, mitsuba, pbrt, usd, materialx") != std::string::npos);
     for (const Target& t : targets()) CHECK(find_target(t.name));
+}
+
+TEST_CASE("target: babylon is a .env of RGBD") {
+    const TargetPlan plan = plan_of("babylon");
+    CHECK(plan.container == Container::env);
+    CHECK(plan.encoding == Encoding::rgbd);
+    BakeOptions options;
+    options.format = Container::dds;
+    CHECK(plan_of("babylon", options).encoding == Encoding::rgba16f);
+}
+
+TEST_CASE("target: playcanvas is an atlas of lat-long maps whose level l shows roughness l / 5") {
+    const TargetPlan plan = plan_of("playcanvas");
+    CHECK(plan.layout == Layout::latlong);
+    CHECK(plan.latlong_quarters == 1);
+    CHECK(sizes(plan) == std::vector{512, 256, 128, 64, 32, 16, 8});
+    for (int l = 0; l < 6; ++l) CHECK(plan.specular[l].roughness == doctest::Approx(l / 5.0));
+    CHECK(plan.encoding == Encoding::rgbp);
+}
+
+TEST_CASE("target: gltf maps its levels evenly to roughness, down to 16^2") {
+    const TargetPlan plan = plan_of("gltf");
+    CHECK(sizes(plan) == std::vector{256, 128, 64, 32, 16});
+    CHECK(plan.specular[1].roughness == 0.25);
+    CHECK(plan.target->mirror == CubeMirror::none);
+}
+
+TEST_CASE("target: unity inverts its lookup level = 6 r (1.7 - 0.7 r) of seven levels") {
+    const TargetPlan plan = plan_of("unity");
+    CHECK(sizes(plan) == std::vector{256, 128, 64, 32, 16, 8, 4});
+    for (int l = 0; l < 7; ++l) {
+        const double r = plan.specular[l].roughness;
+        CHECK(6 * r * (1.7 - 0.7 * r) == doctest::Approx(l));
+    }
+    CHECK(plan.specular[6].roughness == doctest::Approx(1));
+    CHECK(plan.panorama_size == 1024);
+}
+
+TEST_CASE("target: unreal inverts its lookup level = last - 1 + 1.2 log2 r") {
+    const TargetPlan plan = plan_of("unreal");
+    REQUIRE(plan.specular.size() == 9);
+    CHECK(plan.specular[0].spec.mirror);
+    for (int l = 1; l < 8; ++l) CHECK(7 + 1.2 * std::log2(plan.specular[l].roughness) == doctest::Approx(l));
+    CHECK(plan.specular[8].roughness == 1);
+}
+
+TEST_CASE("target: materialx inverts its lookup, alpha < 1/4 ? sqrt(alpha) : alpha / 2 + 3/8") {
+    const TargetPlan plan = plan_of("materialx");
+    CHECK(plan.layout == Layout::latlong);
+    CHECK(plan.latlong_quarters == 3);
+    const int last = int(plan.specular.size()) - 1;
+    REQUIRE(last == 6);  // 512 to 8
+    for (int l = 0; l < last; ++l) {
+        const double alpha = plan.specular[l].alpha;
+        CHECK(last * (alpha < 0.25 ? std::sqrt(alpha) : alpha / 2 + 0.375) == doctest::Approx(l));
+    }
+    CHECK(plan.specular[last].alpha == 1);
+    CHECK(plan.container == Container::exr_mip);
+    CHECK(plan.target->irradiance_quantity == Quantity::irradiance_over_pi);
 }
 
 TEST_CASE("plan: options override the target, level by level") {
@@ -164,6 +225,16 @@ TEST_CASE("plan: contradictions are errors that name the option") {
     CHECK(where([](BakeOptions& o) { o.zstd = true, o.format = Container::dds; }) == "--zstd");
     CHECK(where([](BakeOptions& o) { o.targets = {"three-latlong"}, o.lobe = Lobe::charlie; }) == "--lobe");
     CHECK(where([](BakeOptions& o) { o.targets = {}; }) == "--for");
+    CHECK(where([](BakeOptions& o) { o.targets = {"babylon"}, o.size = 100; }) == "--size");
+    CHECK(where([](BakeOptions& o) { o.targets = {"babylon"}, o.levels = 3; }) == "--levels");
+    CHECK(where([](BakeOptions& o) { o.targets = {"babylon"}, o.encoding = Encoding::rgb9e5; }) == "--encoding");
+    CHECK(where([](BakeOptions& o) { o.targets = {"babylon"}, o.layout = Layout::latlong; }) == "--layout");
+    CHECK(where([](BakeOptions& o) { o.targets = {"playcanvas"}, o.size = 256; }) == "--size");
+    CHECK(where([](BakeOptions& o) { o.targets = {"playcanvas"}, o.levels = 6; }) == "--levels");
+    CHECK(where([](BakeOptions& o) { o.targets = {"playcanvas"}, o.irradiance_size = 16; }) == "--irradiance-size");
+    CHECK(where([](BakeOptions& o) { o.targets = {"materialx"}, o.size = 9, o.levels = 1; }) == "--size");
+    CHECK(where([](BakeOptions& o) { o.format = Container::exr_mip, o.encoding = Encoding::rgb9e5; }) == "--encoding");
+    CHECK(where([](BakeOptions& o) { o.format = Container::dds9, o.encoding = Encoding::rgb9e5; }) == "--encoding");
     CHECK(where([](BakeOptions& o) { o.sh_bands = 65; }) == "--sh-bands");
     CHECK(where([](BakeOptions& o) { o.layout = Layout::latlong, o.size = 100, o.levels = 4; }) == "--size");
 }

@@ -1,0 +1,10 @@
+// PlayCanvas atlas reader on arbitrary bytes.
+#include "io/playcanvas_atlas.h"
+
+#include <cstddef>
+#include <cstdint>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    (void)!domelight::playcanvas_atlas({data, size});
+    return 0;
+}

@@ -1,0 +1,162 @@
+#include "bake/panorama.h"
+
+#include "domelight/bake.h"
+#include "domelight/projections.h"
+#include "domelight/texture.h"
+
+#include "oriented.h"
+#include "test.h"
+
+#include <cmath>
+
+using namespace domelight;
+using namespace domelight::test;
+
+namespace {
+
+/// How far the texels of a projected picture of the directions are from their own, at most.
+double worst_of(const ImageF& image, const char* name) {
+    const Projection projection = *projection_from_name(name);
+    double worst = 0;
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) {
+            const UVBox box = projection.texel_box(x, y, image.width(), image.height());
+            const Vec3d d = projection.direction(0, {(box.u0 + box.u1) / 2, (box.v0 + box.v1) / 2});
+            worst = std::max(worst, length(direction_of(image.at(x, y)) - d));
+        }
+    return worst;
+}
+
+}  // namespace
+
+TEST_CASE("project_panorama: every direction lies where the projection says, and turned pictures keep their texels") {
+    const ImageF image = direction_image(64);
+    for (const char* name : {"latlong", "latlong/usd", "latlong/materialx", "latlong/mod"}) {
+        CHECK(panorama_rows(name, 64) == 64);
+        const auto turned = project_panorama(image, name, 64, 1);
+        REQUIRE(turned);
+        CHECK(worst_of(*turned, name) < 1e-6);
+    }
+    for (const char* name : {"latlong/mitsuba", "latlong/openexr", "pbrt", "octahedral"}) {
+        CHECK(panorama_rows(name, 32) == 64);
+        const auto projected = project_panorama(image, name, 32, 1);
+        REQUIRE(projected);
+        CHECK(projected->height() == 32);
+        CHECK(worst_of(*projected, name) < 0.06);  // means over texels 0.1 wide, against their middles
+    }
+    CHECK_FALSE(project_panorama(image, "cone", 64, 1));
+}
+
+TEST_CASE("project_panorama: a constant stays constant, power is kept") {
+    ImageF constant(64, 32, 3);
+    std::fill(constant.pixels().begin(), constant.pixels().end(), 2.5f);
+    for (const char* name : {"latlong/usd", "latlong/mitsuba", "pbrt"}) {
+        const auto projected = project_panorama(constant, name, 16, 1);
+        REQUIRE(projected);
+        for (const float v : projected->pixels()) CHECK(v == doctest::Approx(2.5f).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("projection_convention: says where the picture's centre, right and top look") {
+    CHECK(projection_convention("latlong") == "lat-long, centre +X, right +Z, up +Y");
+    CHECK(projection_convention("latlong/usd") == "lat-long, centre +Z, right -X, up +Y");
+    CHECK(projection_convention("latlong/mitsuba") ==
+          "lat-long, centre +Z, right -X, up +Y, the first and last row on the poles");
+    CHECK(projection_convention("pbrt") == "equal-area-octahedral, centre +Y, right +X, up +Z");
+}
+
+TEST_CASE("bake: targets of both layouts share one reading, and each gets what it would alone") {
+    const TemporaryFolder folder;
+    const ImageF image = direction_image(32);
+    BakeOptions options;
+    options.size = 16;
+    options.levels = 3;
+    options.irradiance_size = 8;
+    options.brdf_size = 8;
+    options.preview = false;
+    options.threads = 2;
+    const auto run = [&](std::vector<std::string> targets, const char* name) {
+        Environment environment = environment_of(image);
+        options.targets = std::move(targets);
+        REQUIRE(bake(environment, options, folder / name));
+    };
+    run({"generic", "materialx"}, "both");
+    run({"materialx"}, "alone");
+    run({"generic"}, "cube");
+    const auto both = read_texture(folder / "both/generic/specular.ktx2"),
+               cube = read_texture(folder / "cube/specular.ktx2");
+    REQUIRE(both);
+    REQUIRE(cube);
+    CHECK(both->levels == cube->levels);
+    const auto first = open_environment({folder / "both/materialx/sky.exr"}, {.latlong = "materialx"}),
+               second = open_environment({folder / "alone/sky.exr"}, {.latlong = "materialx"});
+    REQUIRE(first);
+    REQUIRE(second);
+    const auto a = read_latlong(*first->latlong), b = read_latlong(*second->latlong);
+    REQUIRE(a);
+    REQUIRE(b);
+    CHECK(std::equal(a->pixels().begin(), a->pixels().end(), b->pixels().begin()));
+    for (const Vec3d& d : {Vec3d{1, 0.1, 0.2}, Vec3d{0.1, 0.2, -1}, Vec3d{-0.3, 1, 0.1}}) {
+        const UV uv = latlong_uv(first->world_to_source * d);
+        CHECK(length(direction_of(texel_at(*a, uv.u, uv.v)) - normalize(d)) < 0.15);
+    }
+}
+
+TEST_CASE("bake: targets that take the environment alone get it in their own convention") {
+    const std::pair<const char*, const char*> targets[] = {{"three", "default"},   {"blender", "default"},
+                                                           {"godot", "usd"},       {"usd", "usd"},
+                                                           {"mitsuba", "mitsuba"}, {"pbrt", "pbrt"}};
+    for (const auto& [target, convention] : targets) {
+        const TemporaryFolder folder;
+        const ImageF image = direction_image(64);
+        Environment environment = environment_of(image);
+        BakeOptions options;
+        options.targets = {target};
+        options.size = 32;
+        options.irradiance_size = 8;
+        options.preview = false;
+        const auto report = bake(environment, options, folder.path());
+        REQUIRE(report);
+        CHECK(report->targets[0].maps[0].role == "environment");
+        EnvironmentOptions reading;
+        reading.latlong = convention;
+        auto opened = open_environment({folder / "sky.exr"}, reading);
+        REQUIRE(opened);
+        REQUIRE(opened->latlong);
+        const auto read = read_latlong(*opened->latlong);
+        REQUIRE(read);
+        for (const Vec3d& d : {Vec3d{1, 0.2, 0.1}, Vec3d{-1, -0.5, 0.3}, Vec3d{0.1, 1, 1}, Vec3d{0.2, 0.3, -1}}) {
+            const UV uv = latlong_uv(opened->world_to_source * d);
+            CHECK(length(direction_of(texel_at(*read, uv.u, uv.v)) - normalize(d)) < 0.15);
+        }
+    }
+}
+
+TEST_CASE("bake: unity and unreal get a cube as they look it up, and a lat-long image for their importers") {
+    const ImageF image = direction_image(64);
+    for (const char* target : {"unity", "unreal"}) {
+        const TemporaryFolder folder;
+        Environment environment = environment_of(image);
+        BakeOptions options;
+        options.targets = {target};
+        options.size = 32;
+        options.irradiance_size = 8;
+        options.preview = false;
+        REQUIRE(bake(environment, options, folder.path()));
+        const auto texture = read_texture(folder / "sky.dds");
+        REQUIRE(texture);
+        const auto cubes = decode_cubes(*texture);
+        REQUIRE(cubes);
+        const bool unity = std::string(target) == "unity";
+        CHECK(worst_direction(cubes->front(), [&](const Vec3d& d) {
+                  return unity ? Vec3d{-d.x, d.y, d.z} : Vec3d{d.x, d.z, d.y};
+              }) < 0.01);
+        auto opened = open_environment({folder / "sky_latlong.exr"}, {.latlong = unity ? "usd" : "materialx"});
+        REQUIRE(opened);
+        CHECK(opened->width == 256);
+        const auto read = read_latlong(*opened->latlong);
+        REQUIRE(read);
+        const UV uv = latlong_uv(opened->world_to_source * Vec3d{1, 0.2, 0.1});
+        CHECK(direction_of(texel_at(*read, uv.u, uv.v)).x > 0.9);
+    }
+}

@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+"""Mitsuba and Blender look up what `bake --for mitsuba` and `--for blender` wrote of the six-axis environment.
+
+Every direction must show the light that the environment has there: six square views, 90 degrees wide, along the axes. Needs PyPI's mitsuba (in the
+Python that runs this) and Debian's blender; what is missing is skipped with a word. DOMELIGHT_PICTURES names a folder to keep a mirror ball in.
+"""
+
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+PROGRAM = os.environ["DOMELIGHT_PROGRAM"]
+HERE = pathlib.Path(__file__).resolve().parent
+SIZE = 48
+
+# forward, right, up in the world of glTF
+VIEWS = [((1, 0, 0), (0, 0, 1), (0, 1, 0)), ((-1, 0, 0), (0, 0, -1), (0, 1, 0)), ((0, 1, 0), (0, 0, 1), (-1, 0, 0)),
+         ((0, -1, 0), (0, 0, 1), (1, 0, 0)), ((0, 0, 1), (-1, 0, 0), (0, 1, 0)), ((0, 0, -1), (1, 0, 0), (0, 1, 0))]
+
+passed = failed = skipped = 0
+
+
+def check(name, good, detail):
+    global passed, failed
+    if good:
+        passed += 1
+    else:
+        failed += 1
+        print(f"FAILED {name}: {detail}")
+
+
+def skip(name, reason):
+    global skipped
+    skipped += 1
+    print(f"skipped: {name}: {reason}")
+
+
+def run(*words):
+    subprocess.run([PROGRAM, *map(str, words)], check=True, stdout=subprocess.DEVNULL)
+
+
+def read_hdr(file):
+    """Rows of (r, g, b) of a Radiance file of new run lengths: an own reader, so that ours is not judged by itself."""
+    data = file.read_bytes()
+    at = data.index(b"\n\n") + 2
+    end = data.index(b"\n", at)
+    words, at = data[at:end].split(), end + 1
+    height, width = int(words[1]), int(words[3])
+    rows = []
+    for _ in range(height):
+        assert data[at] == 2 and data[at + 1] == 2
+        at += 4
+        channels = []
+        for _ in range(4):
+            row = bytearray()
+            while len(row) < width:
+                count = data[at]
+                if count > 128:
+                    row += data[at + 1:at + 2] * (count - 128)
+                    at += 2
+                else:
+                    row += data[at + 1:at + 1 + count]
+                    at += 1 + count
+            channels.append(row)
+        rows.append([tuple(math.ldexp(channels[c][x], channels[3][x] - 136) for c in range(3)) for x in range(width)])
+    return rows
+
+
+def look_up(rows, d):
+    """The default convention: centre +X, right +Z, top +Y."""
+    u = 0.5 + math.atan2(d[2], d[0]) / (2 * math.pi)
+    v = math.atan2(math.hypot(d[0], d[2]), d[1]) / math.pi
+    return rows[min(int(v * len(rows)), len(rows) - 1)][int(u * len(rows[0])) % len(rows[0])]
+
+
+def view_directions(view):
+    forward, right, up = VIEWS[view]
+    for y in range(SIZE):
+        for x in range(SIZE):
+            s, t = 2 * (x + 0.5) / SIZE - 1, 1 - 2 * (y + 0.5) / SIZE
+            d = [f + s * r + t * u for f, r, u in zip(forward, right, up)]
+            n = math.sqrt(sum(c * c for c in d))
+            yield tuple(c / n for c in d)
+
+
+def compare(name, environment, views):
+    """`views`: six lists of SIZE * SIZE colours, top row first."""
+    for view, colours in enumerate(views):
+        errors, sums, truths = [], 0, 0
+        for d, colour in zip(view_directions(view), colours):
+            truth = look_up(environment, d)
+            errors.append(max(abs(a - b) for a, b in zip(truth, colour)))
+            sums += sum(colour)
+            truths += sum(truth)
+        # Edges of labels fall into texels; a label in a wrong place or mirrored changes a tenth of a view.
+        close = sum(e < 0.1 for e in errors) / len(errors)
+        check(f"{name}, view {view}", close > 0.9, f"only {100 * close:.1f} % of the view is right")
+        check(f"{name}, brightness of view {view}", abs(sums / truths - 1) < 0.01, f"{sums / truths:.4f} times the truth")
+
+
+def test_mitsuba(environment, folder):
+    try:
+        import mitsuba as mi
+    except ImportError:
+        return skip("mitsuba", "no Python module mitsuba (pip install mitsuba)")
+    mi.set_variant("scalar_rgb")
+    run("bake", folder / "axes.hdr", "-o", folder / "mitsuba", "--for", "mitsuba", "--size", "256", "--no-preview")
+    file = str(folder / "mitsuba/axes.exr")
+    emitter = mi.load_dict({"type": "envmap", "filename": file})
+    views = []
+    for view in range(6):
+        colours = []
+        for d in view_directions(view):
+            si = mi.SurfaceInteraction3f()
+            si.wi = mi.Vector3f(*(-c for c in d))
+            colours.append([float(c) for c in emitter.eval(si)][:3])
+        views.append(colours)
+    compare(f"mitsuba {mi.__version__}", environment, views)
+    if "DOMELIGHT_PICTURES" in os.environ:
+        scene = mi.load_dict({
+            "type": "scene", "light": {"type": "envmap", "filename": file}, "integrator": {"type": "path"},
+            "ball": {"type": "sphere", "bsdf": {"type": "conductor", "material": "none"}},
+            "camera": {"type": "orthographic", "to_world": mi.ScalarTransform4f().look_at([0, 0, 5], [0, 0, 0], [0, 1, 0]),
+                       "film": {"type": "hdrfilm", "width": 256, "height": 256, "pixel_format": "rgb"}, "sampler": {"type": "independent", "sample_count": 16}}})
+        mi.util.write_bitmap(str(pathlib.Path(os.environ["DOMELIGHT_PICTURES"], "mitsuba-ball.png")), mi.render(scene))
+
+
+def test_blender(environment, folder):
+    blender = shutil.which("blender")
+    if not blender:
+        return skip("blender", "it is not installed")
+    run("bake", folder / "axes.hdr", "-o", folder / "blender", "--for", "blender", "--size", "256", "--no-preview")
+    words = [blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python", HERE / "blender_views.py", "--", folder / "blender/axes.exr", folder / "views.txt",
+             SIZE, os.environ.get("DOMELIGHT_PICTURES", "")]
+    process = subprocess.run([str(w) for w in words], capture_output=True, text=True, timeout=600)
+    if process.returncode:
+        return check("blender", False, (process.stdout + process.stderr)[-1500:])
+    numbers = [float(w) for w in (folder / "views.txt").read_text().split()]
+    colours = [numbers[i:i + 3] for i in range(0, len(numbers), 3)]
+    compare("blender (Cycles)", environment, [colours[v * SIZE * SIZE:(v + 1) * SIZE * SIZE] for v in range(6)])
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        run("sky", "--axes", "--height", "512", "-o", folder / "axes.hdr")
+        environment = read_hdr(folder / "axes.hdr")
+        test_mitsuba(environment, folder)
+        test_blender(environment, folder)
+    print(f"targets: {passed} passed, {failed} failed, {skipped} skipped")
+    return 1 if failed else 0
+
+
+sys.exit(main())
