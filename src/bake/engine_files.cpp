@@ -95,7 +95,7 @@ void write_openexr(BakedMap& report, std::span<FilteredMap> levels, const MapFor
     exr.attributes = format.metadata;
     exr.threads = options.threads;
     // A convention of its own is not what the attribute stands for.
-    const bool envmap = format.mirror == CubeMirror::none && format.latlong_quarters == 0;
+    const bool envmap = format.mirror == CubeMirror::none && format.latlong_quarters == 0 && report.projection.empty();
     if (envmap) exr.envmap = cube ? "cube" : "latlong";
     if (exr.half) encode_chain(report, levels, format, options);  // half floats clip alike in every container
     auto pictures = std::make_shared<std::vector<ImageF>>();

@@ -191,7 +191,7 @@ namespace {
 /// A header from before DX10, 4 x 4 texels, with the pixel format's words from its flags on.
 std::vector<std::uint8_t> old_dds(const std::array<std::uint32_t, 7>& pixel_format,
                                   const std::vector<std::uint8_t>& texels, std::uint32_t caps2 = 0) {
-    std::vector<std::uint8_t> bytes(128);
+    std::vector<std::uint8_t> bytes(128 + texels.size());
     const auto put = [&](std::size_t at, std::uint32_t v) { std::memcpy(bytes.data() + at, &v, 4); };
     put(0, 0x20534444);
     put(4, 124);
@@ -203,7 +203,7 @@ std::vector<std::uint8_t> old_dds(const std::array<std::uint32_t, 7>& pixel_form
     for (std::size_t i = 0; i < 7; ++i) put(80 + 4 * i, pixel_format[i]);
     put(108, 0x1000);
     put(112, caps2);
-    bytes.insert(bytes.end(), texels.begin(), texels.end());
+    std::copy(texels.begin(), texels.end(), bytes.begin() + 128);
     return bytes;
 }
 

@@ -221,9 +221,11 @@ TEST_CASE("env: a constant furnace stays constant in every level and in the diff
     REQUIRE(env);
     CHECK(env->cube.levels.size() == 5);
     for (int l = 0; l < 5; ++l)
-        for (int f = 0; f < 6; ++f)
-            for (const float v : decode_texture(env->cube, l, f).pixels())
-                CHECK(std::abs(v - 0.75f) < 0.004f);  // 2.2 / 255 of the value is one step of the encoding
+        for (int f = 0; f < 6; ++f) {
+            const ImageF face = decode_texture(env->cube, l, f);
+            // One step of the encoding is 2.2 / 255 of the value.
+            for (const float v : face.pixels()) CHECK(std::abs(v - 0.75f) < 0.004f);
+        }
     for (const Vec3d& d : {Vec3d{1, 0, 0}, Vec3d{0, -1, 0}, normalize(Vec3d{1, 1, 1})})
         CHECK(length((*env->irradiance)(d)-Vec3d{0.75, 0.75, 0.75}) < 1e-4);
 }

