@@ -1,5 +1,7 @@
 #include "bake/manifest.h"
 
+#include "domelight/projections.h"
+
 #include "bake/panorama.h"
 #include "core/sha256.h"
 
@@ -127,10 +129,8 @@ Json map_json(const BakedMap& map) {
     json["quantity"] = quantity_name(map.quantity);
     if (map.quantity == Quantity::radiance) json["lobe"] = lobe_name(map.lobe);
     if (map.lobe == Lobe::charlie) json["least_roughness"] = k_charlie_least_roughness;
-    const std::string projection = map.projection.substr(0, map.projection.find('/'));
-    json["layout"] = map.layout == Layout::cube                      ? "cube"
-                     : projection.empty() || projection == "latlong" ? "latlong"
-                                                                     : projection;
+    const auto projection = projection_from_name(map.projection);
+    json["layout"] = map.layout == Layout::cube ? "cube" : projection ? projection->name() : "latlong";
     if (!map.projection.empty()) json["convention"] = latlong_text(map.projection);
     json["container"] = map.container;
     json["encoding"] = map.encoding;

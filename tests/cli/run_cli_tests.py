@@ -368,7 +368,8 @@ def test_every_target_writes_what_it_says(folder):
         words = {"pbrt": ["--latlong", "pbrt"], "mitsuba": ["--latlong", "mitsuba"], "materialx": ["--latlong", "materialx"]}.get(file.split("/")[0], [])
         info = json.loads(run("info", file, "--json", *words, folder=folder).stdout)
         assert info["kind"] == "environment" or info["faces"] == 6, file
-    run("bake", "babylon/studio.env", "gltf/studio.gltf", "-o", "again", *SMALL, folder=folder)
+    for file in ("babylon/studio.env", "gltf/studio.gltf", "unity/studio.dds"):
+        run("bake", file, "-o", "again", *SMALL, folder=folder)
     assert manifest_of(folder / "playcanvas")["specular"]["encoding"] == "rgbp"
     assert manifest_of(folder / "pbrt")["environment"]["layout"] == "equal-area-octahedral"
     assert "centre +Z, right -X" in manifest_of(folder / "usd")["convention"]
