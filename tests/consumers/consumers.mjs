@@ -44,13 +44,13 @@ const exposure = environment => (environment === 'sky.hdr' ? ['--exposure', 1.3]
 const accepted = option => new RegExp(`${option} ([a-z0-9-]+(?:\\|[a-z0-9-]+)+)`).exec(domelight('bake', '--help'))[1].split('|');
 const targets = accepted('--for');
 
-/// Bakes an environment of the work folder once a target: the folder's name in it.
+/// Bakes an environment of the work folder once for each target and further options: the folder's name in it.
 const bakes = new Map();
-function bake(environment, target) {
-    const folder = `${path.parse(environment).name}-${target}`;
+function bake(environment, target, more = []) {
+    const folder = [path.parse(environment).name, target, ...more].join('-').replaceAll('--', '');
     if (!bakes.has(folder)) {
         domelight('bake', path.join(work, environment), '-o', path.join(work, folder), '--for', target, '--quiet', '--no-preview',
-                  ...exposure(environment));
+                  ...exposure(environment), ...more);
         bakes.set(folder, filesIn(path.join(work, folder)));
     }
     return {folder, names: bakes.get(folder)};
@@ -180,9 +180,9 @@ async function testTheirs(consumer, page) {
     const {by, latlong, files, brightness} = consumer.theirs;
     if (!data || !fs.existsSync(data)) return skip(`${consumer.name}: the bake by ${by} is not in DOMELIGHT_DATA`);
     fs.cpSync(data, path.join(work, 'theirs'), {recursive: true});
-    const folder = `ours-${consumer.target}`;
+    const folder = `ours-${consumer.name}`;
     domelight('bake', path.join(data, 'symmetrical_garden_1k.hdr'), '-o', path.join(work, folder), '--for', consumer.target, '--latlong', latlong,
-              '--quiet', '--no-preview');
+              '--quiet', '--no-preview', ...(consumer.options ?? []));
     await call(page, 'load', consumer.files(`/files/${folder}/`, filesIn(path.join(work, folder))));
     const ours = await shot(page, mirrorScene);
     await call(page, 'load', files('/files/theirs/'));
@@ -201,7 +201,7 @@ async function testTheirs(consumer, page) {
 async function testConsumer(consumer, browser, server, log, axesImage) {
     if (!targets.includes(consumer.target)) return skip(`${consumer.name}: the program does not bake for it`);
     const environments = consumer.axesOnly ? ['axes.hdr'] : ['axes.hdr', 'white.hdr', 'sky.hdr'];
-    const bakesOf = Object.fromEntries(environments.map(environment => [environment, bake(environment, consumer.target)]));
+    const bakesOf = Object.fromEntries(environments.map(environment => [environment, bake(environment, consumer.target, consumer.options)]));
     if (!consumer.picks(bakesOf['axes.hdr'].names)) return skip(`${consumer.name}: bake --for ${consumer.target} does not write its file`);
     const page = await open(browser, server.url, consumer.page, log);
     console.log(`${consumer.name}: version ${await page.evaluate(() => window.consumer.version)}`);

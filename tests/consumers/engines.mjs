@@ -30,6 +30,7 @@ const babylon = {
 /// An entry is one file of one engine.
 ///
 /// name, page         of the entry; of the module in pages/ that loads and draws
+/// options            further ones of `domelight bake`
 /// target, picks      of `domelight bake --for`; the file among the bake's names that the entry is about, if the bake has it
 /// files              (url of the bake's folder, names, url of its source) => the argument of the page's `load`
 /// chain, repaint     the file whose levels are replaced by constants for the test of levels, and by what
@@ -75,7 +76,7 @@ export const consumers = [
                  brightness: 0.01},
     },
     {
-        name: 'babylon', page: 'babylon', target: 'babylon', picks: names => find(names, '.dds'),
+        name: 'babylon', page: 'babylon', target: 'babylon', options: ['--format', 'dds'], picks: names => find(names, '.dds'),
         files: (url, names) => ({prefiltered: url + find(names, '.dds')}),
         chain: names => find(names, '.dds'), repaint: repaintLevels,
         ...babylon,
@@ -88,11 +89,13 @@ export const consumers = [
         ...babylon,
         // The irradiance is the file's own polynomial, which stays the furnace's.
         shown: (value, {alpha}) => value + (1 - value) * alpha,
+        // Its own tool cuts light at 4096 before it makes the polynomial, which Babylon mixes in: ours has the whole sun.
+        theirs: {by: 'its own tool', latlong: 'usd', files: url => ({prefiltered: `${url}symmetrical_garden.env`}), brightness: 0.05},
     },
     {
         // The same file in Babylon's right-handed world.
-        name: 'babylon-right-handed', page: 'babylon', target: 'babylon', picks: names => find(names, '.dds'), axesOnly: true,
-        files: (url, names) => ({prefiltered: url + find(names, '.dds'), rightHanded: true}),
+        name: 'babylon-right-handed', page: 'babylon', target: 'babylon', picks: names => find(names, '.env'), axesOnly: true,
+        files: (url, names) => ({prefiltered: url + find(names, '.env'), rightHanded: true}),
     },
     {
         name: 'playcanvas', page: 'playcanvas', target: 'playcanvas', picks: names => find(names, '.png'),
