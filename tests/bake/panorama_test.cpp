@@ -103,9 +103,9 @@ TEST_CASE("bake: targets of both layouts share one reading, and each gets what i
 }
 
 TEST_CASE("bake: targets that take the environment alone get it in their own convention") {
-    const std::pair<const char*, const char*> targets[] = {{"three", "default"},   {"blender", "default"},
-                                                           {"godot", "usd"},       {"usd", "usd"},
-                                                           {"mitsuba", "mitsuba"}, {"pbrt", "pbrt"}};
+    const std::pair<const char*, const char*> targets[] = {
+        {"three-latlong", "default"}, {"blender", "default"}, {"godot", "usd"}, {"usd", "usd"},
+        {"mitsuba", "mitsuba"},       {"pbrt", "pbrt"}};
     for (const auto& [target, convention] : targets) {
         const TemporaryFolder folder;
         const ImageF image = direction_image(64);
