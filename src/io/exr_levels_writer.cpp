@@ -2,10 +2,10 @@
 #include "domelight/parallel.h"
 
 #include "codec/half.h"
+#include "io/exr_stream.h"
 #include "io/exr_writing.h"
 
 #include <ImfFrameBuffer.h>
-#include <ImfThreading.h>
 #include <ImfTiledOutputFile.h>
 
 #include <algorithm>
@@ -89,7 +89,7 @@ Result<void> write_exr_levels(const std::filesystem::path& file, std::span<const
         if (!header) return header.error();
         header->setTileDescription(Imf::TileDescription(k_tile, k_tile, Imf::MIPMAP_LEVELS, Imf::ROUND_DOWN));
         const int threads = resolve_threads(options.threads);
-        if (threads > 1 && Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
+        provide_exr_threads(threads);
         Imf::TiledOutputFile out(stream, *header, threads > 1 ? threads : 0);
         ImageF image;
         for (int l = 0; l < out.numLevels(); ++l) {

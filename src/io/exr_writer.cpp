@@ -3,6 +3,7 @@
 #include "domelight/parallel.h"
 
 #include "codec/half.h"
+#include "io/exr_stream.h"
 #include "io/exr_writing.h"
 #include "io/output_file.h"
 
@@ -13,7 +14,6 @@
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
-#include <ImfThreading.h>
 
 #include <algorithm>
 #include <array>
@@ -138,7 +138,7 @@ Result<void> write_image(ExrOutputStream& stream, int width, int height, int cha
     if (!header) return header.error();
     // The pool is the process's; it only grows. With one thread everything happens here.
     const int threads = resolve_threads(options.threads);
-    if (threads > 1 && Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
+    provide_exr_threads(threads);
     Imf::OutputFile file(stream, *header, threads > 1 ? threads : 0);
     RowWriter rows(file, channels, options.half);
     for (int y = 0; y < height; y += k_block_rows) {
