@@ -21,6 +21,7 @@ struct ConvertWords {
     std::string to, mirror;
     std::vector<std::string> rotations;
     std::optional<int> size;
+    bool sharp = false;
     ConvertOutput output;
     EnvironmentOptions environment;
 };
@@ -36,11 +37,14 @@ void declare(Arguments& a, ConvertWords& w) {
            "latlong/openexr, latlong/materialx, latlong/mod, cube/openexr, or NAME/centre=+X,right=+Z,up=+Y (cube in a "
            "texture, else latlong)");
     a.integer("--size", "N", w.size, "height of the picture, of a cube's face, of one half (as fine as the source)");
+    a.flag("--sharp", w.sharp,
+           "keep more of the finest detail in lat-long to cube and to lat-long, for ten times the time");
     a.text("--layout", "NAME", w.output.layout,
            "a cube: cross, vertical-cross, strip, vertical-strip, faces (name_px.hdr ...); a dual paraboloid: "
            "side-by-side, files (name_front.hdr ...)");
     a.text("--encoding", "NAME", w.output.encoding,
-           ".exr: half, float (half); textures: rgba16f, rgba32f, rgb9e5, r11g11b10f (rgba16f)");
+           ".exr: half, float (half); textures: rgba16f, rgba32f, rgb9e5, r11g11b10f, bc6h, .ktx2 also uastc-hdr, "
+           "astc4x4-hdr, astc6x6-hdr, rgbm, rgbd, rgbp (rgba16f)");
     a.texts("--rotate", "X,Y,Z,DEGREES", w.rotations,
             "turn the light about an axis, clockwise as seen from the axis's tip: 0,1,0,90 is --rotate-y-deg 90; "
             "several are done one after the other");
@@ -204,7 +208,7 @@ int run_convert(const std::vector<std::string>& words) {
     const auto size = chart_size(w, *environment, *target);
     if (!size) return print_error(size.error());
     ProgressBar bar(w.output.file, w.common);
-    ConvertOptions options{*turn, size->first, size->second, threads, bar.callback()};
+    ConvertOptions options{*turn, size->first, size->second, w.sharp, threads, bar.callback()};
     const auto made = convert(*environment, *target, options);
     if (!made) return print_error(made.error());
     const auto written = write_projected(made->image, w.output);

@@ -37,7 +37,10 @@ std::vector<std::string> encodings_of(const std::string& extension) {
     if (extension == ".exr") return {"half", "float"};
     if (extension == ".hdr") return {"rgbe"};
     if (extension == ".png") return {"srgb"};
-    return {"rgba16f", "rgba32f", "rgb9e5", "r11g11b10f"};
+    std::vector<std::string> all{"rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "bc6h"};
+    if (extension != ".dds") all.insert(all.end(), {"astc4x4-hdr", "astc6x6-hdr"});
+    if (extension == ".ktx2") all.insert(all.end(), {"uastc-hdr", "rgbm", "rgbd", "rgbp"});
+    return all;
 }
 
 ImageF side_by_side(const ProjectedImage& image) {

@@ -7,9 +7,10 @@
 namespace domelight {
 
 struct ConvertOptions {
-    Mat3 turn;       ///< moves the light: what came from d comes from turn * d (orthogonal, may mirror)
-    int width = 0;   ///< of a chart of the target, in texels
-    int height = 0;  ///< likewise
+    Mat3 turn;           ///< moves the light: what came from d comes from turn * d (orthogonal, may mirror)
+    int width = 0;       ///< of a chart of the target, in texels
+    int height = 0;      ///< likewise
+    bool sharp = false;  ///< reproject() also where "exact" would do: sharper by up to 4 dB, ten times the time
     int threads = 0;
     Progress progress = {};
 };

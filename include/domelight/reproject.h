@@ -21,7 +21,7 @@ Vec3d radiant_power(const ProjectedImage& image, int threads = 0);
 
 /// The same light in another projection, in charts of width x height texels.
 ///
-/// Conservative: within each source texel radiance is a limited linear function with that texel's own mean, and every
+/// Conservative: within each source texel radiance is a limited parabola each way with that texel's own mean, and every
 /// target texel is the mean over its own solid angle, by exact overlap of the texels' outlines in the source picture
 /// (docs/convert.md). So power is kept, a constant stays constant, nothing negative appears, and reducing does not
 /// alias. Texels that lie across a seam, a pole or a disc's rim are supersampled. What a partial projection leaves out

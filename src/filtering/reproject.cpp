@@ -161,6 +161,7 @@ class Reprojector {
         Mean mean = sampled(chart, x, y, least);
         if (mean.contrast() > 0.2 && least < 16) mean = sampled(chart, x, y, 16);
         if (mean.contrast() > 4 && least < 64) mean = sampled(chart, x, y, 64);
+        if (mean.contrast() > 40) mean = sampled(chart, x, y, 256);
         store(chart, x, y, mean.mean);
     }
     struct Mean {

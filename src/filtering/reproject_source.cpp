@@ -108,14 +108,13 @@ Cell Source::cell(int chart, int x, int y) const {
     const float *row[5], *column[5];
     for (int k = 0; k < 5; ++k) row[k] = texel(chart, x + k - 2, y), column[k] = texel(chart, x, y + k - 2);
     double value[5][3];
+    const double density_slope = this->density_slope(y);
     for (int c = 0; c < 3; ++c) {
         const double mean = row[2][c];
         Parabola across = parabola(row[0][c], row[1][c], mean, row[3][c], row[4][c]),
                  down = parabola(column[0][c], column[1][c], mean, column[3][c], column[4][c]);
-        // A row that ends at a pole is wider at one side: only without a slope is its mean the same by any weight.
-        if (wraps() && (y == 0 || y == height_ - 1)) down = {};
         keep_positive(mean, across, down);
-        value[0][c] = mean;
+        value[0][c] = mean - density_slope * down.slope / 12;
         value[1][c] = across.slope, value[2][c] = down.slope, value[3][c] = across.curve, value[4][c] = down.curve;
     }
     const auto v = [&](int k) { return Vec3d{value[k][0], value[k][1], value[k][2]}; };

@@ -3,6 +3,7 @@
 #include "domelight/reproject.h"
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace domelight::reproject_detail {
@@ -16,7 +17,7 @@ struct Place {
 };
 
 /// Radiance within a texel, xi and eta from -1/2 to 1/2: mean + across xi + down eta + across2 (xi^2 - 1/12) + down2
-/// (eta^2 - 1/12). Its mean over the texel is `mean`.
+/// (eta^2 - 1/12). Its mean by solid angle is the texel's value.
 struct Cell {
     Vec3d mean, across, down, across2, down2;
     Vec3d at(double xi, double eta) const {
@@ -42,6 +43,13 @@ class Source {
     Cell cell(int chart, int x, int y) const;
     double solid_angle(int x, int y) const {
         return rows_alike_ ? solid_angle_[std::size_t(y)] : solid_angle_[std::size_t(y) * width_ + x];
+    }
+    /// The solid angle's density within a texel of row y is 1 + density_slope(y) eta times its mean. (0 but for
+    /// lat-long maps, near whose poles it matters.)
+    double density_slope(int y) const {
+        return rows_alike_ && projection_.grid() == SampleGrid::centres
+                   ? k_pi / height_ / std::tan(k_pi * (y + 0.5) / height_)
+                   : 0;
     }
     /// Of the texels of all charts.
     double mean_solid_angle() const { return projection_.shape().coverage() / (double(width_) * height_ * charts()); }

@@ -9,7 +9,12 @@ bool TileIntegrator::prepare(const Source& source, int chart, int x0, int y0, in
     x0_ = x0, y0_ = y0, width_ = x1 - x0, height_ = y1 - y0;
     if (width_ <= 0 || height_ <= 0 || std::int64_t(width_) * height_ > 40000) return false;
     columns_.resize(std::size_t(width_) * height_);
+    density_slope_.resize(std::size_t(height_));
+    is_even_ = true;
     for (int y = 0; y < height_; ++y) {
+        const double slope_here = source.density_slope(std::clamp(y0 + y, 0, source.height() - 1));
+        density_slope_[std::size_t(y)] = slope_here;
+        is_even_ = is_even_ && slope_here == 0;
         Flux constant;
         Vec3d slope, curve;
         for (int x = 0; x < width_; ++x) {
@@ -52,11 +57,19 @@ Flux TileIntegrator::along(double ax, double ay, double bx, double by) const {
         const int x = std::clamp(i - x0_, 0, width_ - 1), y = std::clamp(j - y0_, 0, height_ - 1);
         const Column& c = columns_[std::size_t(y) * width_ + x];
         const double middle = 0.5 * (s + end), half = 0.5 * (end - s);
-        if (half > 0)
-            for (const double node : {-0.5773502691896257, 0.5773502691896257}) {
-                const double t = middle + node * half;
-                sum.add(half * dy, potential(c, ax + t * dx - (x + x0_) - 0.5, ay + t * dy - (y + y0_) - 0.5));
-            }
+        // Exact to the fifth degree, where the density has a slope; else the third will do.
+        constexpr double two[2] = {-0.5773502691896257, 0.5773502691896257},
+                         three[3] = {-0.7745966692414834, 0, 0.7745966692414834},
+                         three_weights[3] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
+        const double density_slope = density_slope_[std::size_t(y)];
+        const auto add = [&](double node, double weight) {
+            const double t = middle + node * half, eta = ay + t * dy - (y + y0_) - 0.5;
+            sum.add(weight * half * dy * (1 + density_slope * eta), potential(c, ax + t * dx - (x + x0_) - 0.5, eta));
+        };
+        if (half > 0 && is_even_)
+            for (const double node : two) add(node, 1);
+        else if (half > 0)
+            for (int k = 0; k < 3; ++k) add(three[k], three_weights[k]);
         s = end;
         if (next_x <= end) i += dx > 0 ? 1 : -1, next_x += step_x;
         if (next_y <= end) j += dy > 0 ? 1 : -1, next_y += step_y;

@@ -37,6 +37,8 @@ class TileIntegrator {
 
     int x0_ = 0, y0_ = 0, width_ = 0, height_ = 0;
     std::vector<Column> columns_;
+    std::vector<double> density_slope_;  ///< of each row: Source::density_slope
+    bool is_even_ = true;                ///< all of them 0
 };
 
 }  // namespace domelight::reproject_detail

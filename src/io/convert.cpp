@@ -103,7 +103,7 @@ Result<std::optional<ImageF>> by_rows(Environment& environment, const Projection
     RowSource& rows = *environment.latlong;
     if (target.grid() != SampleGrid::centres) return std::optional<ImageF>();
     std::unique_ptr<AreaResampler> resampler;
-    if (target.name() == "cube" && area::align(picture_to_source)) {
+    if (target.name() == "cube" && !o.sharp && area::align(picture_to_source)) {
         resampler = area_resample_to_cube(rows.width(), rows.height(), o.height, picture_to_source, o.threads);
     } else if (target.name() == "latlong" && o.width == 2 * o.height) {
         const Mat3 m = picture_to_source * k_swap;  // both in latlong_direction's frame
@@ -114,7 +114,7 @@ Result<std::optional<ImageF>> by_rows(Environment& environment, const Projection
             result.method = "copy";
             return std::optional<ImageF>(*std::move(image));
         }
-        if (const auto aligned = area::align(m); aligned && area::keeps_polar_axis(*aligned))
+        if (const auto aligned = area::align(m); !o.sharp && aligned && area::keeps_polar_axis(*aligned))
             resampler = area_resample_to_latlong(rows.width(), rows.height(), o.height, m, o.threads);
     }
     if (!resampler) return std::optional<ImageF>();

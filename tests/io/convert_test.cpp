@@ -27,10 +27,11 @@ Environment open(const std::filesystem::path& file, EnvironmentOptions options =
     return *std::move(environment);
 }
 
-Conversion made(Environment& environment, const std::string& name, int height, const Mat3& turn = {}) {
+Conversion made(Environment& environment, const std::string& name, int height, const Mat3& turn = {},
+                bool sharp = false) {
     const Projection target = get(name);
     auto result =
-        convert(environment, target, {turn, int(std::lround(height * target.shape().aspect())), height, 2, {}});
+        convert(environment, target, {turn, int(std::lround(height * target.shape().aspect())), height, sharp, 2, {}});
     REQUIRE_MESSAGE(result, result.error().format());
     return *std::move(result);
 }
@@ -213,6 +214,16 @@ TEST_CASE("convert: lat-long to cube and back, a real environment at matched siz
     MESSAGE("round trip ", psnr, " dB, power ", cube.power_after.y / cube.power_before.y - 1, " and ",
             back.power_after.y / cube.power_before.y - 1);
     CHECK(psnr >= 45);
+    Environment again = open(file);
+    const Conversion sharp = made(again, "cube", size, {}, true);
+    CHECK(sharp.method == "conservative");
+    REQUIRE(write_exr(folder / "cube.exr", sharp.image.pixels, {.half = false}));
+    Environment sharp_middle = open(folder / "cube.exr");
+    const Conversion sharp_back = made(sharp_middle, "latlong", truth.height());
+    MESSAGE("sharp: ", log_psnr(truth, sharp_back.image.pixels), " dB, power ",
+            sharp_back.power_after.y / cube.power_before.y - 1);
+    CHECK(log_psnr(truth, sharp_back.image.pixels) >= psnr + 1);
+    CHECK(std::abs(sharp_back.power_after.y / cube.power_before.y - 1) < 1e-4);
     double mean = 0;
     for (const float v : truth.pixels()) mean += v;
     const double floor = 1e-4 * mean / double(truth.pixels().size());
