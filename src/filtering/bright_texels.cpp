@@ -60,6 +60,7 @@ BrightPoints BrightTexels::points(const Vec3d& mean, int band_limit) const {
     // A texel wider than a few waves is no point: its own tent has smoothed it beyond what truncation could show.
     const int nodes = 1 + int(k_pi / height_ * band_limit);
     if (nodes > 16) return {};
+    texels.resize(std::min(texels.size(), std::size_t(k_most_points / (4 * nodes * nodes) + 1)));
     BrightPoints points;
     for (const Texel& t : texels) {
         if (k_pi / height_ * band_limit < k_point_like) {

@@ -37,6 +37,11 @@ constexpr double k_least_share = 1e-4;
 /// (In small images every texel has its share.)
 constexpr double k_least_contrast = 10;
 
+/// Points that stand for all suns together, at most. A sun is a few texels, of 4 to 1024 points each; where more than
+/// these are so bright it is a glow, the strongest of it are taken, and the rest, among others like it, cancels. (Each
+/// costs a kernel's evaluation at every texel of a level: a smooth sky of 512 x 256 once took minutes.)
+constexpr int k_most_points = 2048;
+
 /// Finds the texels that carry the most power (radiance times solid angle) as the rows of a lat-long image pass by.
 ///
 /// A sun is the worst case of a truncated spectrum: its coefficients do not fall off. What the truncation leaves out of

@@ -131,10 +131,10 @@ BrightPoints bright_points(const BorderedCube& cube, const Vec3d& mean, int band
                 if (power > least && largest > k_least_contrast * of_mean) texels.push_back({power, f, x, y});
             }
     std::stable_sort(texels.begin(), texels.end(), [](const Texel& a, const Texel& b) { return a.power > b.power; });
-    if (int(texels.size()) > most) texels.resize(most);
-
     const auto axis = axis_nodes(n, nodes_a_cell(n, band_limit));
     const int per_cell = int(axis.size()) / (n + 1);
+    most = std::min(most, k_most_points / (4 * per_cell * per_cell));
+    if (int(texels.size()) > most) texels.resize(std::size_t(most));
     BrightPoints points;
     for (const Texel& t : texels) {
         const float* value = cube.texel(t.face, t.x, t.y);
