@@ -7,7 +7,7 @@
 // Without files: the environments under DOMELIGHT_DATA (four; --full: all, and 4096 x 2048 ones) and a synthetic
 // 100000:1 half-degree sun.
 
-#include "domelight/environment.h"
+#include "domelight/environment/environment.h"
 
 #include "accuracy.h"
 

@@ -1,9 +1,9 @@
 // Level 0: milliseconds (CPU and wall) and the relative error of the light kept, by source size, face size and
 // orientation.
-#include "domelight/area_resample.h"
-#include "domelight/projection.h"
+#include "domelight/filtering/resample/area_resample.h"
+#include "domelight/projection/projection.h"
 
-#include "filtering/area_resample_plain.h"
+#include "filtering/resample/area_resample_plain.h"
 
 #include <benchmark/benchmark.h>
 

@@ -6,12 +6,12 @@
 //
 // PSNR: of log2(v + 1e-4 of the mean), channel by channel, against its range over the picture. The exhaustive search
 // sees every N-th block (257), as do the others where they are compared with it.
-#include "domelight/texture.h"
+#include "domelight/texture/texture.h"
 
-#include "codec/bc6h_encode.h"
+#include "texture/block/bc6h_encode.h"
 #include "io/picture_reader.h"
-#include "simd/bc6h_encode.h"
-#include "simd/instruction_set.h"
+#include "texture/block/bc6h_encode_simd.h"
+#include "base/instruction_set.h"
 
 #include <fmt/core.h>
 

@@ -1,8 +1,8 @@
 // Time to draw a direction with its density and weight, and to draw a point of each sequence; for BRDFs also the share
 // of draws that fall below the horizon, and the variance of the weight over views of every angle (0 would be a perfect
 // draw of an albedo that does not depend on the view).
-#include "domelight/brdf.h"
-#include "domelight/sequences.h"
+#include "domelight/sampling/brdf.h"
+#include "domelight/sampling/sequences.h"
 
 #include <benchmark/benchmark.h>
 

@@ -1,7 +1,7 @@
 // The BRDF table: time beside the error against a far finer quadrature.
-#include "domelight/brdf_table.h"
+#include "domelight/filtering/brdf/brdf_table.h"
 
-#include "filtering/brdf_quadrature.h"
+#include "filtering/brdf/brdf_quadrature.h"
 
 #include <benchmark/benchmark.h>
 

@@ -8,13 +8,13 @@
 // Without a file: the 4k environment under DOMELIGHT_DATA, else the built-in sky. CPU time of this thread, medians of
 // interleaved rounds.
 
-#include "domelight/distribution.h"
-#include "domelight/environment.h"
-#include "domelight/projection.h"
-#include "domelight/sky.h"
+#include "domelight/sampling/distribution/distribution.h"
+#include "domelight/environment/environment.h"
+#include "domelight/projection/projection.h"
+#include "domelight/environment/sky/sky.h"
 
 #include "measure.h"
-#include "simd/instruction_set.h"
+#include "base/instruction_set.h"
 
 #include <fmt/core.h>
 #include <time.h>

@@ -1,10 +1,10 @@
 // The exact filter's time from float rows in memory to float maps, with level 0 and irradiance: 4096 x 2048 to 1024^2
 // and 11 levels, and smaller jobs. CPU time of the whole process; rows "/AVX2" keep the kernels to AVX2.
 
-#include "domelight/prefilter.h"
-#include "domelight/sky.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/environment/sky/sky.h"
 
-#include "simd/instruction_set.h"
+#include "base/instruction_set.h"
 
 #include <benchmark/benchmark.h>
 

@@ -13,19 +13,19 @@
 //   sphere under the built-in sky. The view is the one of all comparisons: eye (0, 0.8, 4.2), target the origin, 35
 //   degrees.
 
-#include "domelight/environment.h"
-#include "domelight/metrics.h"
-#include "domelight/random.h"
-#include "domelight/render.h"
-#include "domelight/sequences.h"
-#include "domelight/sky.h"
+#include "domelight/environment/environment.h"
+#include "domelight/compare/metrics.h"
+#include "domelight/base/random.h"
+#include "domelight/render/render.h"
+#include "domelight/sampling/sequences.h"
+#include "domelight/environment/sky/sky.h"
 
-#include "io/exr_layers.h"
-#include "io/file_reader.h"
+#include "io/exr/exr_layers.h"
+#include "io/file/file_reader.h"
 #include "measure.h"
 #include "render/camera.h"
 #include "render/shapes.h"
-#include "render/surface.h"
+#include "render/surface/surface.h"
 
 #include <fmt/core.h>
 

@@ -1,7 +1,7 @@
 // Loading a million triangles with normals and texture coordinates, from .glb, .ply and .obj; and from the file to a
 // scene that rays can be traced in, with the memory that this takes.
 
-#include "domelight/render.h"
+#include "domelight/render/render.h"
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>

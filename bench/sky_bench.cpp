@@ -1,8 +1,8 @@
 // The sky: milliseconds to set it up, texels a second, and what it measures; the contact sheet's milliseconds.
-#include "domelight/preview.h"
-#include "domelight/sky.h"
+#include "domelight/preview/preview.h"
+#include "domelight/environment/sky/sky.h"
 
-#include "sky/sky_model.h"
+#include "environment/sky/sky_model.h"
 
 #include <benchmark/benchmark.h>
 

@@ -2,9 +2,9 @@
 // texture_error --encode ENCODING QUALITY PICTURE OUT.ktx2: makes one, on one thread, and says in how much CPU time.
 //
 // The figure is the PSNR of log radiance: log2(v + 1e-4 mean) of every channel, the picture's own range as the peak.
-#include "domelight/texture.h"
+#include "domelight/texture/texture.h"
 
-#include "io/file_reader.h"
+#include "io/file/file_reader.h"
 #include "io/image_reader.h"
 
 #include <fmt/core.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domelight/result.h"
+#include "domelight/base/result.h"
 
 #include <map>
 #include <memory>

@@ -1,4 +1,4 @@
-#include "domelight/bake.h"
+#include "domelight/bake/bake.h"
 
 #include "bake_report.h"
 #include "commands.h"

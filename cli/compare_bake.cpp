@@ -1,12 +1,12 @@
 #include "compare_bake.h"
 
-#include "domelight/bake.h"
-#include "domelight/bake_audit.h"
-#include "domelight/texture.h"
+#include "domelight/bake/bake.h"
+#include "domelight/compare/bake_audit.h"
+#include "domelight/texture/texture.h"
 
 #include "environment_options.h"
-#include "io/cube_texture_reader.h"
-#include "io/file_reader.h"
+#include "environment/cube_texture_reader.h"
+#include "io/file/file_reader.h"
 #include "projection/latlong_convention.h"
 
 #include <fmt/core.h>

@@ -1,7 +1,7 @@
 #pragma once
 // domelight compare --bake THEIRS --env SRC: anybody's baked specular cube against the exact filter.
 
-#include "domelight/environment.h"
+#include "domelight/environment/environment.h"
 
 #include "arguments.h"
 #include "console.h"

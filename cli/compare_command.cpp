@@ -1,4 +1,4 @@
-#include "domelight/bake.h"
+#include "domelight/bake/bake.h"
 
 #include "commands.h"
 #include "compare_bake.h"

@@ -1,8 +1,8 @@
 #include "compare_pictures.h"
 
-#include "domelight/bake.h"
-#include "domelight/image_io.h"
-#include "domelight/metrics.h"
+#include "domelight/bake/bake.h"
+#include "domelight/io/image_io.h"
+#include "domelight/compare/metrics.h"
 
 #include "io/picture_reader.h"
 #include "preview/compare_sheet.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/progress.h"
-#include "domelight/result.h"
+#include "domelight/base/progress.h"
+#include "domelight/base/result.h"
 
 #include "arguments.h"
 

@@ -1,6 +1,6 @@
-#include "domelight/bake.h"
-#include "domelight/colour.h"
-#include "domelight/convert.h"
+#include "domelight/bake/bake.h"
+#include "domelight/image/colour.h"
+#include "domelight/environment/convert.h"
 
 #include "commands.h"
 #include "console.h"

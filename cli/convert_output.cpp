@@ -1,6 +1,6 @@
 #include "convert_output.h"
 
-#include "domelight/image_io.h"
+#include "domelight/io/image_io.h"
 
 #include "arguments.h"
 #include "eight_bit.h"

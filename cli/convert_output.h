@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domelight/reproject.h"
-#include "domelight/result.h"
-#include "domelight/texture.h"
+#include "domelight/filtering/resample/reproject.h"
+#include "domelight/base/result.h"
+#include "domelight/texture/texture.h"
 
 #include <optional>
 #include <string>

@@ -1,6 +1,6 @@
 #include "eight_bit.h"
 
-#include "domelight/image_io.h"
+#include "domelight/io/image_io.h"
 
 #include <algorithm>
 #include <cmath>

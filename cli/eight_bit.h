@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/result.h"
-#include "domelight/row_source.h"
+#include "domelight/base/result.h"
+#include "domelight/image/row_source.h"
 
 #include <filesystem>
 

@@ -1,6 +1,6 @@
 #include "environment_options.h"
 
-#include "domelight/sky.h"
+#include "domelight/environment/sky/sky.h"
 
 #include <algorithm>
 #include <cmath>

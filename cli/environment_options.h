@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domelight/environment.h"
+#include "domelight/environment/environment.h"
 
 #include "arguments.h"
 

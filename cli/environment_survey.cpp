@@ -1,9 +1,9 @@
 #include "environment_survey.h"
 
-#include "domelight/area_resample.h"
-#include "domelight/colour.h"
-#include "domelight/prefilter.h"
-#include "domelight/projection.h"
+#include "domelight/filtering/resample/area_resample.h"
+#include "domelight/image/colour.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/projection/projection.h"
 
 #include "bake/tap.h"
 

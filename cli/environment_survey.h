@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domelight/environment.h"
-#include "domelight/progress.h"
-#include "domelight/vec.h"
+#include "domelight/environment/environment.h"
+#include "domelight/base/progress.h"
+#include "domelight/base/vec.h"
 
 #include <array>
 #include <string>

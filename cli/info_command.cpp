@@ -1,8 +1,8 @@
-#include "domelight/bake.h"
+#include "domelight/bake/bake.h"
 
 #include "commands.h"
 #include "console.h"
-#include "core/sha256.h"
+#include "base/sha256.h"
 #include "environment_options.h"
 #include "environment_survey.h"
 

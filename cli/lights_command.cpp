@@ -1,14 +1,14 @@
-#include "domelight/area_resample.h"
-#include "domelight/bake.h"
-#include "domelight/image_io.h"
-#include "domelight/light_extraction.h"
+#include "domelight/filtering/resample/area_resample.h"
+#include "domelight/bake/bake.h"
+#include "domelight/io/image_io.h"
+#include "domelight/sampling/light_extraction.h"
 
 #include "bake/staging.h"
 #include "commands.h"
 #include "console.h"
-#include "core/sha256.h"
+#include "base/sha256.h"
 #include "environment_options.h"
-#include "io/gltf_lights_writer.h"
+#include "io/gltf/gltf_lights_writer.h"
 #include "preview/lights_sheet.h"
 
 #include <fmt/core.h>

@@ -1,5 +1,5 @@
-#include "domelight/bake.h"
-#include "domelight/image_io.h"
+#include "domelight/bake/bake.h"
+#include "domelight/io/image_io.h"
 
 #include "arguments.h"
 #include "commands.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/render.h"
-#include "domelight/shading.h"
+#include "domelight/render/render.h"
+#include "domelight/render/shading/shading.h"
 
 #include "render_options.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/environment.h"
-#include "domelight/render.h"
+#include "domelight/environment/environment.h"
+#include "domelight/render/render.h"
 
 #include "arguments.h"
 #include "console.h"

@@ -1,7 +1,7 @@
 #include "render_outputs.h"
 
-#include "domelight/colour.h"
-#include "domelight/image_io.h"
+#include "domelight/image/colour.h"
+#include "domelight/io/image_io.h"
 
 #include "preview/tonemap.h"
 

@@ -1,8 +1,8 @@
 #include "render_study.h"
 
-#include "domelight/metrics.h"
-#include "domelight/random.h"
-#include "domelight/shading.h"
+#include "domelight/compare/metrics.h"
+#include "domelight/base/random.h"
+#include "domelight/render/shading/shading.h"
 
 #include <fmt/core.h>
 

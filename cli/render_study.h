@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domelight/environment_sampler.h"
-#include "domelight/progress.h"
-#include "domelight/render.h"
+#include "domelight/sampling/environment_sampler.h"
+#include "domelight/base/progress.h"
+#include "domelight/render/render.h"
 
 #include <optional>
 #include <string>

@@ -1,7 +1,7 @@
 #include "render_study_command.h"
 
-#include "domelight/bake.h"
-#include "domelight/image_io.h"
+#include "domelight/bake/bake.h"
+#include "domelight/io/image_io.h"
 
 #include "interruption.h"
 #include "render_study_pictures.h"

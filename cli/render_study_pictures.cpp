@@ -1,8 +1,8 @@
 #include "render_study_pictures.h"
 
-#include "domelight/colour.h"
+#include "domelight/image/colour.h"
 
-#include "image/draw.h"
+#include "preview/draw.h"
 #include "preview/colour_map.h"
 #include "preview/compare_sheet.h"
 #include "preview/plot.h"

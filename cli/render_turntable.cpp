@@ -1,12 +1,12 @@
 #include "render_turntable.h"
 
-#include "domelight/animation.h"
-#include "domelight/bake.h"
-#include "domelight/image_io.h"
+#include "domelight/io/picture/animation.h"
+#include "domelight/bake/bake.h"
+#include "domelight/io/image_io.h"
 
 #include "interruption.h"
-#include "io/file_reader.h"
-#include "io/texture_image.h"
+#include "io/file/file_reader.h"
+#include "texture/container/texture_image.h"
 #include "render_outputs.h"
 
 #include <fmt/core.h>

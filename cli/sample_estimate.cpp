@@ -1,7 +1,7 @@
 #include "sample_estimate.h"
 
-#include "domelight/colour.h"
-#include "domelight/image_io.h"
+#include "domelight/image/colour.h"
+#include "domelight/io/image_io.h"
 
 #include "preview/plot.h"
 #include "sample_study.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/environment_sampler.h"
-#include "domelight/progress.h"
+#include "domelight/sampling/environment_sampler.h"
+#include "domelight/base/progress.h"
 
 #include "sample_options.h"
 

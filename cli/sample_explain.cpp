@@ -1,7 +1,7 @@
 #include "sample_explain.h"
 
-#include "domelight/colour.h"
-#include "domelight/image_io.h"
+#include "domelight/image/colour.h"
+#include "domelight/io/image_io.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
 #include "sample_explanation.h"
 
-#include "domelight/distribution_guided.h"
+#include "domelight/sampling/distribution/guided.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domelight/environment_sampler.h"
+#include "domelight/sampling/environment_sampler.h"
 
 #include <array>
 #include <string>

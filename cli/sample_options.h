@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domelight/environment.h"
-#include "domelight/environment_sampler.h"
-#include "domelight/sequences.h"
+#include "domelight/environment/environment.h"
+#include "domelight/sampling/environment_sampler.h"
+#include "domelight/sampling/sequences.h"
 
 #include "console.h"
 

@@ -1,8 +1,8 @@
 #include "sample_output.h"
 
-#include "domelight/bake.h"
-#include "domelight/image_io.h"
-#include "domelight/texture.h"
+#include "domelight/bake/bake.h"
+#include "domelight/io/image_io.h"
+#include "domelight/texture/texture.h"
 
 #include "bake/staging.h"
 

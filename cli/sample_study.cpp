@@ -1,9 +1,9 @@
 #include "sample_study.h"
 
-#include "domelight/colour.h"
-#include "domelight/parallel.h"
-#include "domelight/random.h"
-#include "domelight/reference.h"
+#include "domelight/image/colour.h"
+#include "domelight/base/parallel.h"
+#include "domelight/base/random.h"
+#include "domelight/filtering/reference.h"
 
 #include <fmt/core.h>
 

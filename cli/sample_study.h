@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/progress.h"
-#include "domelight/reflection_estimate.h"
+#include "domelight/base/progress.h"
+#include "domelight/sampling/reflection_estimate.h"
 
 #include "sample_options.h"
 

@@ -1,6 +1,6 @@
-#include "domelight/bake.h"
-#include "domelight/image_io.h"
-#include "domelight/sky.h"
+#include "domelight/bake/bake.h"
+#include "domelight/io/image_io.h"
+#include "domelight/environment/sky/sky.h"
 
 #include "commands.h"
 #include "console.h"

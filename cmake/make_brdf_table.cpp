@@ -1,6 +1,6 @@
 // Writes the default BRDF table as a C++ source: make_brdf_table OUT.cpp. Runs once, while the library is being built.
-#include "filtering/brdf_embedded.h"
-#include "filtering/brdf_quadrature.h"
+#include "filtering/brdf/brdf_embedded.h"
+#include "filtering/brdf/brdf_quadrature.h"
 
 #include <bit>
 #include <cstdio>
@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
         return 2;
     }
     std::fprintf(out,
-                 "#include \"filtering/brdf_embedded.h\"\n\nconst std::uint32_t domelight::k_brdf_embedded[] = {\n");
+                 "#include \"filtering/brdf/brdf_embedded.h\"\n\nconst std::uint32_t domelight::k_brdf_embedded[] = {\n");
     for (int y = 0; y < k_brdf_embedded_size; ++y)
         for (int x = 0; x < k_brdf_embedded_size; ++x) {
             const double NdotV = (x + 0.5) / k_brdf_embedded_size, roughness = (y + 0.5) / k_brdf_embedded_size,

@@ -1,5 +1,5 @@
 // PlayCanvas atlas reader on arbitrary bytes.
-#include "io/playcanvas_atlas.h"
+#include "texture/container/playcanvas_atlas.h"
 
 #include <cstddef>
 #include <cstdint>

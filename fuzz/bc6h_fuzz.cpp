@@ -1,6 +1,6 @@
 // BC6H blocks of arbitrary bytes, and the encoder on what they decode to.
-#include "codec/bc6h.h"
-#include "simd/bc6h_encode.h"
+#include "texture/block/bc6h.h"
+#include "texture/block/bc6h_encode_simd.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,5 @@
 // DDS reader on arbitrary bytes.
-#include "io/texture_reading.h"
+#include "texture/container/texture_reading.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // Babylon .env reader on arbitrary bytes.
-#include "io/env.h"
+#include "texture/container/env.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -3,7 +3,7 @@
 
 #include "image/repair.h"
 #include "io/image_reader.h"
-#include "io/radiance_reader.h"
+#include "io/hdr/radiance_reader.h"
 
 #include <cmath>
 #include <cstdint>

@@ -1,8 +1,8 @@
 #pragma once
 // What the fuzz targets of the scene readers share.
 
-#include "io/mesh_repair.h"
-#include "io/scene_readers.h"
+#include "scene/mesh/mesh_repair.h"
+#include "scene/scene_readers.h"
 
 #include <cmath>
 #include <cstdlib>

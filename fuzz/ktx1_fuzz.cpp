@@ -1,5 +1,5 @@
 // KTX 1 reader on arbitrary bytes.
-#include "io/texture_reading.h"
+#include "texture/container/texture_reading.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,9 +1,9 @@
 #pragma once
 // How far a filtered map is from the truth: what the tests assert and `accuracy_bench` prints.
 
-#include "domelight/prefilter.h"
-#include "domelight/projection.h"
-#include "domelight/reference.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/projection/projection.h"
+#include "domelight/filtering/reference.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #pragma once
 // An environment that says of every direction which one it is: radiance 2 + (x, y, z).
 
-#include "domelight/environment.h"
-#include "domelight/projection.h"
+#include "domelight/environment/environment.h"
+#include "domelight/projection/projection.h"
 
 #include <algorithm>
 #include <memory>

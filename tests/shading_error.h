@@ -2,11 +2,11 @@
 // How far the real-time specular lobes are from the reflection integral: what the tests assert and `stretched_bench`
 // prints.
 
-#include "domelight/parallel.h"
-#include "domelight/reflection_estimate.h"
-#include "domelight/shading.h"
+#include "domelight/base/parallel.h"
+#include "domelight/sampling/reflection_estimate.h"
+#include "domelight/render/shading/shading.h"
 
-#include "render/shading_models.h"
+#include "render/shading/shading_models.h"
 
 #include <cmath>
 #include <vector>

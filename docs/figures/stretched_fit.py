@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Fits src/render/stretched_fit.cpp: where nine lookups of the prefiltered chain must lie to look like the true lobe.
+"""Fits src/render/shading/stretched_fit.cpp: where nine lookups of the prefiltered chain must lie to look like the true lobe.
 
     stretched_fit.py [--steps N] [--from-scratch] [--out FILE]
 
@@ -14,7 +14,7 @@ import re
 import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
-SOURCE = HERE.parents[1] / "src/render/stretched_fit.cpp"
+SOURCE = HERE.parents[1] / "src/render/shading/stretched_fit.cpp"
 TAPS, COSINES, ROUGHNESSES = 9, 4, 5
 LEVELS, DEGREE = 7, 700  # of the generic chain: GGX of roughness l / 6; harmonics
 F0 = (0.04, 1.0)
@@ -287,7 +287,7 @@ def read():
 def write(p, file):
     number = lambda v: (lambda s: s + "f" if "." in s or "e" in s else s + ".f")(f"{v:.5g}")
     taps = ",\n".join("    {" + ",\n     ".join("{" + ", ".join(number(v) for v in p[:, t, k]) + "}" for k in range(4)) + "}" for t in range(TAPS))
-    file.write_text("// Written by docs/figures/stretched_fit.py: not to be edited by hand.\n\n#include \"render/stretched_lobe.h\"\n\nnamespace domelight {\n\n// clang-format off\n"
+    file.write_text("// Written by docs/figures/stretched_fit.py: not to be edited by hand.\n\n#include \"render/shading/stretched_lobe.h\"\n\nnamespace domelight {\n\n// clang-format off\n"
                     "const float k_stretched_fit[k_stretched_taps][4][k_stretched_cosines * k_stretched_roughnesses] = {\n" + taps
                     + "};\n// clang-format on\n\n}  // namespace domelight\n")
 

@@ -1,7 +1,7 @@
-#include "domelight/bake.h"
+#include "domelight/bake/bake.h"
 
-#include "domelight/image_io.h"
-#include "domelight/parallel.h"
+#include "domelight/io/image_io.h"
+#include "domelight/base/parallel.h"
 
 #include "bake/filter_job.h"
 #include "bake/manifest.h"
@@ -11,7 +11,7 @@
 #include "bake/preview_sheet.h"
 #include "bake/sh_report.h"
 #include "bake/staging.h"
-#include "core/sha256.h"
+#include "base/sha256.h"
 
 #include <fmt/core.h>
 

@@ -1,12 +1,12 @@
 #include "bake/engine_files.h"
 
-#include "domelight/babylon_env.h"
-#include "domelight/image_io.h"
-#include "domelight/reproject.h"
+#include "domelight/texture/container/babylon_env.h"
+#include "domelight/io/image_io.h"
+#include "domelight/filtering/resample/reproject.h"
 
 #include "bake/mirror.h"
-#include "io/gltf_image_light.h"
-#include "io/playcanvas_atlas.h"
+#include "io/gltf/gltf_image_light.h"
+#include "texture/container/playcanvas_atlas.h"
 
 #include <fmt/core.h>
 

@@ -1,9 +1,9 @@
 #include "bake/filter_job.h"
 
-#include "domelight/area_resample.h"
+#include "domelight/filtering/resample/area_resample.h"
 
 #include "bake/tap.h"
-#include "core/sha256.h"
+#include "base/sha256.h"
 
 #include <algorithm>
 

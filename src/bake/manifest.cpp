@@ -1,9 +1,9 @@
 #include "bake/manifest.h"
 
-#include "domelight/projections.h"
+#include "domelight/projection/projections.h"
 
 #include "bake/panorama.h"
-#include "core/sha256.h"
+#include "base/sha256.h"
 
 #include <fmt/core.h>
 

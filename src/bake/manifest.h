@@ -1,7 +1,7 @@
 #pragma once
 // The JSON documents that a bake writes and reads back.
 
-#include "domelight/bake.h"
+#include "domelight/bake/bake.h"
 
 #include "bake/plan.h"
 

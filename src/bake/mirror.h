@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domelight/target.h"
+#include "domelight/engines/engine.h"
 
 #include "image/mirror_cube.h"
 

@@ -1,12 +1,12 @@
 #include "bake/outputs.h"
 
-#include "domelight/image_io.h"
+#include "domelight/io/image_io.h"
 
 #include "bake/engine_files.h"
 #include "bake/mirror.h"
-#include "codec/chain_encoder.h"
-#include "core/sha256.h"
-#include "io/texture_stream.h"
+#include "texture/chain_encoder.h"
+#include "base/sha256.h"
+#include "texture/container/texture_stream.h"
 
 #include <fmt/core.h>
 

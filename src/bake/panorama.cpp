@@ -1,7 +1,7 @@
 #include "bake/panorama.h"
 
-#include "domelight/projections.h"
-#include "domelight/reproject.h"
+#include "domelight/projection/projections.h"
+#include "domelight/filtering/resample/reproject.h"
 
 #include "bake/mirror.h"
 

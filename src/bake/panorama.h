@@ -1,8 +1,8 @@
 #pragma once
 // The environment as one image, for consumers that filter or sample it themselves.
 
-#include "domelight/image.h"
-#include "domelight/result.h"
+#include "domelight/image/image.h"
+#include "domelight/base/result.h"
 
 #include <string>
 

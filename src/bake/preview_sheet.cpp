@@ -1,6 +1,6 @@
 #include "bake/preview_sheet.h"
 
-#include "domelight/preview.h"
+#include "domelight/preview/preview.h"
 
 #include <fmt/core.h>
 

@@ -1,7 +1,7 @@
 #include "bake/sh_report.h"
 
-#include "domelight/parallel.h"
-#include "domelight/projection.h"
+#include "domelight/base/parallel.h"
+#include "domelight/projection/projection.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domelight/bake.h"
+#include "domelight/bake/bake.h"
 
 #include <span>
 #include <string>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domelight/result.h"
+#include "domelight/base/result.h"
 
-#include "io/temporary_files.h"
+#include "io/file/temporary_files.h"
 
 #include <filesystem>
 #include <memory>

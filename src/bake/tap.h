@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domelight/row_source.h"
+#include "domelight/image/row_source.h"
 
 #include <functional>
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domelight/prefilter.h"
+#include "domelight/filtering/prefilter.h"
 
-#include "filtering/ring_grid.h"
+#include "filtering/harmonic/ring_grid.h"
 
 #include <vector>
 

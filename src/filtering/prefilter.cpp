@@ -1,15 +1,15 @@
-#include "domelight/prefilter.h"
+#include "domelight/filtering/prefilter.h"
 
-#include "domelight/area_resample.h"
-#include "domelight/parallel.h"
+#include "domelight/filtering/resample/area_resample.h"
+#include "domelight/base/parallel.h"
 
-#include "filtering/bright_texels.h"
-#include "filtering/cube_analysis.h"
+#include "filtering/harmonic/bright_texels.h"
+#include "filtering/harmonic/cube_analysis.h"
 #include "filtering/filter_plan.h"
-#include "filtering/residual_kernel.h"
-#include "filtering/sh_analysis.h"
-#include "filtering/sh_synthesis.h"
-#include "filtering/spectrum_evaluate.h"
+#include "filtering/kernel/residual_kernel.h"
+#include "filtering/harmonic/sh_analysis.h"
+#include "filtering/harmonic/sh_synthesis.h"
+#include "filtering/harmonic/spectrum_evaluate.h"
 
 #include <cmath>
 #include <memory>

@@ -1,6 +1,6 @@
 #include "image/bordered_cube.h"
 
-#include "domelight/projection.h"
+#include "domelight/projection/projection.h"
 
 #include <algorithm>
 

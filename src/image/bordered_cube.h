@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domelight/image.h"
+#include "domelight/image/image.h"
 
 #include <utility>
 #include <vector>

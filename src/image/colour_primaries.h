@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domelight/vec.h"
+#include "domelight/base/vec.h"
 
 #include <optional>
 

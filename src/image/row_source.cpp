@@ -1,4 +1,4 @@
-#include "domelight/row_source.h"
+#include "domelight/image/row_source.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "domelight/image.h"
-#include "domelight/result.h"
-#include "domelight/vec.h"
+#include "domelight/image/image.h"
+#include "domelight/base/result.h"
+#include "domelight/base/vec.h"
 
-#include "io/file_reader.h"
+#include "io/file/file_reader.h"
 
 #include <cstdint>
 #include <memory>

@@ -1,10 +1,10 @@
 #include "io/picture_reader.h"
 
-#include "domelight/parallel.h"
-#include "domelight/texture.h"
+#include "domelight/base/parallel.h"
+#include "domelight/texture/texture.h"
 
-#include "io/cube_texture_reader.h"
-#include "io/exr_layers.h"
+#include "environment/cube_texture_reader.h"
+#include "io/exr/exr_layers.h"
 #include "io/image_reader.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/image.h"
-#include "domelight/result.h"
+#include "domelight/image/image.h"
+#include "domelight/base/result.h"
 
 #include <filesystem>
 #include <string>

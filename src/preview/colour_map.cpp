@@ -1,6 +1,6 @@
 #include "preview/colour_map.h"
 
-#include "domelight/vec.h"
+#include "domelight/base/vec.h"
 
 #include "preview/tonemap.h"
 

@@ -1,8 +1,8 @@
 #include "preview/compare_sheet.h"
 
-#include "domelight/parallel.h"
+#include "domelight/base/parallel.h"
 
-#include "image/draw.h"
+#include "preview/draw.h"
 #include "preview/colour_map.h"
 #include "preview/tonemap.h"
 

@@ -1,9 +1,9 @@
 #include "preview/lights_sheet.h"
 
-#include "domelight/parallel.h"
-#include "domelight/projection.h"
+#include "domelight/base/parallel.h"
+#include "domelight/projection/projection.h"
 
-#include "image/draw.h"
+#include "preview/draw.h"
 #include "preview/agx_display.h"
 #include "preview/preview_map.h"
 #include "preview/tonemap.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domelight/light_extraction.h"
+#include "domelight/sampling/light_extraction.h"
 
 #include <cstdint>
 #include <span>

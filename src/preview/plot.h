@@ -1,6 +1,6 @@
 #pragma once
 
-#include "image/draw.h"
+#include "preview/draw.h"
 
 #include <array>
 #include <optional>

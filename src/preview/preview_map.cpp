@@ -1,6 +1,6 @@
 #include "preview/preview_map.h"
 
-#include "domelight/projection.h"
+#include "domelight/projection/projection.h"
 
 #include <algorithm>
 #include <cmath>

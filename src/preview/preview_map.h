@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domelight/image.h"
-#include "domelight/prefilter.h"
-#include "domelight/vec.h"
+#include "domelight/image/image.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/base/vec.h"
 
 #include "preview/texel4.h"
 

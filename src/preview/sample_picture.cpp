@@ -1,7 +1,7 @@
 #include "preview/sample_picture.h"
 
-#include "domelight/parallel.h"
-#include "domelight/projection.h"
+#include "domelight/base/parallel.h"
+#include "domelight/projection/projection.h"
 
 #include "preview/preview_map.h"
 #include "preview/strokes.h"

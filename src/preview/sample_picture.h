@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domelight/environment_sampler.h"
+#include "domelight/sampling/environment_sampler.h"
 
-#include "image/draw.h"
+#include "preview/draw.h"
 
 #include <cstdint>
 #include <span>

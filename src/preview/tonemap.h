@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domelight/colour.h"
-#include "domelight/image.h"
-#include "domelight/vec.h"
+#include "domelight/image/colour.h"
+#include "domelight/image/image.h"
+#include "domelight/base/vec.h"
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "projection/disc_solid_angle.h"
 
-#include "math/gauss_legendre.h"
+#include "base/gauss_legendre.h"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domelight/projections.h"
+#include "domelight/projection/projections.h"
 
 #include <functional>
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domelight/projections.h"
-#include "domelight/result.h"
-#include "domelight/vec.h"
+#include "domelight/projection/projections.h"
+#include "domelight/base/result.h"
+#include "domelight/base/vec.h"
 
 #include <string>
 

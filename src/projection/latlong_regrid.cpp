@@ -1,6 +1,6 @@
 #include "projection/latlong_regrid.h"
 
-#include "domelight/image.h"
+#include "domelight/image/image.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
-// The shapes behind domelight/projections.h, one file each.
+// The shapes behind domelight/projection/projections.h, one file each.
 
-#include "domelight/projections.h"
+#include "domelight/projection/projections.h"
 
 namespace domelight {
 

@@ -1,7 +1,7 @@
 #pragma once
 // What shows where no surface is.
 
-#include "domelight/shading.h"
+#include "domelight/render/shading/shading.h"
 
 namespace domelight {
 

@@ -1,8 +1,8 @@
 #pragma once
 // The environment as reflection mapping binds it: resampled into one texture, looked up bilinearly.
 
-#include "domelight/projection.h"
-#include "domelight/shading.h"
+#include "domelight/projection/projection.h"
+#include "domelight/render/shading/shading.h"
 
 #include "image/bordered_cube.h"
 

@@ -1,6 +1,6 @@
 #include "render/film.h"
 
-#include "domelight/colour.h"
+#include "domelight/image/colour.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
 #include "render/layered_bsdf.h"
 
-#include "domelight/colour.h"
+#include "domelight/image/colour.h"
 
 #include <algorithm>
 #include <cmath>

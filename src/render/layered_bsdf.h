@@ -2,11 +2,11 @@
 // The lobes that few materials have, over and beside the base of bsdf.h: KHR_materials_anisotropy, _transmission and
 // _volume change the base; _sheen lies on it, _clearcoat on both.
 
-#include "domelight/frame.h"
+#include "domelight/base/frame.h"
 
-#include "render/bsdf.h"
-#include "render/lobe_interface.h"
-#include "render/lobe_sheen.h"
+#include "render/surface/bsdf.h"
+#include "render/surface/lobe_interface.h"
+#include "render/surface/lobe_sheen.h"
 
 namespace domelight {
 

@@ -1,5 +1,5 @@
-#include "domelight/render.h"
-#include "domelight/shading.h"
+#include "domelight/render/render.h"
+#include "domelight/render/shading/shading.h"
 
 #include <fmt/core.h>
 

@@ -1,11 +1,11 @@
 #pragma once
 // A path tracer's samples on their way, and the room that a batch of them needs.
 
-#include "domelight/environment_sampler.h"
-#include "domelight/sequences.h"
+#include "domelight/sampling/environment_sampler.h"
+#include "domelight/sampling/sequences.h"
 
 #include "render/film.h"
-#include "render/surface.h"
+#include "render/surface/surface.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include "render/camera.h"
 #include "render/path.h"
 #include "render/punctual.h"
-#include "render/surface_lobes.h"
+#include "render/surface/surface_lobes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domelight/render.h"
+#include "domelight/render/render.h"
 
 #include "render/film.h"
 

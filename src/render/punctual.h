@@ -1,7 +1,7 @@
 #pragma once
 // A light of the scene's own, as a point receives it.
 
-#include "domelight/scene.h"
+#include "domelight/scene/scene.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 // Embree, behind a few functions.
 
-#include "domelight/render.h"
+#include "domelight/render/render.h"
 
 #include <embree3/rtcore.h>
 

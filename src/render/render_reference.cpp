@@ -1,6 +1,6 @@
 // The reference picture: how many samples each pixel gets, in rounds.
 
-#include "domelight/parallel.h"
+#include "domelight/base/parallel.h"
 
 #include "render/background.h"
 #include "render/film.h"

@@ -1,14 +1,14 @@
 // The ground of a photograph under a scene that is not in it: only the shadow that the scene throws there is drawn.
 
-#include "domelight/colour.h"
-#include "domelight/parallel.h"
-#include "domelight/sequences.h"
-#include "domelight/warps.h"
+#include "domelight/image/colour.h"
+#include "domelight/base/parallel.h"
+#include "domelight/sampling/sequences.h"
+#include "domelight/sampling/warps.h"
 
 #include "render/background.h"
 #include "render/camera.h"
 #include "render/punctual.h"
-#include "render/surface.h"
+#include "render/surface/surface.h"
 
 #include <atomic>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domelight/scene.h"
+#include "domelight/scene/scene.h"
 
 #include <array>
 

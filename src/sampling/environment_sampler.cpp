@@ -1,11 +1,11 @@
-#include "domelight/environment_sampler.h"
+#include "domelight/sampling/environment_sampler.h"
 
-#include "domelight/area_resample.h"
-#include "domelight/parallel.h"
-#include "domelight/projection.h"
+#include "domelight/filtering/resample/area_resample.h"
+#include "domelight/base/parallel.h"
+#include "domelight/projection/projection.h"
 
-#include "distribution/texel_float.h"
-#include "simd/light_samples.h"
+#include "sampling/distribution/texel_float.h"
+#include "sampling/light_samples.h"
 
 #include <fmt/core.h>
 

@@ -1,7 +1,7 @@
-#include "domelight/light_extraction.h"
+#include "domelight/sampling/light_extraction.h"
 
-#include "domelight/colour.h"
-#include "domelight/parallel.h"
+#include "domelight/image/colour.h"
+#include "domelight/base/parallel.h"
 
 #include "sampling/bright_regions.h"
 #include "sampling/harmonic_fill.h"

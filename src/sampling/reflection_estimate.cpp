@@ -1,7 +1,7 @@
-#include "domelight/reflection_estimate.h"
+#include "domelight/sampling/reflection_estimate.h"
 
-#include "domelight/product_sampling.h"
-#include "domelight/warps.h"
+#include "domelight/sampling/product_sampling.h"
+#include "domelight/sampling/warps.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "domelight/sequences.h"
+#include "domelight/sampling/sequences.h"
 
 namespace domelight {
 namespace {

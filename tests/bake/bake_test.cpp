@@ -1,12 +1,12 @@
-#include "domelight/bake.h"
+#include "domelight/bake/bake.h"
 
-#include "domelight/image_io.h"
-#include "domelight/projection.h"
+#include "domelight/io/image_io.h"
+#include "domelight/projection/projection.h"
 
 #include "bake/mirror.h"
 #include "bake/sh_report.h"
 #include "bake/staging.h"
-#include "core/sha256.h"
+#include "base/sha256.h"
 #include "test.h"
 
 #include <fstream>

@@ -1,8 +1,8 @@
 #include "bake/panorama.h"
 
-#include "domelight/bake.h"
-#include "domelight/projections.h"
-#include "domelight/texture.h"
+#include "domelight/bake/bake.h"
+#include "domelight/projection/projections.h"
+#include "domelight/texture/texture.h"
 
 #include "oriented.h"
 #include "test.h"

@@ -1,10 +1,10 @@
-#include "domelight/area_resample.h"
+#include "domelight/filtering/resample/area_resample.h"
 
-#include "domelight/projection.h"
+#include "domelight/projection/projection.h"
 
-#include "filtering/area_resample_cube.h"
-#include "filtering/area_resample_plain.h"
-#include "simd/instruction_set.h"
+#include "filtering/resample/area_resample_cube.h"
+#include "filtering/resample/area_resample_plain.h"
+#include "base/instruction_set.h"
 #include "test.h"
 
 #include <hwy/targets.h>

@@ -1,9 +1,9 @@
-#include "domelight/brdf_table.h"
+#include "domelight/filtering/brdf/brdf_table.h"
 
-#include "domelight/vec.h"
+#include "domelight/base/vec.h"
 
-#include "filtering/brdf_quadrature.h"
-#include "math/gauss_legendre.h"
+#include "filtering/brdf/brdf_quadrature.h"
+#include "base/gauss_legendre.h"
 #include "test.h"
 
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "filtering/bright_split.h"
+#include "filtering/harmonic/bright_split.h"
 
-#include "domelight/projection.h"
+#include "domelight/projection/projection.h"
 
-#include "filtering/tent_nodes.h"
+#include "filtering/harmonic/tent_nodes.h"
 #include "test.h"
 
 #include <algorithm>

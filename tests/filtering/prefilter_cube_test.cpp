@@ -1,8 +1,8 @@
-#include "domelight/prefilter.h"
-#include "domelight/projection.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/projection/projection.h"
 
 #include "image/bordered_cube.h"
-#include "math/gauss_legendre.h"
+#include "base/gauss_legendre.h"
 #include "test.h"
 
 #include <random>

@@ -1,5 +1,5 @@
-#include "domelight/prefilter.h"
-#include "domelight/projection.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/projection/projection.h"
 
 #include "test.h"
 

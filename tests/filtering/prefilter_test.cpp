@@ -1,15 +1,15 @@
-#include "domelight/prefilter.h"
+#include "domelight/filtering/prefilter.h"
 
-#include "domelight/environment.h"
-#include "domelight/spherical_harmonics.h"
+#include "domelight/environment/environment.h"
+#include "domelight/filtering/harmonic/spherical_harmonics.h"
 
 #include "accuracy.h"
-#include "filtering/ring_grid.h"
-#include "filtering/sh_analysis.h"
-#include "filtering/sh_synthesis.h"
-#include "filtering/spectrum_evaluate.h"
-#include "filtering/tent_nodes.h"
-#include "simd/instruction_set.h"
+#include "filtering/harmonic/ring_grid.h"
+#include "filtering/harmonic/sh_analysis.h"
+#include "filtering/harmonic/sh_synthesis.h"
+#include "filtering/harmonic/spectrum_evaluate.h"
+#include "filtering/harmonic/tent_nodes.h"
+#include "base/instruction_set.h"
 #include "test.h"
 
 using namespace domelight;

@@ -1,9 +1,9 @@
-#include "domelight/reference.h"
+#include "domelight/filtering/reference.h"
 
-#include "domelight/projection.h"
-#include "domelight/spherical_harmonics.h"
+#include "domelight/projection/projection.h"
+#include "domelight/filtering/harmonic/spherical_harmonics.h"
 
-#include "filtering/reference_source.h"
+#include "filtering/reference/source.h"
 #include "test.h"
 
 #include <cmath>

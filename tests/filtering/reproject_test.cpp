@@ -1,8 +1,8 @@
-#include "domelight/reproject.h"
+#include "domelight/filtering/resample/reproject.h"
 
-#include "domelight/area_resample.h"
+#include "domelight/filtering/resample/area_resample.h"
 
-#include "filtering/area_resample_plain.h"
+#include "filtering/resample/area_resample_plain.h"
 #include "test.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
-#include "domelight/zonal_kernel.h"
+#include "domelight/filtering/kernel/zonal_kernel.h"
 
-#include "domelight/vec.h"
+#include "domelight/base/vec.h"
 
-#include "math/gauss_legendre.h"
+#include "base/gauss_legendre.h"
 #include "test.h"
 
 #include <cmath>

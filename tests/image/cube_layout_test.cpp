@@ -1,5 +1,5 @@
-#include "domelight/image_io.h"
-#include "domelight/projection.h"
+#include "domelight/io/image_io.h"
+#include "domelight/projection/projection.h"
 
 #include "test.h"
 

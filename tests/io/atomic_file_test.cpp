@@ -1,10 +1,10 @@
-#include "domelight/image_io.h"
-#include "domelight/texture.h"
+#include "domelight/io/image_io.h"
+#include "domelight/texture/texture.h"
 
-#include "codec/chain_encoder.h"
+#include "texture/chain_encoder.h"
 #include "io/io_helpers.h"
-#include "io/output_file.h"
-#include "io/texture_stream.h"
+#include "io/file/output_file.h"
+#include "texture/container/texture_stream.h"
 #include "test.h"
 
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-#include "io/exr_layers.h"
+#include "io/exr/exr_layers.h"
 
 #include "io/picture_reader.h"
 #include "test.h"

@@ -1,6 +1,6 @@
-#include "domelight/bake.h"
-#include "domelight/image_io.h"
-#include "domelight/projections.h"
+#include "domelight/bake/bake.h"
+#include "domelight/io/image_io.h"
+#include "domelight/projection/projections.h"
 
 #include "oriented.h"
 #include "test.h"

@@ -1,7 +1,7 @@
-#include "domelight/image_io.h"
-#include "domelight/projection.h"
+#include "domelight/io/image_io.h"
+#include "domelight/projection/projection.h"
 
-#include "codec/half.h"
+#include "texture/texel/half.h"
 #include "io/io_helpers.h"
 #include "test.h"
 

@@ -1,7 +1,7 @@
-#include "io/gltf_image_light.h"
+#include "io/gltf/gltf_image_light.h"
 
-#include "domelight/bake.h"
-#include "domelight/spherical_harmonics.h"
+#include "domelight/bake/bake.h"
+#include "domelight/filtering/harmonic/spherical_harmonics.h"
 
 #include "io/io_helpers.h"
 #include "oriented.h"

@@ -1,6 +1,6 @@
-#include "io/hdr_scanline_reader.h"
+#include "io/hdr/hdr_scanline_reader.h"
 #include "io/reader_samples.h"
-#include "simd/rgbe_decode.h"
+#include "texture/texel/rgbe_decode.h"
 #include "test.h"
 
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "domelight/image_io.h"
+#include "domelight/io/image_io.h"
 
-#include "codec/rgbe.h"
+#include "texture/texel/rgbe.h"
 #include "io/io_helpers.h"
 #include "test.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 // Files as bytes, and textures to write.
 
-#include "domelight/texture.h"
+#include "domelight/texture/texture.h"
 
 #include <filesystem>
 #include <fstream>

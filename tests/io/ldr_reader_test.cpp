@@ -1,4 +1,4 @@
-#include "io/ldr_reader.h"
+#include "io/picture/ldr_reader.h"
 
 #include "io/reader_samples.h"
 #include "test.h"

@@ -1,10 +1,10 @@
 // uastc_samples OUT.ktx2 OUT.halves: a texture of random UASTC HDR blocks of all modes, and what our decoder makes of
 // it (RGB halves, row by row). tests/oracles/run_oracles.py has the reference decoder read the first.
-#include "codec/uastc_samples.h"
+#include "texture/uastc_samples.h"
 
-#include "domelight/texture.h"
+#include "domelight/texture/texture.h"
 
-#include "codec/astc_block.h"
+#include "texture/block/astc_block.h"
 
 #include <cstdio>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "image/draw.h"
+#include "preview/draw.h"
 
 #include "test.h"
 

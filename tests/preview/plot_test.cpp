@@ -1,6 +1,6 @@
 #include "preview/plot.h"
 
-#include "domelight/vec.h"
+#include "domelight/base/vec.h"
 
 #include "preview/strokes.h"
 #include "test.h"

@@ -1,6 +1,6 @@
 #include "preview/tonemap.h"
 
-#include "domelight/projection.h"
+#include "domelight/projection/projection.h"
 
 #include "preview/agx_display.h"
 #include "test.h"

@@ -1,4 +1,4 @@
-#include "domelight/projection.h"
+#include "domelight/projection/projection.h"
 
 #include "test.h"
 

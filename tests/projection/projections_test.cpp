@@ -1,4 +1,4 @@
-#include "domelight/projections.h"
+#include "domelight/projection/projections.h"
 
 #include "test.h"
 

@@ -1,14 +1,14 @@
 // glTF's layers: what they draw against the densities that they state, their energy, their symmetries, and pictures
 // whose values are known.
-#include "domelight/render.h"
-#include "domelight/sequences.h"
-#include "domelight/shading.h"
-#include "domelight/sky.h"
+#include "domelight/render/render.h"
+#include "domelight/sampling/sequences.h"
+#include "domelight/render/shading/shading.h"
+#include "domelight/environment/sky/sky.h"
 
-#include "distribution/chi_square.h"
-#include "render/lobe_albedo.h"
+#include "sampling/distribution/chi_square.h"
+#include "render/surface/lobe_albedo.h"
 #include "render/shapes.h"
-#include "render/surface.h"
+#include "render/surface/surface.h"
 #include "sampling/hemisphere_quadrature.h"
 #include "test.h"
 

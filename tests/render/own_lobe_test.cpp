@@ -2,10 +2,10 @@
 // D G2 / 4 (F = 1), a function of the angle to the normal alone, so that the picture of a distant mirror-wise lit patch
 // is an integral that can be written down.
 
-#include "domelight/microfacet.h"
-#include "domelight/projection.h"
-#include "domelight/render.h"
-#include "domelight/sky.h"
+#include "domelight/sampling/microfacet.h"
+#include "domelight/projection/projection.h"
+#include "domelight/render/render.h"
+#include "domelight/environment/sky/sky.h"
 
 #include "render/shapes.h"
 #include "test.h"

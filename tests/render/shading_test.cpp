@@ -1,10 +1,10 @@
-#include "domelight/shading.h"
+#include "domelight/render/shading/shading.h"
 
-#include "domelight/bake.h"
-#include "domelight/image_io.h"
-#include "domelight/projection.h"
-#include "domelight/reference.h"
-#include "domelight/sky.h"
+#include "domelight/bake/bake.h"
+#include "domelight/io/image_io.h"
+#include "domelight/projection/projection.h"
+#include "domelight/filtering/reference.h"
+#include "domelight/environment/sky/sky.h"
 
 #include "render/shapes.h"
 #include "test.h"

@@ -1,6 +1,6 @@
-#include "domelight/parallel.h"
-#include "domelight/shading.h"
-#include "domelight/sky.h"
+#include "domelight/base/parallel.h"
+#include "domelight/render/shading/shading.h"
+#include "domelight/environment/sky/sky.h"
 
 #include "render/shapes.h"
 #include "test.h"

@@ -1,7 +1,7 @@
 #pragma once
 // Small scenes that the tests make.
 
-#include "domelight/scene.h"
+#include "domelight/scene/scene.h"
 
 #include <cmath>
 

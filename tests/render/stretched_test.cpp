@@ -1,8 +1,8 @@
-#include "domelight/sky.h"
-#include "domelight/zonal_kernel.h"
+#include "domelight/environment/sky/sky.h"
+#include "domelight/filtering/kernel/zonal_kernel.h"
 
 #include "render/shapes.h"
-#include "render/stretched_lobe.h"
+#include "render/shading/stretched_lobe.h"
 #include "shading_error.h"
 #include "test.h"
 

@@ -1,10 +1,10 @@
 // What BRDFs draw against the densities that they state, and against the albedos that the BRDF table's quadrature
 // gives.
-#include "domelight/brdf.h"
-#include "domelight/sequences.h"
+#include "domelight/sampling/brdf.h"
+#include "domelight/sampling/sequences.h"
 
-#include "distribution/chi_square.h"
-#include "filtering/brdf_quadrature.h"
+#include "sampling/distribution/chi_square.h"
+#include "filtering/brdf/brdf_quadrature.h"
 #include "sampling/hemisphere_quadrature.h"
 #include "test.h"
 

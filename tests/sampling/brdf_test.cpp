@@ -1,4 +1,4 @@
-#include "domelight/brdf.h"
+#include "domelight/sampling/brdf.h"
 
 #include "domelight/domelight.h"
 

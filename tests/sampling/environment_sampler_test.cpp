@@ -1,10 +1,10 @@
-#include "domelight/environment_sampler.h"
+#include "domelight/sampling/environment_sampler.h"
 
-#include "domelight/projection.h"
-#include "domelight/sequences.h"
-#include "domelight/sky.h"
+#include "domelight/projection/projection.h"
+#include "domelight/sampling/sequences.h"
+#include "domelight/environment/sky/sky.h"
 
-#include "distribution/chi_square.h"
+#include "sampling/distribution/chi_square.h"
 #include "test.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #pragma once
 // Integrals over patches of the upper hemisphere, for densities and BRDFs as peaked as they like.
 
-#include "domelight/vec.h"
+#include "domelight/base/vec.h"
 
-#include "math/gauss_legendre.h"
+#include "base/gauss_legendre.h"
 
 #include <array>
 #include <cmath>

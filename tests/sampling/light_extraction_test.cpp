@@ -1,14 +1,14 @@
-#include "domelight/light_extraction.h"
+#include "domelight/sampling/light_extraction.h"
 
-#include "domelight/environment.h"
-#include "domelight/prefilter.h"
-#include "domelight/projection.h"
-#include "domelight/sky.h"
+#include "domelight/environment/environment.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/projection/projection.h"
+#include "domelight/environment/sky/sky.h"
 
-#include "io/gltf_lights_writer.h"
+#include "io/gltf/gltf_lights_writer.h"
 #include "preview/lights_sheet.h"
 #include "sampling/harmonic_fill.h"
-#include "sky/sky_model.h"
+#include "environment/sky/sky_model.h"
 #include "test.h"
 
 #include <algorithm>

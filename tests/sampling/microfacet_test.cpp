@@ -1,7 +1,7 @@
-#include "domelight/microfacet.h"
+#include "domelight/sampling/microfacet.h"
 
-#include "domelight/frame.h"
-#include "domelight/sequences.h"
+#include "domelight/base/frame.h"
+#include "domelight/sampling/sequences.h"
 
 #include "sampling/hemisphere_quadrature.h"
 #include "test.h"

@@ -1,11 +1,11 @@
-#include "domelight/reflection_estimate.h"
+#include "domelight/sampling/reflection_estimate.h"
 
-#include "domelight/environment.h"
-#include "domelight/prefilter.h"
-#include "domelight/product_sampling.h"
-#include "domelight/projection.h"
-#include "domelight/reference.h"
-#include "domelight/sky.h"
+#include "domelight/environment/environment.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/sampling/product_sampling.h"
+#include "domelight/projection/projection.h"
+#include "domelight/filtering/reference.h"
+#include "domelight/environment/sky/sky.h"
 
 #include "test.h"
 

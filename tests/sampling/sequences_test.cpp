@@ -1,8 +1,8 @@
-#include "domelight/sequences.h"
+#include "domelight/sampling/sequences.h"
 
-#include "domelight/vec.h"
+#include "domelight/base/vec.h"
 
-#include "distribution/chi_square.h"
+#include "sampling/distribution/chi_square.h"
 #include "test.h"
 
 #include <algorithm>

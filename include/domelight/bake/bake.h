@@ -1,0 +1,159 @@
+#pragma once
+
+#include "domelight/filtering/brdf/brdf_table.h"
+#include "domelight/environment/environment.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/base/progress.h"
+#include "domelight/filtering/reference.h"
+#include "domelight/base/result.h"
+#include "domelight/filtering/harmonic/spherical_harmonics.h"
+#include "domelight/engines/engine.h"
+#include "domelight/texture/texture.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace domelight {
+
+/// Sheen with a roughness below this is baked with this one: towards 0 Charlie's lobe shrinks to the horizon and its
+/// integral to nothing (the Khronos viewer's own level for 0 is black).
+inline constexpr double k_charlie_least_roughness = 0.1;
+
+/// How the filtering is done: exactly, or by one of the plain methods of reference.h.
+enum class BakeMethod { exact, bruteforce, riemann, montecarlo };
+std::string bake_method_name(BakeMethod method);
+
+/// How cubes are laid out in .exr and .hdr: one picture a level, or six.
+enum class CubePicture { cross, strip, faces };
+std::string cube_picture_name(CubePicture picture);
+
+/// What to bake. Whatever is left out is the target's choice.
+struct BakeOptions {
+    std::vector<std::string> targets{"generic"};  ///< several share one reading of the environment
+    std::optional<Layout> layout;                 ///< cube unless asked otherwise
+    std::optional<int> size;                      ///< level 0: face size, or height of a lat-long map
+    std::optional<int> levels;
+    std::vector<double> roughness;  ///< of each level, [0, 1]; empty: the target's curve
+    std::optional<Lobe> lobe;
+    std::vector<double> exponents;  ///< Phong: of each level; infinity is the environment itself
+    BakeMethod method = BakeMethod::exact;
+    int samples = 1024;  ///< montecarlo: per texel
+    int riemann_polar = 64, riemann_azimuth = 256;
+
+    std::optional<Encoding> encoding;
+    EncodingQuality encoding_quality = EncodingQuality::standard;
+    std::optional<Container> format;
+    std::optional<bool> zstd;
+    CubePicture cube_picture = CubePicture::cross;
+    std::optional<int> irradiance_size;  ///< face size, or half the height of a lat-long map
+    int sh_bands = 3;
+    ShWindow sh_window = ShWindow::none;
+    BrdfG brdf_g = BrdfG::correlated;
+    std::optional<BrdfForm> brdf_form;
+    std::optional<int> brdf_size;
+    bool brdf_float = false;  ///< RG32F instead of RG16F
+
+    bool preview = true;  ///< preview.png
+    bool hashes = true;   ///< SHA-256 of source and files in the manifest
+    int threads = 0;
+    Progress progress;
+
+    /// The environment's files in the order to hash them (empty: Environment::file), and how it was opened, for the
+    /// manifest.
+    std::vector<std::filesystem::path> source_files;
+    EnvironmentOptions environment;
+};
+
+/// A file that was written, relative to the bake's folder.
+struct BakedFile {
+    std::string file;
+    std::string sha256;  ///< empty without hashes
+};
+
+struct BakedLevel {
+    int level = 0, size = 0;
+    bool mirror = false;              ///< the environment itself
+    double roughness = 0, alpha = 0;  ///< ggx and charlie
+    double exponent = 0;              ///< phong
+    std::vector<BakedFile> files;     ///< containers that hold one image a level
+    EncodingReport encoding;
+};
+
+/// A map with its levels: specular, sheen, skybox or irradiance.
+struct BakedMap {
+    std::string role;
+    Lobe lobe = Lobe::ggx;
+    Quantity quantity = Quantity::radiance;
+    Layout layout = Layout::cube;
+    std::string projection;  ///< the environment as one image: its name and convention; else empty
+    std::string encoding, container;
+    bool zstd = false;
+    BakedFile file;  ///< containers that hold the whole chain
+    std::vector<BakedLevel> levels;
+};
+
+struct ShReport {
+    int bands = 0;
+    ShWindow window = ShWindow::none;
+    std::vector<Vec3d> radiance;    ///< windowed
+    std::vector<Vec3d> irradiance;  ///< E
+    double rms_error = 0,
+           max_error = 0;  ///< of E against the exact irradiance, relative; the maximum against max(E, 1 % of the mean)
+    std::vector<BakedFile> files;
+};
+
+struct BrdfReport {
+    BakedFile file;
+    BrdfForm form = BrdfForm::none;
+    BrdfG g = BrdfG::correlated;
+    int size = 0;
+    std::string encoding;
+};
+
+/// What one target's folder holds.
+struct TargetReport {
+    std::string target;
+    std::filesystem::path folder;
+    std::vector<BakedMap> maps;
+    ShReport sh;
+    BrdfReport brdf;
+    std::optional<BakedFile> preview;
+    std::string manifest;  ///< manifest.json's text
+};
+
+struct StageTime {
+    std::string stage;
+    double seconds = 0;      ///< by the clock
+    double cpu_seconds = 0;  ///< of all threads
+};
+
+struct BakeReport {
+    std::vector<TargetReport> targets;
+    std::string source_sha256;
+    RepairReport repaired;
+    Vec3d mean_radiance;
+    std::int64_t clamped = 0;  ///< texels whose truncation error was below zero, set to 0
+    int band_limit = 0;
+    std::vector<std::string> warnings;
+    std::vector<StageTime> stages;
+};
+
+/// Whether the options make sense together, before anything is read. The error's `where` is the option.
+Result<void> check_bake_options(const BakeOptions& options);
+
+/// Bakes an environment into `folder`: specular chain, irradiance, harmonics, BRDF table, picture, manifest; with
+/// several targets each into a folder of its name. Everything is written beside its place first and moved there when
+/// all is complete; on an error nothing has changed.
+Result<BakeReport> bake(Environment& environment, const BakeOptions& options, const std::filesystem::path& folder);
+
+/// Whether `folder` already holds exactly what baking these files with these options would write: same version,
+/// options, source hash, and every file there with its hash.
+bool bake_is_up_to_date(const std::vector<std::filesystem::path>& source_files, const BakeOptions& options,
+                        const std::filesystem::path& folder);
+
+/// "0.1.0".
+const char* version();
+
+}  // namespace domelight

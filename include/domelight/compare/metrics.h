@@ -1,0 +1,92 @@
+#pragma once
+// How far two pictures are apart. All take two images of the same size, RGB, and an optional mask.
+
+#include "domelight/image/image.h"
+#include "domelight/base/result.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace domelight {
+
+/// Pixels that count: one channel, > 0; empty: all. Of the images' size.
+using Mask = ImageView<const float>;
+
+/// Three-channel images throughout, linear radiance unless said otherwise, finite (first_bad_pixel finds what is not),
+/// test and reference of one size. Sums run in double in a fixed order: the same bits on any number of threads. Without
+/// a pixel that counts every figure is 0.
+struct Errors {
+    double rmse = 0;              ///< sqrt(mean |a - b|^2), over pixels and channels
+    double relative_rmse = 0;     ///< sqrt(sum |a - b|^2 / sum |b|^2); infinite where only the reference is black
+    double tone_mapped_rmse = 0;  ///< rmse of L / (1 + L), each channel on its own, negative values as 0
+    double mean_ratio = 0;        ///< sum a / sum b, channels together; 1 where both are black
+    double largest = 0;           ///< max |a - b| of any channel
+    double psnr = 0;          ///< dB, of L / (1 + L), peak 1: -20 log10(tone_mapped_rmse); infinite for equal images
+    double ssim = 0;          ///< mean of ssim()
+    std::int64_t pixels = 0;  ///< that counted
+    int largest_x = 0, largest_y = 0;  ///< where `largest` is, the first by rows
+};
+/// `test` against `reference`.
+Errors compare_images(ImageView<const float> test, ImageView<const float> reference, Mask mask = {}, int threads = 0);
+
+/// One object's part of a picture.
+struct ObjectErrors {
+    int index = 0;
+    Errors errors;  ///< ssim: the mean of the whole picture's over the object
+};
+/// The errors of each object. `objects`: index of the object seen in each pixel, one channel; negative or NaN: none. By
+/// rising index.
+std::vector<ObjectErrors> compare_objects(ImageView<const float> test, ImageView<const float> reference,
+                                          ImageView<const float> objects, Mask mask = {}, int threads = 0);
+
+/// Structural similarity of each pixel (Wang et al. 2004, eq. 13 with K1 = 0.01, K2 = 0.03, peak 1), [-1, 1], one
+/// channel: of the luminance of L / (1 + L), Gaussian window of sigma 1.5 cut at 11 x 11. Windows are normalised over
+/// the pixels that count, so neither the border nor what the mask leaves out has any influence. 0 where the mask is.
+ImageF ssim(ImageView<const float> test, ImageView<const float> reference, Mask mask = {}, int threads = 0);
+
+/// What a difference amounts to where the noise of the pixels is known.
+struct NoiseSummary {
+    std::int64_t values = 0;         ///< channel values with a variance > 0
+    std::int64_t without_noise = 0;  ///< channel values of variance 0 that differ nevertheless
+    double mean_z = 0;               ///< of z = (a - b) / sqrt(var a + var b); unbiased images: 0 +- 1 / sqrt(values)
+    double chi2 = 0;                 ///< mean z^2; 1 where noise explains the whole difference
+    double share_above_2 = 0;        ///< share of |z| > 2; of normal noise 0.0455
+    double total_z = 0;              ///< z of the difference of the images' sums: beyond +-2 there is a bias
+    double mean_ratio = 0;           ///< sum a / sum b
+    double ratio_low = 0, ratio_high = 0;  ///< its 95 % confidence interval, pixels taken as independent (delta method)
+};
+/// Variances are those of the pixels' values (squared standard errors), three channels; an empty view: exact.
+NoiseSummary compare_noisy(ImageView<const float> test, ImageView<const float> reference,
+                           ImageView<const float> test_variance, ImageView<const float> reference_variance,
+                           Mask mask = {}, int threads = 0);
+
+/// Pixels that no figure can be made of: NaN or infinite in a channel.
+struct BadPixels {
+    std::int64_t count = 0;
+    int x = 0, y = 0;  ///< the first, by rows
+};
+BadPixels find_bad_pixels(ImageView<const float> image, Mask mask = {});
+
+struct FlipOptions {
+    double pixels_per_degree = 67.0206;  ///< > 0; 0.7 m from a 0.7 m wide display of 3840 pixels, the authors' default
+};
+/// FLIP (Andersson et al. 2020): perceived difference of each pixel, [0, 1], one channel. sRGB-encoded values in [0,
+/// 1].
+ImageF flip(ImageView<const float> test_srgb, ImageView<const float> reference_srgb, const FlipOptions& options = {},
+            int threads = 0);
+
+struct HdrFlip {
+    ImageF error;                ///< largest over the exposures
+    ImageF exposure;             ///< the exposure (stops) at which it was
+    double start = 0, stop = 0;  ///< stops
+    int count = 0;
+};
+/// HDR-FLIP (Andersson et al. 2021): the largest FLIP over exposures chosen from the reference, tone mapped by ACES as
+/// the authors do. Linear radiance.
+HdrFlip hdr_flip(ImageView<const float> test, ImageView<const float> reference, const FlipOptions& options = {},
+                 int threads = 0);
+/// Mean of a one-channel image over the mask; 0 where it is empty.
+double mean_of(ImageView<const float> error, Mask mask = {});
+
+}  // namespace domelight

@@ -1,0 +1,94 @@
+#pragma once
+
+#include "domelight/filtering/prefilter.h"
+#include "domelight/base/result.h"
+#include "domelight/texture/texture.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace domelight {
+
+/// What a map of light holds.
+enum class Quantity { radiance, irradiance, irradiance_over_pi };
+std::string quantity_name(Quantity quantity);
+
+/// The file a map is written to. exr and hdr hold one image a level; the others hold the whole chain. dds9 is DDS with
+/// the header from before DX10; exr_mip a tiled OpenEXR with its levels and the envmap attribute. The last three belong
+/// to one target each: Babylon's .env, a glTF file with EXT_lights_image_based, PlayCanvas' atlas (a PNG).
+enum class Container { ktx2, ktx1, dds, dds9, exr, exr_mip, hdr, env, gltf, playcanvas_atlas };
+std::string container_name(Container container);
+/// Those that fit any target: ktx2, ktx1, dds, dds9, exr, exr-mip, hdr. The error lists them.
+Result<Container> container_from_name(const std::string& name);
+std::string container_extension(Container container);  ///< ".ktx2", ".ktx", ...
+
+/// How a consumer's lookup differs from texture(cube, d) for the light that arrives from world direction d = (x, y, z).
+enum class CubeMirror {
+    none,     ///< it does not
+    x,        ///< it reads texture(cube, (-x, y, z))
+    z,        ///< it reads texture(cube, (x, y, -z))
+    swap_yz,  ///< it reads texture(cube, (x, z, y))
+};
+std::string cube_mirror_direction(CubeMirror mirror);  ///< "d", "(-x, y, z)", ...
+
+/// What a BRDF table's channels hold; brdf_table.h has the integrals.
+enum class BrdfForm { none, scale_bias, multiscatter, scale_bias_charlie };
+std::string brdf_form_name(BrdfForm form);  ///< "none", "scale-bias", "multiscatter", "scale-bias-charlie"
+Result<BrdfForm> brdf_form_from_name(const std::string& name);
+
+/// Roughness baked into a level: of `levels` levels of a cube whose first has `size`^2 texels a face.
+using RoughnessCurve = double (*)(int level, int levels, int size);
+
+/// One consumer: what it loads and in which convention. In file names, {stem} stands for the environment's name, and
+/// the container's extension is appended. An empty name means that the map is not written.
+struct Target {
+    std::string name;      ///< "filament"
+    std::string consumer;  ///< one line for lists
+    std::string note;      ///< what the consumer does itself, or what a later version will write; may be empty
+
+    int size = 512;    ///< face size of level 0
+    int smallest = 8;  ///< by default levels go down to this face size
+    RoughnessCurve roughness = nullptr;
+    Layout layout = Layout::cube;  ///< of the maps, unless asked otherwise
+    CubeMirror mirror = CubeMirror::none;
+    std::string latlong = "default";  ///< convention of lat-long maps: one that only turns the default about +Y
+    Encoding encoding = Encoding::rgba16f;
+    Container container = Container::ktx2;
+    bool zstd = false;
+    /// The consumer filters by itself: only the environment is written, as one image of the projection `panorama`: a
+    /// lat-long one 4 size x 2 size, else 2 size x 2 size.
+    bool environment_only = false;
+    std::string panorama = "latlong";  ///< name and convention, as projections.h takes them
+
+    std::string specular_file = "specular";
+    std::string sheen_file;     ///< a second chain with Charlie's lobe
+    std::string skybox_file;    ///< level 0 alone
+    std::string panorama_file;  ///< the environment as one .exr beside the maps
+    std::string irradiance_file = "irradiance";
+    int irradiance_size = 64;
+    Quantity irradiance_quantity = Quantity::irradiance;
+    Encoding irradiance_encoding = Encoding::rgba16f;
+    std::string brdf_file = "brdf";
+    BrdfForm brdf_form = BrdfForm::scale_bias;
+    int brdf_size = 128;
+    std::string sh_text_file;  ///< Filament's nine numbers as text
+    bool sh_metadata = false;  ///< the same in the specular file's key "sh"
+};
+
+/// All targets, `generic` first.
+std::span<const Target> targets();
+/// The target of that name. The error lists the names.
+Result<const Target*> find_target(const std::string& name);
+
+/// roughness = level / (levels - 1); 0 for a single level.
+double linear_roughness(int level, int levels, int size);
+
+/// Levels of a target's cube chain whose first has `size`^2 texels a face: down to its smallest.
+int default_levels(const Target& target, int size);
+
+/// Phong's exponents where none are given: the environment itself (infinity), then 2048 and a quarter of that with each
+/// level, as its texels double; at least 1.
+std::vector<double> default_phong_exponents(int levels);
+
+}  // namespace domelight

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "domelight/environment/environment.h"
+#include "domelight/base/progress.h"
+#include "domelight/filtering/resample/reproject.h"
+
+namespace domelight {
+
+struct ConvertOptions {
+    Mat3 turn;           ///< moves the light: what came from d comes from turn * d (orthogonal, may mirror)
+    int width = 0;       ///< of a chart of the target, in texels
+    int height = 0;      ///< likewise
+    bool sharp = false;  ///< reproject() also where "exact" would do: sharper by up to 4 dB, ten times the time
+    int threads = 0;
+    Progress progress = {};
+};
+
+struct Conversion {
+    ProjectedImage image;
+    Vec3d power_before, power_after;  ///< radiant_power of both
+    std::string method;  ///< "copy" (the same texels, moved), "exact" (area_resample.h, by rows), "conservative"
+                         ///< (reproject.h)
+};
+
+/// An environment in another projection, whatever it came in (open it with keep_projection). Lat-long rows to a cube or
+/// another lat-long map about the same axis pass by without being in memory together; where texels only change places
+/// they keep their bits; all else is reproject()'s.
+Result<Conversion> convert(Environment& environment, const Projection& target, const ConvertOptions& options);
+
+/// The height of a target's charts in which its finest texels are as fine as the source's.
+int matched_height(const Environment& environment, const Projection& target);
+
+}  // namespace domelight

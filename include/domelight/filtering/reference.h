@@ -1,0 +1,30 @@
+#pragma once
+
+#include "domelight/filtering/prefilter.h"
+
+namespace domelight {
+
+/// The plain, slow filters: what the exact one is tested against and what a reader learns from.
+enum class ReferenceMethod {
+    bruteforce,  ///< the kernel summed over all of the source, patch by patch, in double: the truth
+    riemann,     ///< the textbook Riemann sum over the hemisphere about each direction, K x J steps
+    montecarlo,  ///< Hammersley points, GGX half vectors, weighted by n.l: Karis 2013
+};
+
+struct ReferenceOptions {
+    ReferenceMethod method = ReferenceMethod::bruteforce;
+    int riemann_polar = 64, riemann_azimuth = 256;  ///< K and J
+    int samples = 1024;                             ///< montecarlo: per texel
+};
+
+/// The same result as `prefilter`, by a plain method, from a lat-long image in memory.
+Result<FilterResult> prefilter_reference(ImageView<const float> latlong, const FilterOptions& options,
+                                         const ReferenceOptions& reference = {});
+
+/// The truth for single directions: the kernel integrated in double over the bilinear reconstruction, patch by patch (2
+/// x 2 Gauss-Legendre nodes; near the peak and at the horizon, and throughout small images, patches halved until 4 x 4
+/// suffice). A constant stays constant to 1e-7. `directions` are of unit length and in the source's frame.
+std::vector<Vec3d> convolve_exactly(ImageView<const float> latlong, const ZonalKernel& kernel,
+                                    std::span<const Vec3d> directions, int threads = 0);
+
+}  // namespace domelight

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "domelight/image/image.h"
+#include "domelight/base/result.h"
+
+namespace domelight {
+
+/// A lat-long image in the default convention, handed on from the top row down: RGB float radiance, linear Rec. 709,
+/// finite and >= 0. A 16384 x 8192 image passes through without ever being in memory whole.
+class RowSource {
+  public:
+    virtual ~RowSource() = default;
+    virtual int width() const = 0;
+    virtual int height() const = 0;
+    /// The next `rows.height` rows (at most what is left) into `rows` (width() wide, 3 channels).
+    virtual Result<void> read(ImageView<float> rows) = 0;
+};
+
+/// An image in memory as a RowSource. Keeps the view, not the pixels.
+class ImageRowSource : public RowSource {
+  public:
+    explicit ImageRowSource(ImageView<const float> image) : image_(image) {}
+    int width() const override { return image_.width; }
+    int height() const override { return image_.height; }
+    Result<void> read(ImageView<float> rows) override;
+
+  private:
+    ImageView<const float> image_;
+    int next_row_ = 0;
+};
+
+}  // namespace domelight

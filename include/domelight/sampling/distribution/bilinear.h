@@ -1,0 +1,110 @@
+#pragma once
+// A continuous density: bilinear between texel centres, as a bilinear lookup reads the radiance. docs/math/sampling.md
+// derives it.
+
+#include "domelight/sampling/distribution/distribution.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace domelight {
+
+/// Cumulative tables, shapes and guides of `count` piecewise-linear densities of `items` segments each, in quanta of 1
+/// / (2^32 - 1).
+///
+/// A segment has a whole number of quanta, at least one unless it is zero at both ends, and a shape: the density falls
+/// or rises linearly in it, from 2 r to 2 (1 - r) times its average.
+struct BilinearRows {
+    static constexpr std::uint32_t k_total = 0xffffffffu;
+    int count = 0, items = 0;
+    int shift = 0;  ///< guide cell of xi: xi >> shift
+    /// [count][items + 1], then 16 more: quanta before each segment, from 0 to k_total, less 2^31: signed, as vectors
+    /// convert to double.
+    std::vector<std::int32_t, LargeAllocator<std::int32_t>> edges;
+    std::vector<std::uint16_t, LargeAllocator<std::uint16_t>> shape;  ///< [count][items]: r in 1 / 65535
+    std::vector<std::uint16_t, LargeAllocator<std::uint16_t>>
+        guide;  ///< [count][cells + 8]: first segment that ends at the cell's first quantum or later
+
+    BilinearRows() = default;
+    BilinearRows(int count, int items);
+    /// Fills row `row` from the densities at the segments' ends, begins[i] and ends[i]; one of them is positive.
+    void fill(int row, std::span<const double> begins, std::span<const double> ends);
+    /// A row of zeros: uniform, where anything asks.
+    void fill_uniform(int row);
+    void copy(int from, int to);
+
+    int cells() const { return int((std::uint64_t(1) << 32) >> shift); }
+    const std::int32_t* edges_of(int row) const { return edges.data() + std::size_t(row) * (items + 1); }
+    /// Quanta of a segment.
+    double quanta(int row, int i) const { return double(edges_of(row)[i + 1]) - edges_of(row)[i]; }
+    const std::uint16_t* shape_of(int row) const { return shape.data() + std::size_t(row) * items; }
+    const std::uint16_t* guide_of(int row) const { return guide.data() + std::size_t(row) * (cells() + 8); }
+    std::size_t memory_bytes() const {
+        return edges.size() * sizeof(edges[0]) + (shape.size() + guide.size()) * sizeof(shape[0]);
+    }
+};
+
+/// p(u, v) = bilinear interpolation of the weights between texel centres / mean weight; u wraps around, v is clamped in
+/// the half rows at the top and the bottom. The mean of the weights is the interpolation's integral, exactly.
+///
+/// First v by its marginal: H + 1 segments (half a row, linear, ..., half a row). At v = (j + 1/2 + t) / H the density
+/// along u is the mixture of rows j and j + 1 in proportion to (1 - t) S_j and t S_{j+1}, with S a row's sum; its
+/// cumulative function is the mixture of theirs, and the root lies between the two rows' own, which the guides bracket.
+/// Choosing one of the rows at random would be exact too, but neither monotone nor invertible.
+///
+/// Monotone in both directions (u from 1/2 / W on, around the seam). invert(sample(p)) == p exactly, but for a few
+/// quanta of 2^-32 where a row outweighs its neighbour by 10^4 or more: there (u, v) in double no longer say enough. 8
+/// bytes a texel.
+class BilinearDistribution final : public Distribution2D {
+  public:
+    /// Errors: as make_distribution.
+    static Result<BilinearDistribution> build(const Weights& weights, int threads = 1);
+
+    DistributionSample sample(UnitPoint point) const override;
+    double pdf_uv(double u, double v) const override;
+    std::optional<UnitPoint> invert(double u, double v) const override;
+    void sample(std::span<const UnitPoint> points, std::span<float> u, std::span<float> v,
+                std::span<float> pdf_uv) const override;
+    void pdfs_uv(std::span<const float> u, std::span<const float> v, std::span<float> pdf_uv) const override;
+    int width() const override { return columns_.items; }
+    int height() const override { return columns_.count - 2; }
+    bool continuous() const override { return true; }
+    std::size_t memory_bytes() const override {
+        return rows_.memory_bytes() + columns_.memory_bytes() + row_begins_.size() * sizeof(double);
+    }
+
+  private:
+    BilinearRows
+        rows_;  // one density of height + 1 segments; its shapes are not used, row_begins_ says them more finely
+    // For each row, segments from centre to centre; the last one goes around. The first and the last row stand there
+    // twice, so that segment s of v always lies between rows s and s + 1 of the table.
+    BilinearRows columns_;
+    std::vector<double>
+        row_begins_;  // [height + 1]: the marginal's value at the beginning of each segment, in quanta a segment
+};
+
+/// The same density in double by linear search, as one would write it down: what BilinearDistribution is tested
+/// against.
+class PlainBilinearDistribution final : public Distribution2D {
+  public:
+    /// Errors: as make_distribution.
+    static Result<PlainBilinearDistribution> build(const Weights& weights);
+
+    DistributionSample sample(UnitPoint point) const override;
+    using Distribution2D::sample;
+    double pdf_uv(double u, double v) const override;
+    std::optional<UnitPoint> invert(double u, double v) const override;
+    int width() const override { return width_; }
+    int height() const override { return height_; }
+    bool continuous() const override { return true; }
+    std::size_t memory_bytes() const override { return (weights_.size() + row_sums_.size()) * sizeof(double); }
+
+  private:
+    double node(int i, int j, double t) const;  // weight of column i at t between rows j and j + 1
+
+    int width_ = 0, height_ = 0;
+    double total_ = 0;
+    std::vector<double> weights_, row_sums_;
+};
+
+}  // namespace domelight

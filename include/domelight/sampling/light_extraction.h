@@ -1,0 +1,82 @@
+#pragma once
+// The sun and other small bright sources of an environment as lights of their own, and the environment without them.
+//
+//     auto found = extract_lights(image);
+//     for (const ExtractedLight& light : found->lights) shade(light.direction, light.irradiance);  // with shadows
+//     bake(found->remainder);                                                                      // without them
+//
+// docs/lights.md says how a source is found and what the numbers mean.
+
+#include "domelight/image/image.h"
+#include "domelight/base/result.h"
+#include "domelight/base/vec.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace domelight {
+
+/// What counts as a small bright source.
+struct LightExtractionOptions {
+    int max_lights = 8;         ///< the strongest are kept, 0 .. 1024
+    double least_share = 0.01;  ///< of the environment's luminance that a light must hold, 0 .. 1
+    /// All around a source, within the largest diameter, the luminance must fall below its peak over this, and the mean
+    /// of its surroundings lie below its own mean over this; 1.5 .. 1e6.
+    double least_contrast = 4;
+    /// Widest angle across (degrees, above 0 and up to 30) that still counts as small; three texels always do. No
+    /// lights are found in an image whose texels are wider than this.
+    double largest_diameter_deg = 6;
+    double merge_deg = 1.5;  ///< sources closer than this (degrees, >= 0) are one light: a sun behind twigs
+    int threads = 0;         ///< 0: all. The results do not depend on it
+};
+
+/// Errors: an option out of its range (named as on the command line).
+Result<void> check_light_extraction_options(const LightExtractionOptions& options);
+
+/// A directional or disc light. What it holds is what stood above its surroundings.
+struct ExtractedLight {
+    Vec3d direction;      ///< towards the light, world, unit length: the middle of its luminance
+    double u = 0, v = 0;  ///< the same on the source image, 0..1
+    /// Of a uniform disc with the same second moment (a disc of diameter D has the variance D^2 / 16 on each axis),
+    /// texels' own width taken off and far skirts left out. Where it is not `resolved`: one texel's width, an upper
+    /// bound.
+    double angular_diameter_deg = 0;
+    bool resolved = false;  ///< whether the diameter is wider than a texel
+    Vec3d irradiance;       ///< RGB on a surface that faces the light; in the image's radiance times steradian
+    Vec3d mean_radiance;    ///< RGB: irradiance over the solid angle of a disc of that diameter
+    Vec3d colour;           ///< irradiance over its largest channel: linear Rec. 709, 0..1
+    double share = 0;       ///< of the environment's luminance over all directions, 0..1
+    double contrast = 0;  ///< its peak's luminance over the highest luminance along its rim; infinite in front of black
+    std::int64_t texels = 0;  ///< of the source image that it was taken from
+};
+
+/// Where the power went. Powers are sums of radiance times solid angle over the texels, per channel: the mean radiance
+/// times 4 pi.
+struct LightExtractionReport {
+    Vec3d original_power, light_power, remainder_power;
+    double unaccounted = 0;  ///< |original - lights - remainder| / original, the largest over the channels: rounding
+    double texel_deg = 0;    ///< width of a texel, the larger of rows and columns (at the equator)
+    int candidates = 0;      ///< small sources that stood out, before share and number were looked at
+    int left_out = 0;        ///< lights that were left in the remainder because of their share or their number
+};
+
+struct LightExtraction {
+    std::vector<ExtractedLight> lights;  ///< the largest share first
+    /// The image without the lights. Where one stood, its surroundings continue across (harmonic interpolation), so
+    /// that no texel there is brighter than the rim; all other texels are the image's own. >= 0, and in no channel more
+    /// power than the image had.
+    ImageF remainder;
+    LightExtractionReport report;
+};
+
+/// Splits an environment into small bright sources and the rest.
+///
+/// latlong          radiance, 3 channels, rows top to bottom, default convention up to `world_to_source`
+/// world_to_source  as in Environment: the lights' directions are the world's, the remainder stays as the source is
+///
+/// A constant or a black image has no lights. Deterministic, the same bits on any number of threads.
+/// Errors: no texels; not 3 channels; a texel that is NaN, infinite or negative (named); an option out of its range.
+Result<LightExtraction> extract_lights(ImageView<const float> latlong, const LightExtractionOptions& options = {},
+                                       const Mat3& world_to_source = {});
+
+}  // namespace domelight

@@ -1,0 +1,64 @@
+#pragma once
+// The reflection integral under an environment, L_o = int f(V, L) L_i(L) NdotL dL, by every strategy of the lecture
+// notes.
+
+#include "domelight/sampling/brdf.h"
+#include "domelight/sampling/environment_sampler.h"
+#include "domelight/sampling/sequences.h"
+
+#include <functional>
+#include <string>
+
+namespace domelight {
+
+/// A surface to light: its BRDF in the local frame of brdf.h (normal +Z), behind three functions.
+struct Surface {
+    Vec3d normal{0, 1, 0};  ///< in the world, unit length
+    Vec3d view{0, 1, 0};    ///< towards the viewer, unit length, not below the surface
+    std::function<Vec3f(const Vec3f& V, const Vec3f& L)> evaluate;
+    std::function<BrdfSample(const Vec3f& V, UnitPoint u)> sample;
+    std::function<float(const Vec3f& V, const Vec3f& L)> pdf_solid_angle;
+};
+/// Of any of brdf.h's BRDFs.
+template <typename Brdf>
+Surface make_surface(const Vec3d& normal, const Vec3d& view, const Brdf& brdf) {
+    return {normal, view, [brdf](const Vec3f& V, const Vec3f& L) { return brdf.evaluate(V, L); },
+            [brdf](const Vec3f& V, UnitPoint u) { return brdf.sample(V, u); },
+            [brdf](const Vec3f& V, const Vec3f& L) { return brdf.pdf_solid_angle(V, L); }};
+}
+
+/// How light directions are chosen.
+enum class Strategy {
+    riemann,      ///< the midpoints of steps in colatitude and azimuth over the hemisphere, no randomness
+    uniform,      ///< uniformly over the hemisphere, p = 1 / 2 pi
+    cosine,       ///< p = NdotL / pi
+    brdf,         ///< the BRDF's own sampling
+    environment,  ///< in proportion to radiance
+    mis_balance,  ///< half BRDF, half environment, balance heuristic (Veach 1997, 9.2.2)
+    mis_power,    ///< the same with the power heuristic, exponent 2
+    product,      ///< a few candidates from the environment, one of them kept in proportion to f L NdotL / p (resampled
+                  ///< importance sampling, Talbot 2005)
+};
+/// "riemann", "uniform", ...; as in the enumeration with - for _.
+std::string strategy_name(Strategy strategy);
+
+struct EstimateOptions {
+    int samples =
+        1024;  ///< directions looked at in all; the MIS forms give half to each strategy, product counts its candidates
+    Sequence sequence = Sequence::random;
+    std::uint64_t seed = 1;
+    int candidates = 8;  ///< of `product` for each sample kept
+};
+
+struct Estimate {
+    Vec3d radiance;        ///< the estimate of L_o
+    Vec3d standard_error;  ///< of it, from the samples' variance; meaningful for Sequence::random, an upper guess for
+                           ///< the others, 0 for riemann
+    int samples = 0;       ///< directions looked at
+};
+
+/// L_o by one strategy. `sampler` gives the radiance for all of them; the MIS forms may take one with compensation.
+Estimate estimate_reflection(const Surface& surface, const EnvironmentSampler& sampler, Strategy strategy,
+                             const EstimateOptions& options = {});
+
+}  // namespace domelight

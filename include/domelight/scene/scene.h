@@ -1,0 +1,190 @@
+#pragma once
+// What is lit: surfaces, their materials and textures, lights and cameras, in the world of glTF 2.0: metres,
+// right-handed, +Y up.
+
+#include "domelight/base/result.h"
+#include "domelight/base/vec.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace domelight {
+
+/// World from local: the columns x, y, z and a translation.
+struct Affine {
+    Vec3f x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, translation;
+
+    Vec3f vector(const Vec3f& v) const { return x * v.x + y * v.y + z * v.z; }
+    Vec3f point(const Vec3f& p) const { return vector(p) + translation; }
+    /// a * b: b first.
+    Affine operator*(const Affine& b) const { return {vector(b.x), vector(b.y), vector(b.z), point(b.translation)}; }
+    /// Turns a normal (a plane, not a vector); not of unit length. By the cofactors, so that a flat scale leaves it
+    /// finite.
+    Vec3f normal(const Vec3f& n) const { return cross(y, z) * n.x + cross(z, x) * n.y + cross(x, y) * n.z; }
+    float determinant() const { return dot(cross(x, y), z); }
+};
+
+/// Texels as stored, 8 bits, RGBA, rows top to bottom.
+struct SceneImage {
+    std::string name;
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgba;
+};
+
+/// How a material reads an image.
+struct SceneTexture {
+    enum class Wrap : std::uint8_t { repeat, clamp, mirror };
+    int image = -1;    ///< of Scene::images; -1: none, every channel 1
+    int texcoord = 0;  ///< which set of texture coordinates, 0 or 1
+    Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    bool nearest = false;
+    /// KHR_texture_transform: uv' = translation * rotation * scale * uv; a positive rotation is counter-clockwise as
+    /// seen with v running down (the GLSL in the extension's text turns the other way, its sample model and other
+    /// readers do not).
+    float offset_u = 0, offset_v = 0, rotation = 0, scale_u = 1, scale_v = 1;
+    explicit operator bool() const { return image >= 0; }
+};
+
+/// Engines' `reflectance`, [0, 1], F0 = 0.16 reflectance^2 of a dielectric (Lagarde and de Rousiers 2014, 3.2.1), as
+/// the index of refraction that has the same F0 = ((ior - 1) / (ior + 1))^2: 0.5 is 1.5, glTF's default. A glTF
+/// material may say it as extras.reflectance, where it has no KHR_materials_ior.
+inline float ior_of_reflectance(float reflectance) {
+    return (1 + 0.4f * reflectance) / (1 - 0.4f * reflectance);
+}
+
+/// A surface: glTF's metallic-roughness model and its extensions. Factors are linear; colour textures are decoded from
+/// sRGB.
+struct Material {
+    enum class AlphaMode : std::uint8_t { opaque, mask, blend };
+
+    std::string name;
+    bool unlit = false;    ///< KHR_materials_unlit: the base colour, and nothing else
+    bool lambert = false;  ///< extras.lambert: a pure Lambert surface of the base colour, no specular
+    bool phong =
+        false;  ///< a modified Phong surface: base colour diffuse (1 - metalness), specular f0, exponent from roughness
+    /// extras.separableMasking: Smith's masking as G1(l) G1(v), as older renderers have it, instead of the
+    /// height-correlated G2; to compare with them.
+    bool separable_masking = false;
+    bool double_sided = false;
+    AlphaMode alpha_mode = AlphaMode::opaque;
+    float alpha_cutoff = 0.5f;
+
+    Vec3f base_color{1, 1, 1};
+    float opacity = 1;
+    float metalness = 1, roughness = 1;
+    Vec3f emission;  ///< radiance, KHR_materials_emissive_strength included
+    float ior = 1.5f;
+    float specular = 1;  ///< KHR_materials_specular
+    Vec3f specular_color{1, 1, 1};
+    float normal_scale = 1, occlusion_strength = 1;
+
+    float clearcoat = 0, clearcoat_roughness = 0, clearcoat_normal_scale = 1;
+    Vec3f sheen_color;
+    float sheen_roughness = 0;
+    float transmission = 0, thickness = 0;
+    Vec3f attenuation_color{1, 1, 1};
+    float attenuation_distance = std::numeric_limits<float>::infinity();
+    float anisotropy = 0, anisotropy_rotation = 0;
+
+    SceneTexture base_color_texture;          ///< sRGB, A: opacity
+    SceneTexture metallic_roughness_texture;  ///< G: roughness, B: metalness
+    SceneTexture normal_texture, occlusion_texture /* R */, emission_texture /* sRGB */;
+    SceneTexture specular_texture /* A */, specular_color_texture /* sRGB */;
+    SceneTexture clearcoat_texture /* R */, clearcoat_roughness_texture /* G */, clearcoat_normal_texture;
+    SceneTexture sheen_color_texture /* sRGB */, sheen_roughness_texture /* A */;
+    SceneTexture transmission_texture /* R */, thickness_texture /* G */,
+        anisotropy_texture /* RG direction, B strength */;
+};
+
+/// Triangles of one material. Arrays other than `positions` and `indices` are empty or as long as `positions`.
+struct Mesh {
+    std::string name;
+    std::vector<Vec3f> positions;
+    std::vector<Vec3f> normals;  ///< of unit length; empty: flat
+    struct Tangent {
+        Vec3f t;
+        float sign = 1;  ///< bitangent = sign cross(normal, t)
+    };
+    std::vector<Tangent> tangents;
+    struct TexCoord {
+        float u = 0, v = 0;
+    };
+    std::vector<TexCoord> texcoords[2];
+    struct Color {
+        Vec3f rgb{1, 1, 1};
+        float a = 1;
+    };
+    std::vector<Color> colors;  ///< linear, multiplied with the base colour
+    std::vector<std::uint32_t>
+        indices;       ///< three a triangle, each < positions.size(); counter-clockwise from the front
+    int material = 0;  ///< of Scene::materials
+    int triangle_count() const { return int(indices.size() / 3); }
+};
+
+/// A mesh put into the world.
+struct Instance {
+    int mesh = 0;
+    Affine to_world;
+    std::string name;  ///< of the node, else of the mesh: what tables call the object
+};
+
+/// KHR_lights_punctual.
+struct PunctualLight {
+    enum class Kind : std::uint8_t { directional, point, spot };
+    Kind kind = Kind::directional;
+    Vec3f position, direction{0, 0, -1};  ///< in the world; `direction`: the way the light travels, unit length
+    Vec3f intensity;                      ///< directional: irradiance perpendicular to it; else radiant intensity
+    float range = std::numeric_limits<float>::infinity();
+    float cos_inner = 1, cos_outer = 0.70710678f;  ///< spot
+    std::string name;
+};
+
+/// A pinhole camera (or a parallel one) looking along -z of its frame, +y up.
+struct Camera {
+    Affine to_world;
+    float fov_y = 0.6f;  ///< radians
+    bool orthographic = false;
+    float half_height = 1;  ///< orthographic: metres
+    float aspect = 0;       ///< width / height of the picture that it was made for; 0: not said
+    std::string name;
+};
+
+struct Scene {
+    std::vector<SceneImage> images;
+    std::vector<Material> materials;
+    std::vector<Mesh> meshes;
+    std::vector<Instance> instances;
+    std::vector<PunctualLight> lights;
+    std::vector<Camera> cameras;
+    std::vector<std::string> warnings;  ///< what was mended, and what was left out
+
+    /// The box that holds everything, in the world; empty scenes: [0, 0].
+    struct Box {
+        Vec3f low, high;
+    };
+    Box bounds() const;
+    std::int64_t triangle_count() const;  ///< instances counted
+};
+
+struct SceneOptions {
+    std::int64_t max_bytes = std::int64_t(4) << 30;  ///< refuses a scene that would need more memory than this
+    float lumens_per_watt = 683;  ///< KHR_lights_punctual speaks of lux and candela: intensities are divided by this
+    int threads = 0;              ///< for decoding textures; 0: all
+};
+
+/// Reads glTF 2.0 (.gltf, .glb), .obj or .ply. Errors name the file and what is wrong in it: broken JSON, missing
+/// buffers and textures, paths out of the file's folder, cyclic nodes, indices and accessors out of range, extensions
+/// that are required and unknown, no triangles. Mended with a warning: NaN vertices and degenerate triangles (left
+/// out), normals of no length (recomputed).
+Result<Scene> load_scene(const std::filesystem::path& file, const SceneOptions& options = {});
+
+/// Scenes for when there is none: "spheres" (roughness from left to right, metal above dielectric), "ball" (a material
+/// ball on a plinth), "furnace" (one white sphere). Errors: another name.
+Result<Scene> built_in_scene(const std::string& name);
+/// The names that built_in_scene knows.
+std::vector<std::string> built_in_scene_names();
+
+}  // namespace domelight

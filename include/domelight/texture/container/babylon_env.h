@@ -1,0 +1,35 @@
+#pragma once
+
+#include "domelight/base/result.h"
+#include "domelight/filtering/harmonic/spherical_harmonics.h"
+#include "domelight/texture/texture.h"
+
+#include <filesystem>
+#include <optional>
+
+namespace domelight {
+
+/// Babylon.js' own container, .env: a cube with its levels as RGBD pictures, and diffuse light as a polynomial.
+struct BabylonEnv {
+    /// rgbd, levels from width^2 down. In OpenGL's orientation as Babylon's shader sees it: texture(cube, (X, Y, Z)) in
+    /// its left-handed world, where glTF's direction (x, y, z) is (-x, y, z).
+    Texture cube;
+    /// E / pi convolved with the clamped cosine once more, in that world (docs/engines/babylon.md). Old files may lack
+    /// it.
+    std::optional<QuadraticPolynomial> irradiance;
+    double lod_scale = 0.8;  ///< level = lod_scale log2(width alpha)
+};
+
+/// The polynomial Babylon wants, from a world's radiance coefficients (nine or more): it undoes one convolution and one
+/// change of sign when it makes harmonics of it again, so both are put in here.
+QuadraticPolynomial babylon_polynomial(std::span<const Vec3d> radiance);
+
+/// Writes version 2. `cube`: square faces, a power of two wide, with every level down to 1. Errors: anything else;
+/// what the system says.
+Result<void> write_env(const std::filesystem::path& file, const BabylonEnv& env, int threads = 0);
+
+/// Versions 1 and 2. Every size and place is checked against the file, and a picture's size against its level, before
+/// memory is taken for it.
+Result<BabylonEnv> read_env(const std::filesystem::path& file);
+
+}  // namespace domelight

@@ -1,0 +1,124 @@
+#pragma once
+
+#include "domelight/base/large_allocator.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/base/result.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace domelight {
+
+/// How texels are stored on the GPU: one by one, or (bc6h, uastc_hdr, astc..._hdr) in blocks. Blocks of uastc_hdr are
+/// astc4x4_hdr of a kind that can be turned into bc6h.
+enum class Encoding {
+    rgba16f,
+    rgba32f,
+    rgb9e5,
+    r11g11b10f,
+    rg16f,
+    rg32f,
+    bc6h,
+    rgbm,
+    rgbd,
+    rgbp,
+    uastc_hdr,
+    astc4x4_hdr,
+    astc6x6_hdr
+};
+
+/// "rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "rg16f", "rg32f", "bc6h", "rgbm", "rgbd", "rgbp", "uastc-hdr",
+/// "astc4x4-hdr", "astc6x6-hdr".
+std::string encoding_name(Encoding encoding);
+Result<Encoding> encoding_from_name(const std::string& name);  ///< the error lists the accepted names
+int encoding_block(Encoding encoding);                         ///< texels along a side of a block; 1: single texels
+int encoding_bytes(Encoding encoding);                         ///< of a block
+int encoding_channels(Encoding encoding);                      ///< that carry data: 3, or 2 (red and green)
+double encoding_max(Encoding encoding);                        ///< largest value a channel can hold
+
+/// How hard the encodings that have to search for the best block (bc6h, astc) try; the others take no notice.
+/// fast: a few candidates. standard: nearly all that can be had. high: the last tenths of a decibel. exhaustive: every
+/// mode and partition there is, a yardstick for the others.
+enum class EncodingQuality { fast, standard, high, exhaustive };
+std::string encoding_quality_name(EncodingQuality quality);  ///< "fast", "default", "high", "exhaustive"
+Result<EncodingQuality> encoding_quality_from_name(const std::string& name);
+
+/// What an encoding did to a level.
+struct EncodingReport {
+    std::int64_t clipped_texels = 0;
+    double clipped_energy =
+        0;  ///< radiant power lost by clipping over the level's power, 0..1, solid-angle weighted luminance
+    double rms_error = 0;  ///< relative RMS error of the stored values against the float ones, clipped texels left out
+    /// dB, of log2(v + 1e-4 of the level's mean luminance) channel by channel, against the range of that over the
+    /// level; clipped texels left out. Infinite where nothing was lost.
+    double log_psnr = std::numeric_limits<double>::infinity();
+};
+
+/// Encoded texels: like any byte vector, but one made by size alone is not cleared.
+using TexelBytes = std::vector<std::uint8_t, LargeAllocator<std::uint8_t>>;
+
+/// A GPU texture in memory: levels, each of all faces (cube: 6, +X -X +Y -Y +Z -Z, OpenGL's orientation; else 1),
+/// rows of texels or of blocks tightly packed. A level that is no whole number of blocks wide or high takes one more.
+struct Texture {
+    Encoding encoding = Encoding::rgba16f;
+    int width = 0, height = 0;
+    int faces = 1;
+    std::vector<TexelBytes> levels;               ///< level l: faces one after the other, of face_bytes(l) bytes each
+    std::map<std::string, std::string> metadata;  ///< key/value data, UTF-8 without terminator
+    int level_width(int l) const { return std::max(1, width >> l); }
+    int level_height(int l) const { return std::max(1, height >> l); }
+    /// Blocks (where texels stand alone: texels) in a row of a level, and rows of them.
+    int level_columns(int l) const { return in_blocks(level_width(l)); }
+    int level_rows(int l) const { return in_blocks(level_height(l)); }
+    std::size_t face_bytes(int l) const {
+        return std::size_t(level_columns(l)) * std::size_t(level_rows(l)) * std::size_t(encoding_bytes(encoding));
+    }
+
+  private:
+    int in_blocks(int texels) const { return (texels + encoding_block(encoding) - 1) / encoding_block(encoding); }
+};
+
+/// Encodes float RGB maps (each level half the size of the one before) as a texture. Clips what the encoding cannot
+/// hold and says so, one report a level. Deterministic on any number of threads.
+Texture encode_texture(std::span<const FilteredMap> levels, Encoding encoding, int threads,
+                       std::vector<EncodingReport>* reports = nullptr,
+                       EncodingQuality quality = EncodingQuality::standard);
+/// An RG or RGB float image (a BRDF table) as a texture of one level, in an encoding of single texels.
+Texture encode_table(ImageView<const float> table, Encoding encoding);
+/// Float texels of one face of a level: RGB, or RG for two-channel encodings.
+ImageF decode_texture(const Texture& texture, int level, int face);
+
+/// All levels of a cube of colours. Errors: not six faces; two channels.
+Result<std::vector<Cubemap>> decode_cubes(const Texture& texture);
+
+enum class Supercompression { none, zstd };
+
+/// Containers. An output appears whole or not at all; an existing file is replaced only by a complete one.
+Result<void> write_ktx2(const std::filesystem::path& file, const Texture& texture,
+                        Supercompression compression = Supercompression::none);
+Result<void> write_ktx1(const std::filesystem::path& file, const Texture& texture);
+Result<void> write_dds(const std::filesystem::path& file, const Texture& texture);
+/// DDS with the header from before DX10, for tools that know no other: half and float RGBA and RG; rgbm, rgbd and rgbp
+/// as RGBA bytes, of which it cannot say what they mean.
+Result<void> write_dds9(const std::filesystem::path& file, const Texture& texture);
+
+/// What any KTX2, KTX1 or DDS file says about itself; also for formats whose texels we do not decode.
+struct TextureInfo {
+    std::string container, format;  ///< "KTX2", "VK_FORMAT_R16G16B16A16_SFLOAT"
+    std::string supercompression;   ///< "none", "zstd", ...
+    int width = 0, height = 0, depth = 0, faces = 1, layers = 0, levels = 1;
+    std::map<std::string, std::string> metadata;
+    bool decodable = false;   ///< read_texture can decode it
+    bool eight_bits = false;  ///< a channel: made for a screen, or RGBM and its like
+};
+Result<TextureInfo> read_texture_info(const std::filesystem::path& file);
+/// Reads a texture in one of our encodings, or in half or float RGB or R (which gain the missing channels). Checks
+/// every size and offset against the file before it allocates; refuses what would need more than 2 GiB.
+Result<Texture> read_texture(const std::filesystem::path& file);
+
+}  // namespace domelight

@@ -1,0 +1,64 @@
+#include "base/sha256.h"
+
+#include <openssl/evp.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <vector>
+
+namespace domelight {
+
+struct Sha256::State {
+    EVP_MD_CTX* context = EVP_MD_CTX_new();
+    State() { EVP_DigestInit_ex(context, EVP_sha256(), nullptr); }
+    ~State() { EVP_MD_CTX_free(context); }
+};
+
+Sha256::Sha256() : state_(std::make_unique<State>()) {}
+Sha256::~Sha256() = default;
+Sha256::Sha256(Sha256&&) noexcept = default;
+Sha256& Sha256::operator=(Sha256&&) noexcept = default;
+
+void Sha256::add(std::span<const std::uint8_t> bytes) {
+    EVP_DigestUpdate(state_->context, bytes.data(), bytes.size());
+}
+
+std::string Sha256::finish() {
+    unsigned char digest[EVP_MAX_MD_SIZE];
+    unsigned int length = 0;
+    EVP_DigestFinal_ex(state_->context, digest, &length);
+    std::string hex;
+    for (unsigned int i = 0; i < length; ++i) {
+        hex += "0123456789abcdef"[digest[i] >> 4];
+        hex += "0123456789abcdef"[digest[i] & 15];
+    }
+    return hex;
+}
+
+std::string sha256(std::span<const std::uint8_t> bytes) {
+    Sha256 hash;
+    hash.add(bytes);
+    return hash.finish();
+}
+
+Result<std::string> sha256_file(const std::filesystem::path& file) {
+    return sha256_files({&file, 1});
+}
+
+Result<std::string> sha256_files(std::span<const std::filesystem::path> files) {
+    Sha256 hash;
+    std::vector<std::uint8_t> buffer(std::size_t(1) << 20);
+    for (const auto& file : files) {
+        const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
+        if (!stream) return Error{std::string("cannot be opened: ") + std::strerror(errno), file.string(), ""};
+        std::setvbuf(stream.get(), nullptr, _IONBF, 0);
+        for (std::size_t n; (n = std::fread(buffer.data(), 1, buffer.size(), stream.get())) > 0;)
+            hash.add({buffer.data(), n});
+        if (std::ferror(stream.get()))
+            return Error{std::string("cannot be read: ") + std::strerror(errno), file.string(), ""};
+    }
+    return hash.finish();
+}
+
+}  // namespace domelight

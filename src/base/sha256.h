@@ -1,0 +1,37 @@
+#pragma once
+
+#include "domelight/base/result.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace domelight {
+
+/// SHA-256 (FIPS 180-4) of bytes that arrive piece by piece.
+class Sha256 {
+  public:
+    Sha256();
+    ~Sha256();
+    Sha256(Sha256&&) noexcept;
+    Sha256& operator=(Sha256&&) noexcept;
+
+    void add(std::span<const std::uint8_t> bytes);
+    /// 64 lower-case hexadecimal digits. May be called once.
+    std::string finish();
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+std::string sha256(std::span<const std::uint8_t> bytes);
+
+/// Hash of a file's content, read in pieces; of several files: of their contents one after the other. Errors name the
+/// file.
+Result<std::string> sha256_file(const std::filesystem::path& file);
+Result<std::string> sha256_files(std::span<const std::filesystem::path> files);
+
+}  // namespace domelight

@@ -1,0 +1,146 @@
+#include "compare/audit_fit.h"
+
+#include "domelight/image/colour.h"
+#include "domelight/projection/projection.h"
+#include "domelight/base/random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace domelight {
+namespace {
+
+struct Ratio {
+    float ratio;
+    double weight;
+};
+
+double weighted_median(std::vector<Ratio>& ratios) {
+    std::sort(ratios.begin(), ratios.end(), [](const Ratio& a, const Ratio& b) { return a.ratio < b.ratio; });
+    double total = 0, sum = 0;
+    for (const Ratio& r : ratios) total += r.weight;
+    for (const Ratio& r : ratios)
+        if ((sum += r.weight) >= total / 2) return r.ratio;
+    return 1;
+}
+
+}  // namespace
+
+const std::vector<Mat3>& cube_orientations() {
+    static const std::vector<Mat3> all = [] {
+        std::vector<Mat3> found;
+        constexpr int permutations[6][3] = {{0, 1, 2}, {2, 1, 0}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}};
+        for (const auto& p : permutations)
+            for (int signs = 0; signs < 8; ++signs) {
+                Mat3 m;
+                for (int i = 0; i < 3; ++i) {
+                    const double s = signs >> i & 1 ? -1 : 1;
+                    m.row[std::size_t(i)] = {p[i] == 0 ? s : 0, p[i] == 1 ? s : 0, p[i] == 2 ? s : 0};
+                }
+                found.push_back(m);
+            }
+        return found;
+    }();
+    return all;
+}
+
+double mean_luminance(const Cubemap& cube) {
+    const int n = cube.size();
+    double sum = 0, weight = 0;
+    for (int y = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x) {
+            const double w = cube_solid_angle(x, y, n);
+            for (int f = 0; f < 6; ++f) {
+                const float* p = cube.face(f).at(x, y);
+                const float l = luminance(Vec3f{p[0], p[1], p[2]});
+                if (std::isfinite(l)) sum += w * l, weight += w;
+            }
+        }
+    return weight > 0 ? sum / weight : 0;
+}
+
+TexelSample sample_texels(const Cubemap& cube, int most) {
+    TexelSample sample;
+    const int n = cube.size();
+    sample.size = n;
+    const std::int64_t all = std::int64_t(6) * n * n, pieces = std::min<std::int64_t>(all, most);
+    const auto value = [&](std::int64_t i) {
+        const float* p = cube.strip().row(int(i / n)) + 3 * (i % n);
+        return Vec3f{p[0], p[1], p[2]};
+    };
+    const auto finite = [](const Vec3f& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
+    sample.mean = mean_luminance(cube);
+    for (std::int64_t k = 0; k < pieces; ++k) {
+        const std::int64_t begin = all * k / pieces, end = all * (k + 1) / pieces;
+        const std::int64_t i = begin + std::int64_t(mix_bits(std::uint64_t(k)) % std::uint64_t(end - begin));
+        Vec3f v = value(i);
+        if (!finite(v)) continue;
+        v = {std::max(v.x, 0.0f), std::max(v.y, 0.0f), std::max(v.z, 0.0f)};
+        sample.texels.push_back(int(i));
+        sample.weights.push_back(cube_solid_angle(int(i % n), int(i / n) % n, n) * double(all) / double(pieces));
+        sample.values.push_back(v);
+        sample.luminance.push_back(luminance(v));
+    }
+    return sample;
+}
+
+std::vector<int> turned_texels(const TexelSample& sample, const Mat3& m) {
+    const int n = sample.size;
+    std::vector<int> turned;
+    turned.reserve(sample.texels.size());
+    for (const int i : sample.texels) {
+        const int x = i % n, row = i / n;
+        const CubePoint p = cube_point(m * cube_direction(row / n, {(x + 0.5) / n, (row % n + 0.5) / n}));
+        const int tx = std::clamp(int(p.uv.u * n), 0, n - 1), ty = std::clamp(int(p.uv.v * n), 0, n - 1);
+        turned.push_back((p.face * n + ty) * n + tx);
+    }
+    return turned;
+}
+
+Fit fit_level(const TexelSample& sample, const Cubemap& exact, const std::vector<int>& turned, double scale,
+              bool quick) {
+    const std::size_t count = turned.size();
+    const float* const pixels = exact.pixels().data();
+    const auto truth = [&](std::size_t k) {
+        const float* p = pixels + 3 * std::size_t(turned[k]);
+        return Vec3f{p[0], p[1], p[2]};
+    };
+    Fit fit;
+    if (scale > 0) {
+        fit.scale = scale;
+    } else if (quick) {
+        double logs = 0, weight = 0;
+        for (std::size_t k = 0; k < count; ++k)
+            if (const float e = luminance(truth(k)), t = sample.luminance[k]; e > 0 && t > 0)
+                logs += sample.weights[k] * std::log(t / e), weight += sample.weights[k];
+        fit.scale = weight > 0 ? std::exp(logs / weight) : 1;
+    } else {
+        std::vector<Ratio> ratios;
+        for (std::size_t k = 0; k < count; ++k)
+            if (const float e = luminance(truth(k)); e > 0)
+                ratios.push_back({sample.luminance[k] / e, sample.weights[k]});
+        fit.scale = weighted_median(ratios);
+    }
+    if (!(fit.scale > 0)) fit.scale = 1;
+    // Differences of what is nearly black say nothing: below a thousandth of the mean they count as less.
+    const double floor = 1e-3 * sample.mean;
+    double squared = 0, weight = 0, difference = 0, power = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        const Vec3f e = truth(k), t = sample.values[k];
+        const double w = sample.weights[k];
+        for (const auto& [a, b] : {std::pair(t.x, e.x), std::pair(t.y, e.y), std::pair(t.z, e.z)}) {
+            const double f = fit.scale * b, d = a - f, r = d / (std::max(double(a), f) + floor);
+            squared += w * r * r;
+            difference += w * d * d;
+            power += w * f * f;
+            fit.largest = std::max(fit.largest, std::abs(r));
+        }
+        weight += 3 * w;
+    }
+    fit.error = weight > 0 ? std::sqrt(squared / weight) : 1;
+    fit.relative_rmse = power > 0 ? std::sqrt(difference / power) : 0;
+    return fit;
+}
+
+}  // namespace domelight

@@ -1,0 +1,139 @@
+#include "domelight/engines/engine.h"
+
+#include "engines/all.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+namespace domelight {
+
+std::string quantity_name(Quantity quantity) {
+    switch (quantity) {
+        case Quantity::radiance:
+            return "radiance";
+        case Quantity::irradiance:
+            return "irradiance";
+        case Quantity::irradiance_over_pi:
+            return "irradiance_over_pi";
+    }
+    return {};
+}
+
+namespace {
+
+struct ContainerFacts {
+    const char *name, *extension;
+    bool fits_any_target;
+};
+
+/// In the order of the enumeration.
+constexpr ContainerFacts k_containers[] = {
+    {"ktx2", ".ktx2", true},  {"ktx1", ".ktx", true},
+    {"dds", ".dds", true},    {"dds9", ".dds", true},
+    {"exr", ".exr", true},    {"exr-mip", ".exr", true},
+    {"hdr", ".hdr", true},    {"env", ".env", false},
+    {"gltf", ".gltf", false}, {"playcanvas-atlas", ".png", false},
+};
+
+}  // namespace
+
+std::string container_name(Container container) {
+    return k_containers[std::size_t(container)].name;
+}
+
+std::string container_extension(Container container) {
+    return k_containers[std::size_t(container)].extension;
+}
+
+Result<Container> container_from_name(const std::string& name) {
+    std::string accepted;
+    for (std::size_t i = 0; i < std::size(k_containers); ++i) {
+        if (!k_containers[i].fits_any_target) continue;
+        if (k_containers[i].name == name) return Container(i);
+        accepted += (accepted.empty() ? "" : ", ") + std::string(k_containers[i].name);
+    }
+    return Error{fmt::format("\"{}\" is not a format; accepted are {}", name, accepted), "", ""};
+}
+
+std::string cube_mirror_direction(CubeMirror mirror) {
+    switch (mirror) {
+        case CubeMirror::none:
+            return "d";
+        case CubeMirror::x:
+            return "(-x, y, z)";
+        case CubeMirror::z:
+            return "(x, y, -z)";
+        case CubeMirror::swap_yz:
+            return "(x, z, y)";
+    }
+    return {};
+}
+
+std::string brdf_form_name(BrdfForm form) {
+    switch (form) {
+        case BrdfForm::none:
+            return "none";
+        case BrdfForm::scale_bias:
+            return "scale-bias";
+        case BrdfForm::multiscatter:
+            return "multiscatter";
+        case BrdfForm::scale_bias_charlie:
+            return "scale-bias-charlie";
+    }
+    return {};
+}
+
+Result<BrdfForm> brdf_form_from_name(const std::string& name) {
+    for (const auto form : {BrdfForm::none, BrdfForm::scale_bias, BrdfForm::multiscatter, BrdfForm::scale_bias_charlie})
+        if (brdf_form_name(form) == name) return form;
+    return Error{
+        fmt::format(
+            "\"{}\" is not a form of BRDF table; accepted are none, scale-bias, multiscatter, scale-bias-charlie",
+            name),
+        "", ""};
+}
+
+double linear_roughness(int level, int levels, int) {
+    return levels > 1 ? double(level) / (levels - 1) : 0;
+}
+
+int default_levels(const Target& target, int size) {
+    int levels = 1;
+    while ((size >> levels) >= std::max(1, target.smallest)) ++levels;
+    return levels;
+}
+
+std::vector<double> default_phong_exponents(int levels) {
+    std::vector<double> exponents{INFINITY};
+    for (int l = 1; l < levels; ++l) exponents.push_back(std::max(1.0, 2048 * std::pow(0.25, l - 1)));
+    return exponents;
+}
+
+double quadratic_roughness(int level, int levels, int) {
+    return levels > 1 ? 1 - std::sqrt(1 - double(level) / (levels - 1)) : 0;
+}
+
+std::span<const Target> targets() {
+    static const std::array all{generic_target(),  khronos_target(), filament_target(),      babylon_target(),
+                                bevy_target(),     three_target(),   three_latlong_target(), playcanvas_target(),
+                                gltf_target(),     godot_target(),   unity_target(),         unreal_target(),
+                                blender_target(),  mitsuba_target(), pbrt_target(),          usd_target(),
+                                materialx_target()};
+    return all;
+}
+
+Result<const Target*> find_target(const std::string& name) {
+    std::string names;
+    for (const Target& target : targets()) {
+        if (target.name == name) return &target;
+        if (!names.empty()) names += ", ";
+        names += target.name;
+    }
+    return Error{fmt::format("\"{}\" is not a target; accepted are {}", name, names), "", ""};
+}
+
+}  // namespace domelight

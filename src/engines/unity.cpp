@@ -1,0 +1,40 @@
+#include "engines/all.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace domelight {
+namespace {
+
+/// Unity reads level = 6 r (1.7 - 0.7 r) of seven: 0.7 r^2 - 1.7 r + level / 6 = 0, the root below 1.
+double unity_roughness(int level, int levels, int) {
+    const double y = levels > 1 ? double(level) / (levels - 1) : 0;
+    return (1.7 - std::sqrt(std::max(0.0, 2.89 - 2.8 * y))) / 1.4;
+}
+
+}  // namespace
+
+/// Unity: a DDS cube of half floats with the seven levels that its shaders read, and the environment as a lat-long EXR
+/// for the importer (Texture Shape: Cube). Unity's world is left-handed with +Y up; its glTF importers turn (x, y, z)
+/// into (-x, y, z), so the cube is mirrored in x. Its lat-long pictures have +Z in the centre and +X on the right,
+/// which is -X in glTF's world.
+Target unity_target() {
+    Target t;
+    t.name = "unity";
+    t.consumer = "Unity: DDS cube with its seven levels, and a lat-long EXR for its own importer";
+    t.note = "by its documents and published shaders, not run here";
+    t.size = 256;
+    t.smallest = 4;  // 256^2 to 4^2: seven
+    t.roughness = unity_roughness;
+    t.mirror = CubeMirror::x;
+    t.container = Container::dds;
+    t.specular_file = "{stem}";
+    t.panorama_file = "{stem}_latlong";
+    t.panorama = "latlong/usd";
+    t.irradiance_file = "";  // it lights with harmonics: sh.json
+    t.brdf_file = "";
+    t.brdf_form = BrdfForm::none;
+    return t;
+}
+
+}  // namespace domelight

@@ -1,0 +1,29 @@
+#pragma once
+// Texels of eight bits a channel, which old textures have: made for a screen, or RGBM and its like in disguise.
+
+#include "domelight/texture/texture.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace domelight {
+
+/// How a file stores them.
+struct ScreenTexels {
+    enum class Kind { bytes, bc1, bc2, bc3 };
+    Kind kind = Kind::bytes;
+    int bytes = 4;                              ///< of a texel, where kind is bytes
+    std::array<int, 4> channel = {0, 1, 2, 3};  ///< which byte is red, green, blue and alpha; -1: there is none
+};
+
+/// What their numbers mean: "auto" and "srgb", "gamma22", "linear" give half floats; "rgbm", "rgbd" and "rgbp" are kept
+/// as they are.
+Result<Encoding> screen_encoding(const std::string& decode);
+
+/// One image of a level: `stored` holds its rows of texels, or of blocks, to width x height texels of
+/// screen_encoding(decode) at `out`.
+void decode_screen_texels(const ScreenTexels& texels, const std::string& decode, const std::uint8_t* stored, int width,
+                          int height, std::uint8_t* out);
+
+}  // namespace domelight

@@ -1,0 +1,111 @@
+#include "domelight/filtering/brdf/brdf_table.h"
+
+#include "domelight/sampling/low_discrepancy.h"
+#include "domelight/sampling/microfacet.h"
+#include "domelight/base/parallel.h"
+
+#include "filtering/brdf/brdf_embedded.h"
+#include "filtering/brdf/brdf_quadrature.h"
+
+#include <cassert>
+#include <cmath>
+#include <cstring>
+
+namespace domelight {
+namespace {
+
+/// Fills a table texel by texel: `terms(NdotV, alpha)` gives (scale, bias, charlie).
+template <typename Terms>
+ImageF fill(int size, int threads, const Terms& terms) {
+    assert(size >= 1);
+    ImageF table(size, size, 3);
+    parallel_for(size, threads, [&](int y) {
+        const double roughness = (y + 0.5) / size;
+        for (int x = 0; x < size; ++x) {
+            const Vec3d value = terms((x + 0.5) / size, roughness * roughness);
+            float* p = table.at(x, y);
+            p[0] = float(value.x), p[1] = float(value.y), p[2] = float(value.z);
+        }
+    });
+    return table;
+}
+
+/// Karis 2013, IntegrateBRDF: half vectors drawn from D NdotH, so what is left of each sample is G VdotH / (NdotH
+/// NdotV).
+BrdfTerms montecarlo_terms(double NdotV, double alpha, BrdfG g, int samples) {
+    const double s_v = std::sqrt((1 - NdotV) * (1 + NdotV)), a2 = alpha * alpha;
+    BrdfTerms sum;
+    for (int i = 0; i < samples; ++i) {
+        const double xi = radical_inverse(std::uint32_t(i)), phi = 2 * k_pi * i / samples;
+        const PolarSquares h = ggx_half_angle(xi, a2);
+        const double c_h = std::sqrt(h.cos2), s_h = std::sqrt(h.sin2);
+        const double VdotH = NdotV * c_h + s_v * s_h * std::cos(phi), NdotL = 2 * VdotH * c_h - NdotV;
+        if (NdotL <= 0) continue;
+        const double f = 4 * brdf_visibility(NdotL, NdotV, alpha, g) * NdotL * VdotH / c_h;
+        const double fresnel = schlick_weight(VdotH);
+        sum.scale += (1 - fresnel) * f;
+        sum.bias += fresnel * f;
+    }
+    return {sum.scale / samples, sum.bias / samples};
+}
+
+/// The sheen's albedo from half vectors spread evenly over the hemisphere, as the Khronos tool draws them.
+double montecarlo_sheen(double NdotV, double alpha, int samples) {
+    const double s_v = std::sqrt((1 - NdotV) * (1 + NdotV));
+    double sum = 0;
+    for (int i = 0; i < samples; ++i) {
+        const double c_h = 1 - radical_inverse(std::uint32_t(i)), s2_h = (1 - c_h) * (1 + c_h),
+                     phi = 2 * k_pi * i / samples;
+        const double VdotH = NdotV * c_h + s_v * std::sqrt(s2_h) * std::cos(phi), NdotL = 2 * VdotH * c_h - NdotV;
+        if (NdotL <= 0) continue;
+        sum +=
+            charlie_d(s2_h, alpha) * NdotL * VdotH / (NdotL + NdotV - NdotL * NdotV);  // 4 VdotH dh = dl, V's own 1/4
+    }
+    return sum * 2 * k_pi / samples;
+}
+
+}  // namespace
+
+ImageF brdf_table(const BrdfTableOptions& options) {
+    const ImageF& embedded = brdf_table_default();
+    const bool same_sheen = options.size == embedded.width();  // it does not depend on G
+    if (same_sheen && options.g == BrdfG::correlated) return embedded;
+    ImageF table = fill(options.size, options.threads, [&](double NdotV, double alpha) {
+        const BrdfTerms terms = integrate_brdf(NdotV, alpha, options.g);
+        return Vec3d{terms.scale, terms.bias, same_sheen ? 0 : integrate_sheen(NdotV, alpha)};
+    });
+    if (same_sheen)
+        for (std::size_t i = 2; i < table.pixels().size(); i += 3) table.pixels()[i] = embedded.pixels()[i];
+    return table;
+}
+
+ImageF brdf_table_multiscatter(ImageView<const float> table) {
+    assert(table.channels == 3);
+    ImageF out(table.width, table.height, 3);
+    for (int y = 0; y < table.height; ++y)
+        for (int x = 0; x < table.width; ++x) {
+            const float* in = table.at(x, y);
+            float* p = out.at(x, y);
+            p[0] = in[1], p[1] = in[0] + in[1], p[2] = in[2];
+        }
+    return out;
+}
+
+ImageF brdf_table_montecarlo(const BrdfTableOptions& options, int samples) {
+    assert(samples >= 1);
+    return fill(options.size, options.threads, [&](double NdotV, double alpha) {
+        const BrdfTerms terms = montecarlo_terms(NdotV, alpha, options.g, samples);
+        return Vec3d{terms.scale, terms.bias, montecarlo_sheen(NdotV, alpha, samples)};
+    });
+}
+
+const ImageF& brdf_table_default() {
+    static const ImageF table = [] {
+        ImageF image(k_brdf_embedded_size, k_brdf_embedded_size, 3);
+        std::memcpy(image.pixels().data(), k_brdf_embedded, image.pixels().size_bytes());
+        return image;
+    }();
+    return table;
+}
+
+}  // namespace domelight

@@ -1,0 +1,78 @@
+#include "filtering/harmonic/bright_texels.h"
+
+#include "domelight/projection/projection.h"
+
+#include "filtering/harmonic/tent_nodes.h"
+#include "filtering/harmonic/row_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace domelight {
+
+namespace {
+
+/// A texel smaller than this part of 1 / L is a point to degrees around L: its tent's second moment, (tau L)^2 / 12, is
+/// below 3 %, of what is a thousandth itself.
+constexpr double k_point_like = 0.6;
+
+}  // namespace
+
+BrightTexels::BrightTexels(int width, int height, int most) : width_(width), height_(height), most_(most) {
+    heap_.reserve(most + 1);
+}
+
+void BrightTexels::add_rows(ImageView<const float> rows, std::span<const simd::Summary> summaries) {
+    for (int y = 0; y < rows.height; ++y, ++next_row_) {
+        const float* row = rows.row(y);
+        const double solid_angle = latlong_solid_angle(next_row_, width_, height_);
+        const simd::Summary& summary = summaries[std::size_t(y)];
+        sum_ += summary.sum / 3 * solid_angle;
+        // What is too weak for the rows so far is too weak for all of them. (Half, for the mean that points() will be
+        // given: of the reconstruction.)
+        const double too_weak = 0.5 * k_least_share * sum_;
+        const auto weakest = [&] {
+            return int(heap_.size()) < most_ ? too_weak : std::max(too_weak, heap_.front().power);
+        };
+        if (summary.largest * solid_angle <= weakest()) continue;
+        for (int x = 0; x < width_; ++x) {
+            const float* p = row + 3 * x;
+            const double power = std::max({p[0], p[1], p[2]}) * solid_angle;
+            if (power <= weakest()) continue;
+            heap_.push_back({power, x, next_row_, {p[0], p[1], p[2]}});
+            std::push_heap(heap_.begin(), heap_.end(), stronger);
+            if (int(heap_.size()) > most_) {
+                std::pop_heap(heap_.begin(), heap_.end(), stronger);
+                heap_.pop_back();
+            }
+        }
+    }
+}
+
+BrightPoints BrightTexels::points(const Vec3d& mean, int band_limit) const {
+    const double largest = std::max({mean.x, mean.y, mean.z}), total = 4 * k_pi * largest;
+    std::vector<Texel> texels;
+    for (const Texel& t : heap_)
+        if (t.power > k_least_share * total && std::max({t.rgb[0], t.rgb[1], t.rgb[2]}) > k_least_contrast * largest)
+            texels.push_back(t);
+    std::sort(texels.begin(), texels.end(), stronger);
+
+    // A texel wider than a few waves is no point: its own tent has smoothed it beyond what truncation could show.
+    const int nodes = 1 + int(k_pi / height_ * band_limit);
+    if (nodes > 16) return {};
+    texels.resize(std::min(texels.size(), std::size_t(k_most_points / (4 * nodes * nodes) + 1)));
+    BrightPoints points;
+    for (const Texel& t : texels) {
+        if (k_pi / height_ * band_limit < k_point_like) {
+            const double theta = k_pi * (t.y + 0.5) / height_, s = std::sin(theta),
+                         phi = 2 * k_pi * (t.x + 0.5) / width_ - k_pi;
+            points.add({s * std::cos(phi), std::cos(theta), s * std::sin(phi)},
+                       latlong_solid_angle(t.y, width_, height_), t.rgb);
+        } else {
+            add_tent_nodes(points, width_, height_, t.x, t.y, t.rgb, nodes);
+        }
+    }
+    return points;
+}
+
+}  // namespace domelight

@@ -1,0 +1,156 @@
+#include "filtering/harmonic/cube_analysis.h"
+
+#include "domelight/base/parallel.h"
+#include "domelight/projection/projection.h"
+
+#include "filtering/harmonic/ring_analysis.h"
+#include "filtering/harmonic/sphere_grid.h"
+#include "base/gauss_legendre.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace domelight {
+namespace {
+
+constexpr double k_decay = 16;
+
+/// Nodes along one coordinate of a face, cut at texel centres and at the face's edges. Coordinates run over [-1, 1].
+struct AxisNode {
+    double at, weight;
+    int cell;         ///< between texels cell and cell + 1; -1 .. size - 1
+    double fraction;  ///< from texel `cell` to the next
+};
+
+std::vector<AxisNode> axis_nodes(int size, int nodes_a_cell) {
+    const auto& rule = gauss_legendre(nodes_a_cell);
+    std::vector<AxisNode> nodes;
+    for (int cell = -1; cell < size; ++cell) {
+        const double low = cell < 0 ? 0.5 : 0, high = cell == size - 1 ? 0.5 : 1;
+        for (std::size_t q = 0; q < rule.x.size(); ++q) {
+            const double fraction = low + (high - low) * 0.5 * (1 + rule.x[q]);
+            nodes.push_back({2 * (cell + 0.5 + fraction) / size - 1, rule.w[q] * (high - low) / size, cell, fraction});
+        }
+    }
+    return nodes;
+}
+
+/// Enough nodes that a function of this band limit is integrated over a texel's width.
+int nodes_a_cell(int size, int band_limit) {
+    return std::clamp(2 + int(0.75 * band_limit / size), 2, 10);
+}
+
+/// Spreads the patches of one face.
+void scatter_face(const BorderedCube& cube, int face, std::span<const AxisNode> axis, const simd::TapTable& table,
+                  SphereGrid& grid) {
+    const int count = int(axis.size());
+    std::vector<double> x(count), y(count), z(count);
+    std::vector<float> rgb(3 * std::size_t(count));
+    const simd::GridView view = grid.view();
+    for (const AxisNode& down : axis) {
+        for (int i = 0; i < count; ++i) {
+            const AxisNode& right = axis[i];
+            const Vec3d d = cube_direction(face, {0.5 * (right.at + 1), 0.5 * (down.at + 1)});
+            x[i] = d.x, y[i] = d.y, z[i] = d.z;
+            // A face at distance 1: d omega = ds dt / (1 + s^2 + t^2)^(3/2).
+            const double r2 = 1 + right.at * right.at + down.at * down.at,
+                         weight = right.weight * down.weight / (r2 * std::sqrt(r2));
+            const float *a = cube.texel(face, right.cell, down.cell), *b = cube.texel(face, right.cell, down.cell + 1);
+            for (int c = 0; c < 3; ++c) {
+                const double top = a[c] + right.fraction * (a[c + 3] - double(a[c])),
+                             bottom = b[c] + right.fraction * (b[c + 3] - double(b[c]));
+                rgb[3 * i + c] = float(weight * (top + down.fraction * (bottom - top)));
+            }
+        }
+        simd::scatter_directions(view, grid.ring(0), table, x.data(), y.data(), z.data(), count, rgb.data());
+    }
+}
+
+/// Adds the columns beyond the ends of each row to those they stand for, and the other grids to the first.
+void gather_grids(std::vector<SphereGrid>& grids, int threads) {
+    const RingGrid grid = grids[0].grid();
+    constexpr int pad = SphereGrid::k_pad;
+    parallel_ranges(grid.rings + 2 * pad, 16, threads, [&](int begin, int end) {
+        for (int k = begin - pad; k < end - pad; ++k) {
+            float* row = grids[0].ring(k);
+            for (std::size_t g = 1; g < grids.size(); ++g)
+                for (int i = -4 * pad; i < 4 * (grid.width + 2 * pad); ++i) row[i] += grids[g].ring(k)[i];
+            for (int i = 0; i < 4 * pad; ++i) row[4 * (grid.width - pad) + i] += row[i - 4 * pad];
+            for (int i = 0; i < 8 * pad; ++i) row[i] += row[4 * grid.width + i];
+        }
+    });
+}
+
+}  // namespace
+
+Spectrum analyse_cube(const BorderedCube& cube, int band_limit, int threads) {
+    RingAnalysis rings(ring_grid_for(band_limit).width, band_limit,
+                       std::vector<std::complex<double>>(band_limit + 1, 1));
+    const RingGrid grid = rings.grid();
+    const simd::TapTable table(InterpolationTaps(8, double(band_limit) / grid.rings, k_decay));
+    const auto axis = axis_nodes(cube.size(), nodes_a_cell(cube.size(), band_limit));
+    // Faces overlap on the rings, so each has a grid of its own, unless these would take too much memory; never a
+    // matter of the threads.
+    const int grid_count = std::int64_t(grid.rings) * grid.width < (4 << 20) ? 6 : 1;
+    std::vector<SphereGrid> grids;
+    for (int g = 0; g < grid_count; ++g) grids.emplace_back(grid);
+    parallel_for(grid_count, threads, [&](int g) {
+        for (int face = g; face < 6; face += grid_count) scatter_face(cube, face, axis, table, grids[g]);
+    });
+    gather_grids(grids, threads);
+
+    const std::ptrdiff_t stride = grids[0].view().stride;
+    parallel_for(3 * rings.batch_count(), threads, [&](int task) {
+        const int batch = task / 3, first = batch * RingAnalysis::k_batch,
+                  rows = std::min(RingAnalysis::k_batch, rings.row_count() - first);
+        const float* from = grids[0].ring(first - RingAnalysis::k_pad);
+        if (rows == RingAnalysis::k_batch) return rings.transform(from, stride, 4, batch, task % 3);
+        AlignedArray<float> padded(std::size_t(RingAnalysis::k_batch) * stride);
+        for (int k = 0; k < rows; ++k) std::copy_n(from + k * stride, 4 * grid.width, padded.data() + k * stride);
+        rings.transform(padded.data(), stride, 4, batch, task % 3);
+    });
+    return rings.finish(threads);
+}
+
+BrightPoints bright_points(const BorderedCube& cube, const Vec3d& mean, int band_limit, int most) {
+    const int n = cube.size();
+    struct Texel {
+        double power;
+        int face, x, y;
+    };
+    // Border texels too: on their face they stand for a neighbour's light.
+    std::vector<Texel> texels;
+    const double of_mean = std::max({mean.x, mean.y, mean.z}), least = k_least_share * 4 * k_pi * of_mean;
+    for (int f = 0; f < 6; ++f)
+        for (int y = -1; y <= n; ++y)
+            for (int x = -1; x <= n; ++x) {
+                const float* p = cube.texel(f, x, y);
+                const float largest = std::max({p[0], p[1], p[2]});
+                if (largest * 4.0 / (double(n) * n) <= least) continue;  // no texel is larger than 4 / n^2
+                const double power = largest * cube_solid_angle(std::clamp(x, 0, n - 1), std::clamp(y, 0, n - 1), n);
+                if (power > least && largest > k_least_contrast * of_mean) texels.push_back({power, f, x, y});
+            }
+    std::stable_sort(texels.begin(), texels.end(), [](const Texel& a, const Texel& b) { return a.power > b.power; });
+    const auto axis = axis_nodes(n, nodes_a_cell(n, band_limit));
+    const int per_cell = int(axis.size()) / (n + 1);
+    most = std::min(most, k_most_points / (4 * per_cell * per_cell));
+    if (int(texels.size()) > most) texels.resize(std::size_t(most));
+    BrightPoints points;
+    for (const Texel& t : texels) {
+        const float* value = cube.texel(t.face, t.x, t.y);
+        // The tent spans the cells before and after the texel.
+        for (int j = std::max(0, t.y * per_cell); j < std::min((t.y + 2) * per_cell, int(axis.size())); ++j)
+            for (int i = std::max(0, t.x * per_cell); i < std::min((t.x + 2) * per_cell, int(axis.size())); ++i) {
+                const auto tent = [](const AxisNode& node, int texel) {
+                    return node.cell == texel ? 1 - node.fraction : node.fraction;
+                };
+                const double s = axis[i].at, v = axis[j].at, r2 = 1 + s * s + v * v;
+                const double weight =
+                    tent(axis[i], t.x) * tent(axis[j], t.y) * axis[i].weight * axis[j].weight / (r2 * std::sqrt(r2));
+                points.add(cube_direction(t.face, {0.5 * (s + 1), 0.5 * (v + 1)}) / std::sqrt(r2), weight, value);
+            }
+    }
+    return points;
+}
+
+}  // namespace domelight

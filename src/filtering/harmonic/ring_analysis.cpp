@@ -1,0 +1,94 @@
+#include "filtering/harmonic/ring_analysis.h"
+
+#include "domelight/base/parallel.h"
+
+#include "filtering/harmonic/row_kernels.h"
+
+#include <algorithm>
+
+namespace domelight {
+
+RingAnalysis::RingAnalysis(int width, int band_limit, std::vector<std::complex<double>> order_factors)
+    : width_(width),
+      band_limit_(band_limit),
+      grid_(ring_grid_for(band_limit)),
+      fft_(width),
+      order_factors_(std::move(order_factors)),
+      stride_(batch_count() * k_batch),
+      rings_(std::size_t(band_limit + 1) * 6 * stride_, false) {}
+
+/// Two real rows a lane, as real and imaginary part: X = A + iB gives A_m = (X_m + conj X_-m) / 2, B_m = (X_m - conj
+/// X_-m) / 2i.
+void RingAnalysis::transform(const float* rows, std::ptrdiff_t stride, int texel, int batch, int channel) {
+    AlignedArray<float> data(std::size_t(width_) * k_batch, false);
+    simd::gather_fft_rows(rows + channel, stride, texel, width_, data.data());
+    fft_.forward(data.data());
+    for (int m = 0; m <= band_limit_; ++m) {
+        const int f = m % width_;
+        const float* plus = data.data() + std::size_t(fft_.position(f)) * k_batch;
+        const float* minus = data.data() + std::size_t(fft_.position((width_ - f) % width_)) * k_batch;
+        float* re = rings_.data() + (std::size_t(m) * 6 + 2 * channel) * stride_ + std::size_t(batch) * k_batch;
+        float* im = re + stride_;
+        const float c = float(0.5 * order_factors_[m].real()), s = float(0.5 * order_factors_[m].imag());
+        for (int i = 0; i < simd::k_fft_lanes; ++i) {
+            const float pr = plus[i], pi = plus[i + simd::k_fft_lanes], mr = minus[i],
+                        mi = minus[i + simd::k_fft_lanes];
+            const float ar = pr + mr, ai = pi - mi, br = pi + mi, bi = mr - pr;
+            re[i] = ar * c - ai * s;
+            im[i] = ar * s + ai * c;
+            re[i + simd::k_fft_lanes] = br * c - bi * s;
+            im[i + simd::k_fft_lanes] = br * s + bi * c;
+        }
+    }
+}
+
+void RingAnalysis::add_orders(int row, double weight, std::span<const std::complex<double>> orders) {
+    for (int m = 0; m <= band_limit_; ++m)
+        for (int c = 0; c < 3; ++c) {
+            const std::complex<double> value = weight * order_factors_[m] * orders[3 * m + c];
+            float* re = rings_.data() + (std::size_t(m) * 6 + 2 * c) * stride_ + row;
+            re[0] += float(value.real());
+            re[stride_] += float(value.imag());
+        }
+}
+
+Spectrum RingAnalysis::finish(int threads) {
+    const NorthernRings north(grid_.rings);
+    Spectrum spectrum(band_limit_);
+    const int rings = grid_.rings;
+    constexpr int orders_at_once = 4;
+    parallel_ranges(band_limit_ + 1, orders_at_once, threads, [&](int begin, int end) {
+        LegendreWalk walk(north, band_limit_);
+        AlignedArray<float> even_odd(12 * std::size_t(north.padded));
+        for (int m = begin; m < end; ++m) {
+            const float turned = m % 2 ? -1.f : 1.f;  // half a turn multiplies order m by (-1)^m
+            for (int c = 0; c < 6; ++c) {
+                float* ring = rings_.data() + (std::size_t(m) * 6 + c) * stride_ + k_pad;
+                for (int k = 0; k < k_pad; ++k) {
+                    ring[k] += turned * ring[-1 - k];
+                    ring[rings - 1 - k] += turned * ring[rings + k];
+                }
+                float *even = even_odd.data() + std::size_t(c) * north.padded,
+                      *odd = even + 6 * std::size_t(north.padded);
+                for (int k = 0; k < north.count; ++k) {
+                    even[k] = ring[k] + ring[rings - 1 - k];
+                    odd[k] = ring[k] - ring[rings - 1 - k];
+                }
+            }
+            for (int parity = 0; parity < 2; ++parity) {
+                float* block = spectrum.block(m, parity);
+                const float* data = even_odd.data() + std::size_t(parity) * 6 * north.padded;
+                walk.walk(m, parity, [&](int first, int count, int first_ring, const float* p) {
+                    simd::project_rows(p + first_ring, north.padded, count, data + first_ring, north.padded,
+                                       north.padded - first_ring, block + 6 * first);
+                });
+                if (const int count = spectrum.block_count(m, parity);
+                    count > 0 && m + parity + 2 * (count - 1) > band_limit_)
+                    std::fill_n(block + 6 * (count - 1), 6, 0.f);
+            }
+        }
+    });
+    return spectrum;
+}
+
+}  // namespace domelight

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "domelight/filtering/resample/reproject.h"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace domelight::reproject_detail {
+
+/// A place in a source picture, in texels of a chart: texel i covers [i, i + 1).
+struct Place {
+    int chart = 0;
+    double x = 0, y = 0;
+    int region = 0;  ///< between a chart's regions lie seams
+    bool shown = true;
+};
+
+/// Radiance within a texel, xi and eta from -1/2 to 1/2: mean + across xi + down eta + across2 (xi^2 - 1/12) + down2
+/// (eta^2 - 1/12). Its mean by solid angle is the texel's value.
+struct Cell {
+    Vec3d mean, across, down, across2, down2;
+    Vec3d at(double xi, double eta) const {
+        return mean + across * xi + down * eta + across2 * (xi * xi - 1.0 / 12) + down2 * (eta * eta - 1.0 / 12);
+    }
+};
+
+/// A source picture with what reprojecting asks of it.
+class Source {
+  public:
+    Source(const ProjectedImage& image, int threads);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    int charts() const { return projection_.charts(); }
+    bool wraps() const { return projection_.shape().wraps(); }
+    bool black_beyond() const { return black_beyond_; }
+
+    Place locate(const Vec3d& world) const;
+    /// The same where `near`'s chart and region go on.
+    Place locate_near(const Vec3d& world, const Place& near) const;
+    /// Radiance of a texel as a function; x wraps where the picture does, else it is clamped, as is y.
+    Cell cell(int chart, int x, int y) const;
+    double solid_angle(int x, int y) const {
+        return rows_alike_ ? solid_angle_[std::size_t(y)] : solid_angle_[std::size_t(y) * width_ + x];
+    }
+    /// The solid angle's density within a texel of row y is 1 + density_slope(y) eta times its mean. (0 but for
+    /// lat-long maps, near whose poles it matters.)
+    double density_slope(int y) const {
+        return rows_alike_ && projection_.grid() == SampleGrid::centres
+                   ? k_pi / height_ / std::tan(k_pi * (y + 0.5) / height_)
+                   : 0;
+    }
+    /// Of the texels of all charts.
+    double mean_solid_angle() const { return projection_.shape().coverage() / (double(width_) * height_ * charts()); }
+    /// At a place (shown or not: there the nearest).
+    Vec3d at(const Place& place) const;
+
+  private:
+    static constexpr int k_border = 2;
+    const float* texel(int chart, int x, int y) const {  // up to k_border outside
+        return padded_.at(x + k_border, chart * (height_ + 2 * k_border) + y + k_border);
+    }
+    Place in_texels(int chart, UV uv, int region, bool shown) const;
+    void fill_border(const ProjectedImage& image, int chart);
+
+    Projection projection_;
+    int width_, height_;
+    bool rows_alike_, black_beyond_;
+    ImageF padded_;  ///< each chart with a border that continues it
+    std::vector<double> solid_angle_;
+};
+
+/// Halves each chart as long as its texels are less than a sixth of the target's across: means by solid angle.
+ProjectedImage reduce(const ProjectedImage& image, double target_texel, int threads);
+
+}  // namespace domelight::reproject_detail

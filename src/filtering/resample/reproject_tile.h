@@ -1,0 +1,44 @@
+#pragma once
+
+#include "filtering/resample/reproject_source.h"
+
+namespace domelight::reproject_detail {
+
+/// Light and solid angle of a region of the source, by which its mean is their quotient.
+struct Flux {
+    Vec3d light;
+    double solid_angle = 0;
+    void add(double weight, const Flux& f) {
+        light = light + f.light * weight;
+        solid_angle += weight * f.solid_angle;
+    }
+};
+
+/// int over polygons of a rectangle of source texels [x0, x1) x [y0, y1) of one chart.
+///
+/// By Green's theorem int int p dx dy = closed integral of G dy, G(x, y) = int_x0^x p dx': with G known at each texel's
+/// left edge (sums along the rows), a polygon costs as much as its outline crosses texels. p is the light's density per
+/// area of the picture, quadratic within a texel: G is cubic along a line, and two Gauss nodes a piece are exact.
+class TileIntegrator {
+  public:
+    /// False where the rectangle has more texels than would pay.
+    bool prepare(const Source& source, int chart, int x0, int y0, int x1, int y1);
+    /// int G dy along the straight line from (ax, ay) to (bx, by), both within the rectangle.
+    Flux along(double ax, double ay, double bx, double by) const;
+
+  private:
+    struct Column {
+        Flux constant;  ///< G at the texel's left edge: constant + slope eta + curve (eta^2 - 1/12)
+        Vec3d slope, curve;
+        Cell cell;
+        double solid_angle;
+    };
+    Flux potential(const Column& c, double xi, double eta) const;
+
+    int x0_ = 0, y0_ = 0, width_ = 0, height_ = 0;
+    std::vector<Column> columns_;
+    std::vector<double> density_slope_;  ///< of each row: Source::density_slope
+    bool is_even_ = true;                ///< all of them 0
+};
+
+}  // namespace domelight::reproject_detail

@@ -1,0 +1,250 @@
+#include "domelight/base/parallel.h"
+
+#include "image/colour_primaries.h"
+#include "image/repair.h"
+#include "io/exr/exr_header_reader.h"
+#include "io/exr/exr_stream.h"
+#include "io/image_reader.h"
+
+#include <ImfChannelList.h>
+#include <ImfChromaticitiesAttribute.h>
+#include <ImfEnvmapAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
+#include <ImfRgbaFile.h>
+#include <ImfStandardAttributes.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace domelight {
+
+namespace {
+
+/// The channels that make up the picture: three, or one luminance, or luminance and chroma.
+struct ColourChannels {
+    enum class Kind { none, rgb, luminance, luminance_chroma } kind = Kind::none;
+    std::string names[3];  ///< rgb: red, green, blue, empty where there is none; luminance: the first
+};
+
+/// Looks for colour under one prefix ("" or "layer.").
+ColourChannels colour_under(const Imf::ChannelList& channels, const std::string& prefix) {
+    const auto has = [&](const char* name) { return channels.findChannel(prefix + name) != nullptr; };
+    if (has("R") || has("G") || has("B")) {
+        ColourChannels found{ColourChannels::Kind::rgb, {}};
+        for (int c = 0; c < 3; ++c)
+            if (const char* name[3] = {"R", "G", "B"}; has(name[c])) found.names[c] = prefix + name[c];
+        return found;
+    }
+    if (has("Y") && has("RY") && has("BY")) return {ColourChannels::Kind::luminance_chroma, {prefix + "Y", "", ""}};
+    if (has("Y")) return {ColourChannels::Kind::luminance, {prefix + "Y", "", ""}};
+    return {};
+}
+
+/// Unnamed channels first, then the first layer that has colour.
+ColourChannels find_colour(const Imf::ChannelList& channels) {
+    ColourChannels found = colour_under(channels, "");
+    for (auto c = channels.begin(); c != channels.end() && found.kind == ColourChannels::Kind::none; ++c) {
+        const std::string_view name = c.name();
+        if (const auto dot = name.rfind('.'); dot != std::string_view::npos)
+            found = colour_under(channels, std::string(name.substr(0, dot + 1)));
+    }
+    return found;
+}
+
+class ExrReader : public ImageReader {
+  public:
+    ExrReader(std::shared_ptr<const FileBytes> bytes, ExrPreflight preflight, int threads)
+        : threads_(resolve_threads(threads)), stream_(bytes, std::move(preflight.headers)) {}
+
+    /// Throws what OpenEXR throws.
+    Result<void> open();
+    Result<bool> read(ImageView<float> rows) override;
+
+  private:
+    void take_facts(const Imf::Header& header);
+    void read_rgb(ImageView<float> rows, int y);
+    void read_luminance_chroma(ImageView<float> rows, int y);
+
+    int threads_;
+    ExrStream stream_;
+    std::unique_ptr<Imf::MultiPartInputFile> file_;
+    std::unique_ptr<Imf::InputPart> part_;
+    std::unique_ptr<Imf::RgbaInputFile> rgba_;  // luminance-chroma: the library upsamples
+    ColourChannels colour_;
+    Imath::Box2i window_;  // of the picture we hand on
+    Imath::Box2i data_;    // of the texels in the file
+    int next_row_ = 0;
+    ImageF band_;  // where the data window sticks out of the picture
+    std::vector<Imf::Rgba> rgba_band_;
+};
+
+/// Which part of the file to read: the first with colour.
+Result<int> choose_part(const Imf::MultiPartInputFile& file) {
+    bool deep = false;
+    std::string names;
+    for (int p = 0; p < file.parts(); ++p) {
+        const Imf::Header& header = file.header(p);
+        if (header.hasType() && Imf::isDeepData(header.type())) {
+            deep = true;
+            continue;
+        }
+        if (find_colour(header.channels()).kind != ColourChannels::Kind::none) return p;
+        for (auto c = header.channels().begin(); c != header.channels().end() && names.size() < 200; ++c)
+            names += (names.empty() ? "" : ", ") + printable(c.name());
+    }
+    if (deep) return Error{"deep images cannot be read", "", "Flatten it first."};
+    return Error{fmt::format("no colour channels (R, G, B or Y) among: {}", names.empty() ? "none" : names), "", ""};
+}
+
+Result<void> ExrReader::open() {
+    provide_exr_threads(threads_);
+    const int line_threads = threads_ > 1 ? threads_ : 0;
+    file_ = std::make_unique<Imf::MultiPartInputFile>(stream_, line_threads, false);
+    const Result<int> part = choose_part(*file_);
+    if (!part) return part.error();
+    const Imf::Header header = file_->header(*part);
+    colour_ = find_colour(header.channels());
+    if (!file_->partComplete(*part)) return Error{"file is incomplete: some of its texels were never written", "", ""};
+
+    data_ = header.dataWindow();
+    const bool envmap = Imf::hasEnvmap(header);
+    // An environment is its data window (ImfEnvmap.h); a picture is its display window.
+    window_ = envmap ? data_ : header.displayWindow();
+    const std::int64_t width = std::int64_t(window_.max.x) - window_.min.x + 1,
+                       height = std::int64_t(window_.max.y) - window_.min.y + 1;
+    if (const auto sized = check_image_size(width, height); !sized) return sized.error();
+    if (!window_.intersects(data_))
+        return Error{"the data window lies outside the display window: no texel would be seen", "", ""};
+    facts_.width = int(width);
+    facts_.height = int(height);
+
+    if (colour_.kind == ColourChannels::Kind::luminance_chroma) {
+        if (*part != 0 || colour_.names[0] != "Y")
+            return Error{"luminance and chroma are read from the first part's own channels only", "", ""};
+        file_.reset();
+        stream_.seekg(0);
+        rgba_ = std::make_unique<Imf::RgbaInputFile>(stream_, line_threads);
+    } else {
+        for (const std::string& name : colour_.names) {
+            const Imf::Channel* channel = header.channels().findChannel(name);
+            if (channel && (channel->xSampling != 1 || channel->ySampling != 1))
+                return Error{fmt::format("channel {} is subsampled", printable(name)), "", ""};
+        }
+        part_ = std::make_unique<Imf::InputPart>(*file_, *part);
+    }
+    take_facts(header);
+    return {};
+}
+
+void ExrReader::take_facts(const Imf::Header& header) {
+    facts_.format = "OpenEXR";
+    facts_.largest = k_largest_radiance;
+    const Imf::Channel* first = nullptr;
+    for (const std::string& name : colour_.names)
+        if (!first && !name.empty()) first = header.channels().findChannel(name);
+    if (rgba_ || (first && first->type == Imf::HALF)) facts_.largest = 65504;
+    if (Imf::hasEnvmap(header))
+        facts_.envmap =
+            Imf::envmap(header) == Imf::ENVMAP_CUBE ? ImageFacts::Envmap::cube : ImageFacts::Envmap::latlong;
+
+    if (colour_.kind == ColourChannels::Kind::rgb)
+        for (int c = 0; c < 3; ++c)
+            if (colour_.names[c].empty())
+                facts_.warnings.push_back(fmt::format("channel {} is missing: read as 0", "RGB"[c]));
+    if (!window_.isEmpty() && !(data_.min.x <= window_.min.x && data_.min.y <= window_.min.y &&
+                                data_.max.x >= window_.max.x && data_.max.y >= window_.max.y))
+        facts_.warnings.push_back("the data window does not fill the display window: the rest is black");
+    if (!Imf::hasChromaticities(header)) return;
+    const Imf::Chromaticities& c = Imf::chromaticities(header);
+    const auto xy = [](const Imath::V2f& v) { return ColourPrimaries::Xy{v.x, v.y}; };
+    const auto matrix = rgb_to_rec709({xy(c.red), xy(c.green), xy(c.blue), xy(c.white)});
+    if (!matrix) {
+        facts_.warnings.push_back("the chromaticities do not describe a colour space: ignored");
+    } else if (!is_nearly_identity(*matrix)) {
+        facts_.to_rec709 = matrix;
+        facts_.warnings.push_back("the file's chromaticities were converted to linear Rec. 709");
+    }
+}
+
+/// Rows y .. of the file, all of them within the data window, into `rows` (window_ wide).
+void ExrReader::read_rgb(ImageView<float> rows, int y) {
+    const bool inside = data_.min.x >= window_.min.x && data_.max.x <= window_.max.x;
+    const int data_width = data_.max.x - data_.min.x + 1;
+    if (!inside && (band_.width() != data_width || band_.height() < rows.height))
+        band_ = ImageF(data_width, rows.height, 3);
+    const ImageView<float> target = inside ? rows : band_.view();
+    float* first = target.data + (inside ? 3 * (data_.min.x - window_.min.x) : 0);
+
+    Imf::FrameBuffer buffer;
+    const bool grey = colour_.kind == ColourChannels::Kind::luminance;
+    for (int c = 0; c < (grey ? 1 : 3); ++c)
+        if (!colour_.names[c].empty())
+            buffer.insert(colour_.names[c],
+                          Imf::Slice::Make(Imf::FLOAT, first + c, Imath::V2i(data_.min.x, y), data_width, rows.height,
+                                           3 * sizeof(float), std::size_t(target.stride) * sizeof(float)));
+    part_->setFrameBuffer(buffer);
+    part_->readPixels(y, y + rows.height - 1);
+
+    const int from = std::max(data_.min.x, window_.min.x), to = std::min(data_.max.x, window_.max.x);
+    for (int r = 0; r < rows.height; ++r) {
+        float* out = rows.row(r) + 3 * std::ptrdiff_t(from - window_.min.x);
+        if (!inside) std::copy_n(band_.row(r) + 3 * std::ptrdiff_t(from - data_.min.x), 3 * (to - from + 1), out);
+        if (grey)
+            for (int x = 0; x <= to - from; ++x) out[3 * x + 1] = out[3 * x + 2] = out[3 * x];
+    }
+}
+
+void ExrReader::read_luminance_chroma(ImageView<float> rows, int y) {
+    const int data_width = data_.max.x - data_.min.x + 1;
+    rgba_band_.resize(std::size_t(data_width) * rows.height);
+    rgba_->setFrameBuffer(rgba_band_.data() - data_.min.x - std::ptrdiff_t(y) * data_width, 1, std::size_t(data_width));
+    rgba_->readPixels(y, y + rows.height - 1);
+    const int from = std::max(data_.min.x, window_.min.x), to = std::min(data_.max.x, window_.max.x);
+    for (int r = 0; r < rows.height; ++r)
+        for (int x = from; x <= to; ++x) {
+            const Imf::Rgba& texel = rgba_band_[std::size_t(r) * data_width + (x - data_.min.x)];
+            float* out = rows.at(x - window_.min.x, r);
+            out[0] = texel.r, out[1] = texel.g, out[2] = texel.b;
+        }
+}
+
+Result<bool> ExrReader::read(ImageView<float> rows) {
+    for (int r = 0; r < rows.height; ++r) std::fill_n(rows.row(r), 3 * rows.width, 0.0f);
+    const int first = std::max(window_.min.y + next_row_, data_.min.y);
+    const int last = std::min(window_.min.y + next_row_ + rows.height - 1, data_.max.y);
+    try {
+        if (first <= last) {
+            const ImageView<float> part = rows.rows(first - window_.min.y - next_row_, last - first + 1);
+            rgba_ ? read_luminance_chroma(part, first) : read_rgb(part, first);
+        }
+    } catch (const std::exception& e) {
+        return Error{fmt::format("decoding near row {} failed: {}", next_row_, exr_message(e)), "",
+                     "The file is truncated or damaged."};
+    }
+    next_row_ += rows.height;
+    return false;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ImageReader>> open_exr_reader(std::shared_ptr<const FileBytes> bytes,
+                                                     const ReaderOptions& options) {
+    Result<ExrPreflight> preflight = check_exr_headers(bytes->bytes(), options.max_bytes);
+    if (!preflight) return preflight.error();
+    auto reader = std::make_unique<ExrReader>(std::move(bytes), std::move(*preflight), options.threads);
+    try {
+        if (const auto opened = reader->open(); !opened) return opened.error();
+    } catch (const std::exception& e) {
+        return Error{fmt::format("not a readable OpenEXR file: {}", exr_message(e)), "",
+                     "The file is truncated or damaged."};
+    }
+    return std::unique_ptr<ImageReader>(std::move(reader));
+}
+
+}  // namespace domelight

@@ -1,0 +1,29 @@
+#pragma once
+// What the writers of OpenEXR images share. All of it may throw what OpenEXR throws.
+
+#include "domelight/io/image_io.h"
+
+#include "io/exr/exr_output_stream.h"
+
+#include <ImfHeader.h>
+
+#include <functional>
+#include <vector>
+
+namespace domelight {
+
+/// Names of 1 to 4 interleaved channels: Y, or R G B A.
+std::vector<const char*> exr_channel_names(int channels);
+
+/// A header of the options' compression, channels, envmap and attributes. Errors: unknown words, a cube that is no
+/// strip, an attribute with a name of another type.
+Result<Imf::Header> exr_header(int width, int height, int channels, const ExrWriteOptions& options);
+
+/// Faces from OpenGL's orientation to OpenEXR's.
+ImageF exr_cube_strip(ImageView<const float> strip);
+
+/// Writes a file by way of a stream; what `write` throws becomes an error.
+Result<void> write_exr_file(const std::filesystem::path& file,
+                            const std::function<Result<void>(ExrOutputStream& stream)>& write);
+
+}  // namespace domelight

@@ -1,0 +1,91 @@
+#include "io/file/file_reader.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace domelight {
+
+namespace {
+
+/// Closes a file descriptor at the end of the scope.
+struct Descriptor {
+    int fd;
+    ~Descriptor() {
+        if (fd >= 0) close(fd);
+    }
+};
+
+Error system_error(const std::filesystem::path& file, const char* doing) {
+    return {std::string(doing) + " failed: " + std::strerror(errno), file.string(), ""};
+}
+
+/// Everything that a pipe or device hands over, up to `max_bytes`.
+Result<std::vector<std::uint8_t>> drain(int fd, const std::filesystem::path& file, std::int64_t max_bytes) {
+    std::vector<std::uint8_t> all;
+    std::uint8_t block[1 << 16];
+    for (;;) {
+        const ssize_t n = read(fd, block, sizeof block);
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return system_error(file, "reading");
+        if (n == 0) return all;
+        all.insert(all.end(), block, block + n);
+        if (std::int64_t(all.size()) > max_bytes)
+            return Error{"more than " + std::to_string(max_bytes) + " bytes", file.string(), ""};
+    }
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const FileBytes>> FileBytes::open(const std::filesystem::path& file, std::int64_t max_bytes) {
+    const Descriptor descriptor{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+    if (descriptor.fd < 0) return Error{errno == ENOENT ? "no such file" : std::strerror(errno), file.string(), ""};
+    struct stat about{};
+    if (fstat(descriptor.fd, &about) != 0) return system_error(file, "stat");
+    if (S_ISDIR(about.st_mode)) return Error{"is a folder, not an image", file.string(), ""};
+
+    std::shared_ptr<FileBytes> result(new FileBytes);
+    if (S_ISREG(about.st_mode) && about.st_size > 0) {
+        void* mapping = mmap(nullptr, std::size_t(about.st_size), PROT_READ, MAP_PRIVATE, descriptor.fd, 0);
+        if (mapping != MAP_FAILED) {
+            result->mapping_ = mapping;
+            result->data_ = static_cast<const std::uint8_t*>(mapping);
+            result->size_ = std::size_t(about.st_size);
+        }
+    }
+    if (!result->mapping_) {
+        Result<std::vector<std::uint8_t>> bytes = drain(descriptor.fd, file, max_bytes);
+        if (!bytes) return bytes.error();
+        result->memory_ = std::move(*bytes);
+        result->data_ = result->memory_.data();
+        result->size_ = result->memory_.size();
+    }
+    if (result->size_ == 0) return Error{"file is empty", file.string(), ""};
+    return std::shared_ptr<const FileBytes>(std::move(result));
+}
+
+std::shared_ptr<const FileBytes> FileBytes::from_memory(std::vector<std::uint8_t> bytes) {
+    std::shared_ptr<FileBytes> result(new FileBytes);
+    result->memory_ = std::move(bytes);
+    result->data_ = result->memory_.data();
+    result->size_ = result->memory_.size();
+    return result;
+}
+
+FileBytes::~FileBytes() {
+    if (mapping_) munmap(mapping_, size_);
+}
+
+void FileBytes::release_before(std::size_t offset) const {
+    constexpr std::size_t step = std::size_t(8) << 20;  // rarely enough to cost nothing, often enough to stay small
+    const std::size_t end = offset / step * step;
+    if (!mapping_ || end <= released_) return;
+    madvise(static_cast<char*>(mapping_) + released_, end - released_, MADV_DONTNEED);
+    released_ = end;
+}
+
+}  // namespace domelight

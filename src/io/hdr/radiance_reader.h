@@ -1,0 +1,32 @@
+#pragma once
+
+#include "domelight/environment/environment.h"
+#include "domelight/image/row_source.h"
+
+#include "image/repair.h"
+#include "io/image_reader.h"
+
+#include <filesystem>
+#include <memory>
+
+namespace domelight {
+
+/// The rows of an image file as radiance: decoded, mended (counted in `report`), in linear Rec. 709, times `scale`.
+class RadianceReader : public RowSource {
+  public:
+    RadianceReader(std::filesystem::path file, std::unique_ptr<ImageReader> image, float scale, bool wraps, int threads,
+                   std::shared_ptr<RepairReport> report);
+    int width() const override { return image_->facts().width; }
+    int height() const override { return image_->facts().height; }
+    /// Errors name the file.
+    Result<void> read(ImageView<float> rows) override;
+
+  private:
+    std::filesystem::path file_;
+    std::unique_ptr<ImageReader> image_;
+    RepairOptions repair_;
+    int threads_;
+    std::shared_ptr<RepairReport> report_;
+};
+
+}  // namespace domelight

@@ -1,0 +1,157 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csetjmp>
+#include <cstdio>
+#include <cstring>
+
+// jpeglib.h wants <cstdio> before it.
+#include "io/picture/ldr_reader.h"
+
+#include <jerror.h>
+#include <jpeglib.h>
+
+namespace domelight {
+
+namespace {
+
+/// Each scan of a progressive JPEG passes over the whole image: more than any encoder writes means an attack on our
+/// time.
+constexpr int k_most_scans = 200;
+
+/// A JPEG, row by row.
+///
+/// libjpeg leaves by longjmp on an error. Each method that calls it sets its own return point and has no local with a
+/// destructor after that.
+class JpegReader : public ImageReader {
+  public:
+    JpegReader(std::shared_ptr<const FileBytes> bytes, const ReaderOptions& options)
+        : bytes_(std::move(bytes)), decode_(options.decode), max_bytes_(options.max_bytes) {}
+    ~JpegReader() override { jpeg_destroy_decompress(&state_); }
+
+    Result<void> open();
+    Result<bool> read(ImageView<float> rows) override;
+
+  private:
+    bool read_header();
+    bool start_rows();
+    bool read_row(unsigned char* row);
+    Error failure() const {
+        return {fmt::format("not a readable JPEG: {}", message_), "", "The file is truncated or damaged."};
+    }
+
+    static void on_error(j_common_ptr state);
+    static void on_message(j_common_ptr state, int level);
+    static void on_progress(j_common_ptr state);
+
+    std::shared_ptr<const FileBytes> bytes_;
+    std::string decode_;
+    std::int64_t max_bytes_;
+    jpeg_decompress_struct state_{};
+    jpeg_error_mgr errors_{};
+    jpeg_progress_mgr progress_{};
+    std::jmp_buf return_point_;
+    char message_[JMSG_LENGTH_MAX] = "";
+    std::vector<float> curve_;
+    std::vector<unsigned char> row_;
+};
+
+void JpegReader::on_error(j_common_ptr state) {
+    auto* self = static_cast<JpegReader*>(state->client_data);
+    state->err->format_message(state, self->message_);
+    std::longjmp(self->return_point_, 1);
+}
+
+/// libjpeg fills what is missing with grey and only warns; for light that is not good enough.
+void JpegReader::on_message(j_common_ptr state, int level) {
+    const int code = state->err->msg_code;
+    if (level < 0 && (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE)) on_error(state);
+}
+
+void JpegReader::on_progress(j_common_ptr state) {
+    if (reinterpret_cast<j_decompress_ptr>(state)->input_scan_number <= k_most_scans) return;
+    auto* self = static_cast<JpegReader*>(state->client_data);
+    std::snprintf(self->message_, sizeof self->message_, "more than %d scans", k_most_scans);
+    std::longjmp(self->return_point_, 1);
+}
+
+bool JpegReader::read_header() {
+    state_.err = jpeg_std_error(&errors_);
+    errors_.error_exit = on_error;
+    errors_.emit_message = on_message;
+    state_.client_data = this;
+    if (setjmp(return_point_)) return false;
+    jpeg_create_decompress(&state_);
+    progress_.progress_monitor = on_progress;
+    state_.progress = &progress_;
+    jpeg_mem_src(&state_, bytes_->bytes().data(), bytes_->bytes().size());
+    jpeg_read_header(&state_, TRUE);
+    return true;
+}
+
+bool JpegReader::start_rows() {
+    if (setjmp(return_point_)) return false;
+    state_.out_color_space = JCS_RGB;
+    jpeg_start_decompress(&state_);
+    return state_.output_components == 3;
+}
+
+bool JpegReader::read_row(unsigned char* row) {
+    if (setjmp(return_point_)) return false;
+    jpeg_read_scanlines(&state_, &row, 1);
+    if (state_.output_scanline == state_.output_height) jpeg_finish_decompress(&state_);
+    return true;
+}
+
+Result<void> JpegReader::open() {
+    if (!read_header()) return failure();
+    const std::int64_t width = state_.image_width, height = state_.image_height;
+    if (const auto sized = check_image_size(width, height); !sized) return sized.error();
+    if (state_.jpeg_color_space == JCS_CMYK || state_.jpeg_color_space == JCS_YCCK)
+        return Error{"JPEG of printing inks (CMYK) cannot be read", "", "Convert it to RGB first."};
+    // Every block of 32 x 32 texels takes at least a bit.
+    if (width * height / 1024 / 8 > std::int64_t(bytes_->bytes().size()))
+        return Error{fmt::format("file ends too early: {} bytes cannot hold {} x {} texels", bytes_->bytes().size(),
+                                 width, height),
+                     "", "The file is truncated, or its header is wrong."};
+    const std::int64_t held = jpeg_has_multiple_scans(&state_) ? width * height * state_.num_components * 2 : 0;
+    if (held > max_bytes_)
+        return Error{
+            fmt::format("decoding {} x {} texels of a progressive JPEG needs {} bytes, more than the limit of {}",
+                        width, height, held, max_bytes_),
+            "", ""};
+    if (!start_rows()) return failure();
+    row_.resize(std::size_t(width) * 3);
+    curve_ = screen_curve(decode_, 256);
+    facts_.format = "JPEG";
+    facts_.width = int(width);
+    facts_.height = int(height);
+    facts_.largest = 1;
+    facts_.warnings = screen_warnings("JPEG", decode_);
+    // The namespace of Adobe's and Google's gain maps, in the metadata at the start.
+    const auto all = bytes_->bytes().first(std::min<std::size_t>(bytes_->bytes().size(), 1 << 17));
+    constexpr std::string_view gain_map = "http://ns.adobe.com/hdr-gain-map/";
+    if (std::search(all.begin(), all.end(), gain_map.begin(), gain_map.end()) != all.end())
+        facts_.warnings.push_back("the gain map (Ultra HDR) in this JPEG is not read: only its screen picture is");
+    return {};
+}
+
+Result<bool> JpegReader::read(ImageView<float> rows) {
+    for (int y = 0; y < rows.height; ++y) {
+        if (!read_row(row_.data())) return failure();
+        float* out = rows.row(y);
+        for (std::size_t i = 0; i < row_.size(); ++i) out[i] = curve_[row_[i]];
+    }
+    return true;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ImageReader>> open_jpeg_reader(std::shared_ptr<const FileBytes> bytes,
+                                                      const ReaderOptions& options) {
+    auto reader = std::make_unique<JpegReader>(std::move(bytes), options);
+    if (const auto opened = reader->open(); !opened) return opened.error();
+    return std::unique_ptr<ImageReader>(std::move(reader));
+}
+
+}  // namespace domelight

@@ -1,0 +1,199 @@
+#include "domelight/filtering/brdf/brdf_table.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/projection/projection.h"
+#include "domelight/render/shading/shading.h"
+#include "domelight/engines/engine.h"
+#include "domelight/texture/texture.h"
+
+#include "image/bordered_cube.h"
+#include "render/environment_map.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace domelight {
+
+struct LightMaps::Impl {
+    Lobe lobe = Lobe::ggx;
+    std::vector<BorderedCube> specular;
+    std::vector<float> roughness;  ///< of each level, rising; of a Phong chain the one that matches its exponent
+    std::vector<BorderedCube> irradiance_over_pi;
+    std::vector<Vec3d> sh_irradiance;
+    ImageF brdf;
+};
+
+LightMaps::LightMaps() : impl_(std::make_unique<Impl>()) {}
+LightMaps::~LightMaps() = default;
+LightMaps::LightMaps(LightMaps&&) noexcept = default;
+LightMaps& LightMaps::operator=(LightMaps&&) noexcept = default;
+
+namespace {
+
+/// The roughness that Beckmann's match gives an exponent, n = 2 / alpha^2 - 2: a coordinate in which a Phong chain's
+/// levels are about evenly spaced, infinity at 0 and 0 at 1.
+float matching_roughness(double exponent) {
+    return float(std::pow(2 / (exponent + 2), 0.25));
+}
+
+Result<Lobe> lobe_of(const std::string& name) {
+    for (const Lobe lobe : {Lobe::ggx, Lobe::phong_brdf, Lobe::phong_plain})
+        if (lobe_name(lobe) == name) return lobe;
+    return Error{fmt::format("tells of a chain of lobe \"{}\"", name), "", "Bake with --lobe ggx or --lobe phong."};
+}
+
+float level_roughness(const nlohmann::json& level, Lobe lobe) {
+    const char* key = lobe == Lobe::ggx ? "roughness" : "exponent";
+    if (!level.is_object() || !level.contains(key) || !level[key].is_number()) return 0;  // "inf": the environment
+    const double value = level[key].get<double>();
+    return lobe == Lobe::ggx ? float(value) : matching_roughness(std::max(0.0, value));
+}
+
+Result<nlohmann::json> read_json(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    if (!in)
+        return Error{"cannot be read", file.string(),
+                     "The folder must be one that `domelight bake` wrote for the generic target."};
+    auto json = nlohmann::json::parse(in, nullptr, false);
+    if (json.is_discarded()) return Error{"is no JSON", file.string(), ""};
+    return json;
+}
+
+Result<std::vector<Cubemap>> read_cubes(const std::filesystem::path& file) {
+    auto texture = read_texture(file);
+    if (!texture) return texture.error();
+    auto levels = decode_cubes(*texture);
+    if (!levels) return levels.error().at(file.string());
+    return levels;
+}
+
+}  // namespace
+
+Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
+    LightMaps maps;
+    Impl& impl = *maps.impl_;
+    const auto manifest = read_json(folder / "manifest.json");
+    if (!manifest) return manifest.error();
+    const auto specular = read_cubes(folder / "specular.ktx2");
+    if (!specular) return specular.error();
+    const auto irradiance = read_cubes(folder / "irradiance.ktx2");
+    if (!irradiance) return irradiance.error();
+    auto brdf = read_texture(folder / "brdf.ktx2");
+    if (!brdf) return brdf.error();
+
+    const std::string name = (folder / "manifest.json").string();
+    const auto chain = manifest->value("specular", nlohmann::json::object());
+    const auto levels = chain.value("levels", nlohmann::json::array());
+    if (levels.size() != specular->size())
+        return Error{fmt::format("tells of {} specular levels, specular.ktx2 has {}", levels.size(), specular->size()),
+                     name, ""};
+    const auto lobe = lobe_of(chain.value("lobe", lobe_name(Lobe::ggx)));
+    if (!lobe) return lobe.error().at(name);
+    impl.lobe = *lobe;
+    for (const auto& level : levels) impl.roughness.push_back(level_roughness(level, impl.lobe));
+    if (!std::ranges::is_sorted(impl.roughness))
+        return Error{fmt::format("has {} that do not {} from level to level",
+                                 impl.lobe == Lobe::ggx ? "roughness values" : "exponents",
+                                 impl.lobe == Lobe::ggx ? "rise" : "fall"),
+                     name, ""};
+    for (const Cubemap& c : *specular) impl.specular.emplace_back(c);
+
+    // The generic target stores irradiance E, others E / pi.
+    const bool over_pi =
+        manifest->value("irradiance", nlohmann::json::object()).value("quantity", "irradiance") == "irradiance_over_pi";
+    Cubemap e = irradiance->front();
+    if (!over_pi)
+        for (float& p : e.pixels()) p /= float(k_pi);
+    impl.irradiance_over_pi.emplace_back(e);
+    impl.brdf = decode_texture(*brdf, 0, 0);
+
+    const auto sh = read_json(folder / "sh.json");
+    if (!sh) return sh.error();
+    const auto coefficients = sh->value("radiance", nlohmann::json::array());
+    std::vector<Vec3d> radiance;
+    for (const auto& c : coefficients)
+        if (c.is_array() && c.size() == 3 && c[0].is_number())
+            radiance.push_back({c[0].get<double>(), c[1].get<double>(), c[2].get<double>()});
+    if (radiance.empty()) return Error{"has no coefficients", (folder / "sh.json").string(), ""};
+    if (radiance.size() > 9) radiance.resize(9);
+    impl.sh_irradiance = sh_irradiance_over_pi(radiance);
+    return maps;
+}
+
+Result<LightMaps> LightMaps::bake(ImageView<const float> latlong, const Mat3& world_to_source, int threads, Lobe lobe) {
+    const Target& target = targets().front();  // generic
+    const int levels = default_levels(target, target.size);
+    const auto exponents = default_phong_exponents(levels);
+    LightMaps maps;
+    maps.impl_->lobe = lobe;
+    FilterOptions options;
+    for (int l = 0; l < levels; ++l) {
+        const double roughness = target.roughness(l, levels, target.size);
+        options.specular.push_back({target.size >> l, l == 0,
+                                    lobe == Lobe::ggx ? ZonalKernel::ggx(roughness) : ZonalKernel{lobe, exponents[l]}});
+        maps.impl_->roughness.push_back(lobe == Lobe::ggx ? float(roughness) : matching_roughness(exponents[l]));
+    }
+    options.irradiance_size = target.irradiance_size;
+    options.sh_bands = 3;
+    options.world_to_source = world_to_source;
+    options.threads = threads;
+    ImageRowSource rows(latlong);
+    auto filtered = prefilter(rows, options);
+    if (!filtered) return filtered.error();
+    for (const FilteredMap& level : filtered->specular) maps.impl_->specular.emplace_back(level.cube);
+    maps.impl_->irradiance_over_pi.emplace_back(filtered->irradiance_over_pi.cube);
+    maps.impl_->sh_irradiance = sh_irradiance_over_pi(filtered->sh);
+    maps.impl_->brdf = brdf_table_default();
+    return maps;
+}
+
+Lobe LightMaps::lobe() const {
+    return impl_->lobe;
+}
+
+Vec3f LightMaps::specular(const Vec3f& direction, float roughness) const {
+    const auto& r = impl_->roughness;
+    const auto above = std::upper_bound(r.begin(), r.end(), roughness);
+    if (above == r.begin()) return look_up(impl_->specular.front(), direction);
+    if (above == r.end()) return look_up(impl_->specular.back(), direction);
+    const std::size_t i = std::size_t(above - r.begin());
+    const float t = (roughness - r[i - 1]) / (r[i] - r[i - 1]);
+    const Vec3f low = look_up(impl_->specular[i - 1], direction);
+    return t > 0 ? low + (look_up(impl_->specular[i], direction) - low) * t : low;
+}
+
+Vec3f LightMaps::phong(const Vec3f& direction, float exponent) const {
+    const float roughness = matching_roughness(exponent), last = impl_->roughness.back();
+    const Vec3f light = specular(direction, roughness);
+    // (n + 2) / 2 pi cos^(n + 1) at n = 0 is the cosine itself.
+    if (roughness <= last || last >= 1) return light;
+    return light + (irradiance_over_pi(direction) - light) * ((roughness - last) / (1 - last));
+}
+
+Vec3f LightMaps::irradiance_over_pi(const Vec3f& normal) const {
+    return look_up(impl_->irradiance_over_pi.front(), normal);
+}
+
+Vec3f LightMaps::irradiance_over_pi_sh(const Vec3f& normal) const {
+    const Vec3d e = sh_evaluate(impl_->sh_irradiance, normalize(Vec3d(normal)));
+    return Vec3f(Vec3d{std::max(0.0, e.x), std::max(0.0, e.y), std::max(0.0, e.z)});
+}
+
+LightMaps::ScaleBias LightMaps::brdf(float NdotV, float roughness) const {
+    const ImageF& t = impl_->brdf;
+    const float x = std::clamp(NdotV * float(t.width()) - 0.5f, 0.f, float(t.width() - 1)),
+                y = std::clamp(roughness * float(t.height()) - 0.5f, 0.f, float(t.height() - 1));
+    const int i = int(x), j = int(y), i1 = std::min(i + 1, t.width() - 1), j1 = std::min(j + 1, t.height() - 1);
+    const float a = x - float(i), b = y - float(j);
+    const auto channel = [&](int c) {
+        const float upper = t.at(i, j)[c] + a * (t.at(i1, j)[c] - t.at(i, j)[c]),
+                    lower = t.at(i, j1)[c] + a * (t.at(i1, j1)[c] - t.at(i, j1)[c]);
+        return upper + b * (lower - upper);
+    };
+    return {channel(0), channel(1)};
+}
+
+}  // namespace domelight

@@ -1,0 +1,162 @@
+// A scene drawn with a real-time engine's shading: the first surface of each camera sample, and no rays beyond it.
+
+#include "domelight/base/parallel.h"
+#include "domelight/sampling/sequences.h"
+
+#include "render/background.h"
+#include "render/camera.h"
+#include "render/film.h"
+#include "render/shading/shading_models.h"
+
+#include <fmt/core.h>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+
+namespace domelight {
+namespace {
+
+class ShadedTracer {
+  public:
+    ShadedTracer(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment,
+                 const ShadingOptions& shading, const RenderOptions& options)
+        : rays_(scene.impl()),
+          scene_(scene.scene()),
+          maps_(maps),
+          environment_(environment),
+          reflected_(environment, shading.lookup, shading.lookup_size, options.threads),
+          shading_(shading),
+          options_(options),
+          camera_(options.camera, options.width, options.height) {}
+
+    void sample(int x, int y, std::uint32_t index, PixelSums& sums) const {
+        const std::uint64_t key =
+            derive_key(options_.seed, std::uint64_t(y) * std::uint64_t(options_.width) + std::uint64_t(x));
+        Ray ray = camera_.through(x, y, sobol_owen(derive_key(key, 0), index));
+        Vec3f light, diffuse, specular;
+        float rest = 1;  // what the surfaces so far let through
+        bool covered = false;
+        constexpr int most_layers = 16;
+        for (int layer = 0; layer < most_layers && rest > 0; ++layer) {
+            const Hit hit = rays_.intersect(ray, true);
+            if (hit.instance < 0) {
+                light = light + background_radiance(options_, environment_, ray.direction) * rest;
+                break;
+            }
+            const SurfacePoint s = surface_at(scene_, hit, ray.origin, ray.direction, false);
+            if (s.opacity > 0) {
+                const ShadedLight shaded = s.unlit ? ShadedLight{} : shade(s, hit, -ray.direction);
+                const float part = rest * s.opacity;
+                diffuse = diffuse + shaded.diffuse * part;
+                specular = specular + shaded.specular * part;
+                light = light + (shaded.diffuse + shaded.specular + s.emission) * part;
+                if (!covered) {
+                    covered = true;
+                    sums.albedo = sums.albedo + s.albedo;
+                    sums.normal = sums.normal + s.normal;
+                    sums.depth += hit.distance;
+                    sums.covered += 1;
+                    if (sums.count == 0) sums.object = float(hit.instance + 1);
+                }
+                rest -= part;
+            }
+            pass(ray, hit);
+        }
+        const Vec3d r(light);
+        sums.radiance = sums.radiance + r;
+        sums.squares = sums.squares + Vec3d{r.x * r.x, r.y * r.y, r.z * r.z};
+        sums.diffuse = sums.diffuse + diffuse;
+        sums.specular = sums.specular + specular;
+        sums.direct = sums.direct + diffuse + specular;
+        ++sums.count;
+    }
+
+  private:
+    ShadedLight shade(const SurfacePoint& s, const Hit& hit, const Vec3f& V) const {
+        const float occlusion = shading_.occlusion ? occlusion_at(scene_, hit) : 1;
+        switch (shading_.model) {
+            case ShadingModel::split_sum:
+                return shade_split_sum(s, V, occlusion, maps_, shading_);
+            case ShadingModel::stretched:
+                return shade_stretched(s, V, occlusion, maps_, shading_);
+            case ShadingModel::phong:
+                return shade_phong(s, V, occlusion, maps_, shading_);
+            case ShadingModel::mirror:
+                return shade_mirror(s, V, reflected_);
+            case ShadingModel::refract:
+                break;
+        }
+        return shade_refract(s, V, scene_.materials[scene_.meshes[scene_.instances[hit.instance].mesh].material].ior,
+                             reflected_);
+    }
+
+    const RayScene::Impl& rays_;
+    const Scene& scene_;
+    const LightMaps& maps_;
+    const EnvironmentSampler& environment_;
+    const EnvironmentMap reflected_;  ///< what mirror and refract read
+    const ShadingOptions& shading_;
+    const RenderOptions& options_;
+    CameraRays camera_;
+};
+
+}  // namespace
+
+std::string shading_model_name(ShadingModel model) {
+    switch (model) {
+        case ShadingModel::split_sum:
+            return "split-sum";
+        case ShadingModel::stretched:
+            return "stretched";
+        case ShadingModel::phong:
+            return "phong";
+        case ShadingModel::mirror:
+            return "mirror";
+        case ShadingModel::refract:
+            break;
+    }
+    return "refract";
+}
+
+Lobe shading_lobe(ShadingModel model) {
+    return model == ShadingModel::phong ? Lobe::phong_brdf : Lobe::ggx;
+}
+
+Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment,
+                                   const ShadingOptions& shading, const RenderOptions& o) {
+    if (auto fine = check_size(o.width, o.height); !fine) return fine.error();
+    if (auto fine = check_background(o); !fine) return fine.error();
+    if (shading.lookup_size < 1 || shading.lookup_size > 8192)
+        return Error{fmt::format("a map of {} texels is not from 1 to 8192", shading.lookup_size), "", ""};
+    const bool wants_phong = shading_lobe(shading.model) == Lobe::phong_brdf,
+               reads_chain = shading.model < ShadingModel::mirror;
+    if (reads_chain && wants_phong != (maps.lobe() != Lobe::ggx))
+        return Error{fmt::format("has a chain of lobe {}, which {} does not read", lobe_name(maps.lobe()),
+                                 shading_model_name(shading.model)),
+                     "", fmt::format("Bake with --lobe {}.", lobe_name(shading_lobe(shading.model)))};
+    const auto start = std::chrono::steady_clock::now();
+    const ShadedTracer tracer(scene, maps, environment, shading, o);
+    Film film(o.width, o.height);
+    std::atomic<bool> cancelled{false};
+    std::atomic<int> done{0};
+    std::mutex progress_mutex;
+    parallel_for(film.tiles(), o.threads, [&](int t) {
+        if (cancelled) return;
+        for (int i = 0; i < int(film.tile(t).size()); ++i)
+            for (int k = 0; k < std::max(1, o.samples); ++k)
+                tracer.sample(film.x0(t) + i % film.columns(t), film.y0(t) + i / film.columns(t), std::uint32_t(k),
+                              film.tile(t)[i]);
+        ++done;
+        if (o.progress) {
+            const std::lock_guard lock(progress_mutex);
+            if (!o.progress("shade", double(done) / film.tiles())) cancelled = true;
+        }
+    });
+    if (cancelled) return Error{"cancelled", "", ""};
+    RenderResult out = develop(film, o.width, o.height);
+    out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return out;
+}
+
+}  // namespace domelight

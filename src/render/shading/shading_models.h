@@ -1,0 +1,45 @@
+#pragma once
+// The C++ twins of what engines' shaders do with a bake's maps: one function each, each in a file of its own.
+
+#include "domelight/render/shading/shading.h"
+
+#include "render/environment_map.h"
+#include "render/surface/surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace domelight {
+
+/// Light by lobe.
+struct ShadedLight {
+    Vec3f diffuse, specular;
+};
+
+/// V: towards the viewer, in the world. occlusion: of the material's texture, 1 without.
+ShadedLight shade_split_sum(const SurfacePoint& s, const Vec3f& V, float occlusion, const LightMaps& maps,
+                            const ShadingOptions& options);
+ShadedLight shade_stretched(const SurfacePoint& s, const Vec3f& V, float occlusion, const LightMaps& maps,
+                            const ShadingOptions& options);
+ShadedLight shade_phong(const SurfacePoint& s, const Vec3f& V, float occlusion, const LightMaps& maps,
+                        const ShadingOptions& options);
+ShadedLight shade_mirror(const SurfacePoint& s, const Vec3f& V, const EnvironmentMap& environment);
+ShadedLight shade_refract(const SurfacePoint& s, const Vec3f& V, float ior, const EnvironmentMap& environment);
+
+// What several of them share:
+
+/// Means of the light that the specular lobe sees: weighted by the part of the lobe that F0 multiplies, and by the part
+/// that F90 does.
+struct LobeLight {
+    Vec3f scale, bias;
+};
+/// The metallic-roughness surface around a specular lobe: BRDF table, what is left for the diffuse layer, multiple
+/// scattering, occlusion.
+ShadedLight shade_metallic_roughness(const SurfacePoint& s, float NdotV, float occlusion, const LobeLight& lobe,
+                                     const LightMaps& maps, const ShadingOptions& options);
+
+inline Vec3f diffuse_irradiance_over_pi(const Vec3f& N, const LightMaps& maps, const ShadingOptions& o) {
+    return o.sh_irradiance ? maps.irradiance_over_pi_sh(N) : maps.irradiance_over_pi(N);
+}
+
+}  // namespace domelight

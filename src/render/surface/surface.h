@@ -1,0 +1,54 @@
+#pragma once
+
+#include "domelight/base/frame.h"
+
+#include "render/surface/bsdf.h"
+#include "render/layered_bsdf.h"
+#include "render/ray_scene.h"
+
+namespace domelight {
+
+/// All that shading needs to know of a point of a surface.
+struct SurfacePoint {
+    Vec3f position;
+    Vec3f normal;            ///< of the surface as lit (interpolated, normal-mapped), unit length, on the viewer's side
+    Vec3f geometric_normal;  ///< of the triangle, unit length, on the viewer's side
+    Vec3f emission;
+    Vec3f albedo;       ///< for the albedo layer
+    float opacity = 1;  ///< below 1: the ray goes on with 1 - opacity of its weight
+    bool unlit = false;
+    bool front = true;
+    float error = 0;                      ///< how far from the surface a ray must start
+    Bsdf bsdf;                            ///< of the base, all there is for most materials
+    const LayeredBsdf* layers = nullptr;  ///< in place of it, where there is more
+
+    /// f times the cosine; L.z > 0 unless there are layers.
+    Bsdf::Value evaluate_cosine(const Vec3f& V, const Vec3f& L) const {
+        if (layers) return layers->evaluate_cosine(V, L);
+        const Bsdf::Value f = bsdf.evaluate(V, L);
+        return {f.diffuse * L.z, f.specular * L.z};
+    }
+    /// No light goes that way: it would have to pass the surface.
+    bool blocks(const Vec3f& direction) const { return !layers && dot(direction, geometric_normal) <= 0; }
+    /// One that starts just outside, on the side that it goes to.
+    Ray ray_to(const Vec3f& direction) const {
+        return {position + geometric_normal * (dot(direction, geometric_normal) >= 0 ? error : -error), direction, 0};
+    }
+    float pdf_solid_angle(const Vec3f& V, const Vec3f& L) const {
+        return layers ? layers->pdf_solid_angle(V, L) : bsdf.pdf_solid_angle(V, L);
+    }
+};
+
+/// Interpolates, reads textures, and makes the BRDF. `direction`: of the ray that hit, unit length. `layers`: where to
+/// put those that go beyond glTF's core; null: they are left out. `shift`: a random point for interface_albedo().
+SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& origin, const Vec3f& direction,
+                        bool multiple_scattering, LayeredBsdf* layers = nullptr, UnitPoint shift = {});
+
+/// A surface's opacity where a ray met it, [0, 1].
+float opacity_at(const Scene& scene, const Hit& hit);
+/// What the occlusion texture says there, [0, 1]; 1 without one.
+float occlusion_at(const Scene& scene, const Hit& hit);
+/// Whether any material of the scene can let rays through, so that occlusion needs more than a yes or no.
+bool has_passages(const Scene& scene);
+
+}  // namespace domelight

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "domelight/scene/scene.h"
+
+#include "io/file/byte_budget.h"
+#include "io/file/file_reader.h"
+#include "io/gltf/gltf_uri.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace domelight {
+
+/// An image file of a scene, opened when something uses it.
+struct SceneImageSource {
+    std::string name;
+    std::function<Result<std::shared_ptr<const FileBytes>>()> open;
+};
+
+/// Every texture of a material.
+std::vector<SceneTexture*> textures_of(Material& material);
+
+/// Decodes the sources that the scene's materials use, in parallel, into scene.images (those that nothing uses stay
+/// empty there). Errors: a source that is missing, broken or too large.
+Result<void> load_scene_images(const std::vector<SceneImageSource>& sources, Scene& scene, ByteBudget& budget,
+                               int threads);
+
+}  // namespace domelight

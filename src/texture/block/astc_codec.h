@@ -1,0 +1,16 @@
+#pragma once
+
+#include "domelight/texture/texture.h"
+
+#include <cstdint>
+
+namespace domelight {
+
+/// Encodes `count` blocks of `side` x `side` RGB texels (4 or 6), row by row, from 0 to 65504 and never NaN, as ASTC
+/// HDR of 16 bytes each, with Arm's encoder. The same bytes for a block whatever its company.
+void encode_astc_hdr(int side, const float* rgb, int count, EncodingQuality quality, std::uint8_t* blocks);
+
+/// The texels of any ASTC blocks of that size. What is not a valid block is black.
+void decode_astc_hdr(int side, const std::uint8_t* blocks, int count, float* rgb);
+
+}  // namespace domelight

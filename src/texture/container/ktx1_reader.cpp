@@ -1,0 +1,172 @@
+// Reads KTX 1.1 (Khronos KTX File Format Specification, version 1.1), of either endianness.
+#include "texture/container/gl_formats.h"
+#include "texture/container/ktx1.h"
+#include "io/file/scaled_bytes.h"
+#include "texture/container/texture_reading.h"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+namespace domelight {
+
+namespace {
+
+struct Ktx1 {
+    TextureInfo info;
+    std::optional<StoredTexels> texels;
+    bool swapped = false;  ///< written on a machine of the other endianness
+    std::uint32_t type_bytes = 1;
+    std::uint64_t data_offset = 0;
+};
+
+/// Numbers of the file's own endianness.
+struct Words {
+    std::span<const std::uint8_t> bytes;
+    bool swapped;
+    std::uint32_t at(std::size_t offset) const {
+        const std::uint32_t v = u32_at(bytes, offset);
+        return swapped ? v >> 24 | (v >> 8 & 0xff00u) | (v << 8 & 0xff0000u) | v << 24 : v;
+    }
+};
+
+Result<void> read_key_values(ByteSource& source, bool swapped, std::uint64_t bytes,
+                             std::map<std::string, std::string>& metadata) {
+    if (bytes > k_max_metadata_bytes)
+        return Error{"has " + std::to_string(bytes) + " bytes of key/value data", "", "the file is damaged"};
+    const auto data = source.take(k_ktx1_header_bytes, bytes, "key/value data");
+    if (!data) return data.error();
+    const Words words{*data, swapped};
+    const Error damaged{"has key/value data that runs over its end or lacks a key", "", "the file is damaged"};
+    for (std::size_t at = 0; at < data->size();) {
+        if (data->size() - at < 4) return damaged;
+        const std::size_t size = words.at(at);
+        at += 4;
+        if (size > data->size() - at) return damaged;
+        const auto pair = std::span(*data).subspan(at, size);
+        const auto terminator = std::find(pair.begin(), pair.end(), std::uint8_t(0));
+        if (terminator == pair.end() || terminator == pair.begin()) return damaged;
+        const auto key = pair.first(std::size_t(terminator - pair.begin()));
+        if (!is_utf8_text(key)) return Error{"has a key that is not UTF-8", "", "the file is damaged"};
+        metadata.emplace(std::string(key.begin(), key.end()), metadata_text(pair.subspan(key.size() + 1)));
+        at = std::min(data->size(), (at + size + 3) / 4 * 4);
+    }
+    return {};
+}
+
+/// Walks over the levels' sizes: imageSize before each, faces and levels padded to 4 bytes.
+Result<void> check_levels(ByteSource& source, const Ktx1& file) {
+    std::uint64_t at = file.data_offset;
+    const std::uint64_t faces = file.info.faces == 6 && file.info.layers == 0 ? 6 : 1;
+    for (int l = 0; l < file.info.levels; ++l) {
+        const auto size = source.take(at, 4, "level's size");
+        if (!size) return size.error();
+        const std::uint64_t bytes = (std::uint64_t(Words{*size, file.swapped}.at(0)) + 3) / 4 * 4 * faces;
+        if (bytes == 0) return Error{"level " + std::to_string(l) + " is empty", "", "the file is damaged"};
+        if (!source.contains(at + 4, bytes)) {
+            return Error{"ends too early: level " + std::to_string(l) + " should take " + std::to_string(bytes) +
+                             " bytes from byte " + std::to_string(at + 4) + ", but there are only " +
+                             std::to_string(source.size()),
+                         "", "the file is truncated or damaged"};
+        }
+        at += 4 + bytes;
+    }
+    return {};
+}
+
+Result<Ktx1> parse(ByteSource& source) {
+    const auto head = source.take(0, k_ktx1_header_bytes, "header");
+    if (!head) return head.error();
+    Ktx1 file;
+    file.info.container = "KTX";
+    file.info.supercompression = "none";
+    file.swapped = u32_at(*head, 12) == 0x01020304;
+    const Words words{*head, file.swapped};
+    if (words.at(12) != k_ktx1_endianness)
+        return Error{"has a damaged header: its endianness mark is neither of the two", "", "the file is damaged"};
+    const auto word = [&](std::size_t i) { return words.at(12 + 4 * i); };
+    file.type_bytes = word(2);
+    const std::uint32_t internal_format = word(4);
+    Result<void> done = set_shape(file.info, word(6), word(7), word(8), word(9), word(10), word(11));
+    if (!done) return done.error();
+    file.info.format = gl_format_name(internal_format);
+    file.texels = gl_format_texels(internal_format, word(1));
+    done = read_key_values(source, file.swapped, word(12), file.info.metadata);
+    if (!done) return done.error();
+    if (internal_format == k_gl_rgba8 && word(1) == k_gl_unsigned_byte)
+        if (const auto encoding = take_scaled_bytes(file.info.metadata)) {
+            file.texels = StoredTexels{*encoding};
+            file.info.format += ", " + encoding_name(*encoding);
+        }
+    file.data_offset = k_ktx1_header_bytes + word(12);
+    done = check_levels(source, file);
+    if (!done) return done.error();
+    file.info.decodable = bool(texture_for(file.info, file.texels));
+    return file;
+}
+
+/// Bytes of a number that a swap of ends turns round: the packed formats are one 32-bit number, whatever the header's
+/// type size says; blocks are bytes.
+std::size_t swap_unit(const StoredTexels& texels) {
+    if (texels.channels > 0) return std::size_t(texels.channel_bytes);
+    if (encoding_block(texels.encoding) > 1 || is_scaled_bytes(texels.encoding)) return 1;
+    return texels.encoding == Encoding::rgba16f || texels.encoding == Encoding::rg16f ? 2 : 4;
+}
+
+/// One face of a level: rows of texels or blocks padded to 4 bytes become tight ones.
+void append_face(const Ktx1& file, int columns, int rows, Bytes& stored, Bytes& out) {
+    if (file.swapped) {
+        const std::size_t unit = swap_unit(*file.texels);
+        for (std::size_t i = 0; i + unit <= stored.size(); i += unit)
+            std::reverse(stored.begin() + std::ptrdiff_t(i), stored.begin() + std::ptrdiff_t(i + unit));
+    }
+    const std::size_t tight = std::size_t(columns) * std::size_t(file.texels->bytes()), padded = (tight + 3) / 4 * 4;
+    const std::size_t wide = std::size_t(columns) * std::size_t(encoding_bytes(file.texels->encoding));
+    for (int y = 0; y < rows; ++y) {
+        out.resize(out.size() + wide);
+        widen_texels(*file.texels, stored.data() + padded * std::size_t(y), std::size_t(columns),
+                     out.data() + out.size() - wide);
+    }
+}
+
+}  // namespace
+
+Result<TextureInfo> ktx1_info(ByteSource& source) {
+    auto file = parse(source);
+    if (!file) return file.error();
+    return std::move(file->info);
+}
+
+Result<Texture> ktx1_texture(ByteSource& source) {
+    const auto file = parse(source);
+    if (!file) return file.error();
+    auto texture = texture_for(file->info, file->texels);
+    if (!texture) return texture;
+    std::uint64_t at = file->data_offset;
+    for (int l = 0; l < file->info.levels; ++l) {
+        const int columns = texture->level_columns(l), rows = texture->level_rows(l);
+        const auto size = source.take(at, 4, "level's size");
+        if (!size) return size.error();
+        std::uint64_t face_bytes = Words{*size, file->swapped}.at(0);
+        // Some writers count all faces of a cube that is an array of one.
+        if (file->info.layers == 1 && file->info.faces == 6) face_bytes /= 6;
+        const std::uint64_t row = (std::uint64_t(columns) * std::uint64_t(file->texels->bytes()) + 3) / 4 * 4;
+        if (face_bytes != row * std::uint64_t(rows)) {
+            return Error{"level " + std::to_string(l) + " has " + std::to_string(face_bytes) +
+                             " bytes a face, but its size needs " + std::to_string(row * std::uint64_t(rows)),
+                         "", "the file is damaged"};
+        }
+        at += 4;
+        Bytes level;
+        level.reserve(texture->face_bytes(l) * std::size_t(texture->faces));
+        for (int face = 0; face < texture->faces; ++face, at += face_bytes) {
+            auto stored = source.take(at, face_bytes, "level");
+            if (!stored) return stored.error();
+            append_face(*file, columns, rows, *stored, level);
+        }
+        texture->levels.push_back(std::move(level));
+    }
+    return texture;
+}
+
+}  // namespace domelight

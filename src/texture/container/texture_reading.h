@@ -1,0 +1,69 @@
+#pragma once
+// What the readers of the three texture containers share.
+
+#include "domelight/texture/texture.h"
+
+#include "io/file/byte_source.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace domelight {
+
+/// The most that read_texture puts into a Texture, whatever a header says.
+inline constexpr std::uint64_t k_max_texture_bytes = std::uint64_t(2) << 30;
+/// The longest side that is believed.
+inline constexpr std::uint32_t k_max_texture_side = 1u << 20;
+/// The most key/value data that is read.
+inline constexpr std::uint64_t k_max_metadata_bytes = std::uint64_t(16) << 20;
+
+/// Texels or blocks as a file stores them and the encoding that holds them without loss: the same, or (texels) with the
+/// missing channels filled in.
+struct StoredTexels {
+    Encoding encoding = Encoding::rgba16f;
+    int channels = 0;       ///< stored; 0: exactly the encoding's texels or blocks
+    int channel_bytes = 0;  ///< of a stored channel, where channels > 0
+    /// Of a texel or block.
+    int bytes() const { return channels > 0 ? channels * channel_bytes : encoding_bytes(encoding); }
+};
+
+/// A number's decimal text with what it counts: "faceCount of 7".
+std::string count_text(const char* name, std::uint64_t value);
+
+/// Checks the sizes every container states, and fills them in. `levels` 0 counts as 1.
+/// Errors: no width, a side that is not believed, a cube that is not square, more levels than the size has.
+Result<void> set_shape(TextureInfo& info, std::uint64_t width, std::uint64_t height, std::uint64_t depth,
+                       std::uint64_t layers, std::uint64_t faces, std::uint64_t levels);
+
+/// The Texture of `info`'s shape without its texels, if read_texture can hold it: two-dimensional or cube, no array,
+/// one of our encodings, not over k_max_texture_bytes.
+Result<Texture> texture_for(const TextureInfo& info, const std::optional<StoredTexels>& texels);
+
+/// Bytes of level `l` as stored without padding, all faces. Cannot overflow after texture_for().
+std::uint64_t stored_level_bytes(const Texture& texture, const StoredTexels& texels, int l);
+
+/// Turns `count` stored texels or blocks into the encoding's, filling missing colours with 0 and alpha with 1.
+void widen_texels(const StoredTexels& texels, const std::uint8_t* in, std::size_t count, std::uint8_t* out);
+
+/// Stored bytes of one level to a Texture's (in place where nothing changes).
+Bytes widen_level(const StoredTexels& texels, Bytes stored);
+
+/// A metadata value as UTF-8 text: a terminator is cut off; what is not text is given as "hex:" and its bytes.
+std::string metadata_text(std::span<const std::uint8_t> value);
+bool is_utf8_text(std::span<const std::uint8_t> bytes);
+
+/// Parsers of the containers.
+Result<TextureInfo> ktx2_info(ByteSource& source);
+Result<Texture> ktx2_texture(ByteSource& source);
+Result<TextureInfo> ktx1_info(ByteSource& source);
+Result<Texture> ktx1_texture(ByteSource& source);
+Result<TextureInfo> dds_info(ByteSource& source);
+/// `decode`: what texels of eight bits a channel mean (screen_texels.h).
+Result<Texture> dds_texture(ByteSource& source, const std::string& decode = "auto");
+
+/// read_texture() with that.
+Result<Texture> read_texture(const std::filesystem::path& file, const std::string& decode);
+
+}  // namespace domelight

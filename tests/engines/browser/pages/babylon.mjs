@@ -1,0 +1,44 @@
+// Babylon.js: PBRMaterial from its own glTF loader, drawn into a float target.
+import {packed, script} from './pixels.mjs';
+
+await script('/npm/babylonjs/babylon.js');
+await script('/npm/babylonjs-loaders/babylonjs.loaders.min.js');
+
+export const version = BABYLON.Engine.Version;
+const engine = new BABYLON.Engine(document.getElementById('canvas'), false, {preserveDrawingBuffer: true});
+let url, rightHanded;
+
+export async function load(what) {
+    url = what.prefiltered;
+    rightHanded = what.rightHanded === true;
+}
+
+function light(scene) {
+    // docs/engines/babylon.md
+    const environment = BABYLON.CubeTexture.CreateFromPrefilteredData(url, scene);
+    if (scene.useRightHandedSystem) environment.rotationY = Math.PI;
+    scene.environmentTexture = environment;
+    // end
+}
+
+export async function draw({model, eye, target, fovDeg, width, height}) {
+    const scene = new BABYLON.Scene(engine);
+    scene.useRightHandedSystem = rightHanded;
+    scene.clearColor = new BABYLON.Color4(0, 0, 0, 0);
+    scene.imageProcessingConfiguration.applyByPostProcess = true;  // the material writes linear light
+    light(scene);
+    await BABYLON.SceneLoader.AppendAsync('', model, scene);
+    // In its left-handed world the loader turns a model so that +X of the file is -X.
+    const place = ([x, y, z]) => new BABYLON.Vector3(rightHanded ? x : -x, y, z);
+    const camera = new BABYLON.FreeCamera('camera', place(eye), scene);
+    camera.setTarget(place(target));
+    camera.fov = fovDeg * Math.PI / 180;
+    camera.minZ = 0.1;
+    const floats = new BABYLON.RenderTargetTexture('floats', {width, height}, scene, {type: BABYLON.Constants.TEXTURETYPE_FLOAT, generateMipMaps: false});
+    camera.outputRenderTarget = floats;
+    await scene.whenReadyAsync(true);
+    scene.render();
+    const rgba = await floats.readPixels();
+    scene.dispose();
+    return packed(rgba, width, height);
+}

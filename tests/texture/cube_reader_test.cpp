@@ -1,0 +1,193 @@
+#include "domelight/projection/projection.h"
+#include "domelight/texture/texture.h"
+
+#include "environment/cube_input.h"
+#include "io/reader_samples.h"
+#include "test.h"
+
+#include <cmath>
+
+using namespace domelight;
+using namespace domelight::test;
+
+namespace {
+
+constexpr int k_size = 8;
+
+/// A smooth function of direction: a different value wherever one looks.
+void colour_of(const Vec3d& direction, float* rgb) {
+    const Vec3d d = normalize(direction);
+    rgb[0] = float(2 + d.x), rgb[1] = float(2 + d.y), rgb[2] = float(2 + d.z);
+}
+
+/// A picture as a Radiance file; eight bits of mantissa.
+Bytes as_hdr(const ImageF& image) {
+    Bytes file = hdr_header("-Y " + std::to_string(image.height()) + " +X " + std::to_string(image.width()));
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) {
+            for (int c = 0; c < 3; ++c) file.push_back(std::uint8_t(image.at(x, y)[c] * 64));  // values up to 3.98
+            file.push_back(130);
+        }
+    return file;
+}
+
+/// How far a cube is from colour_of at its texels' centres.
+double error_of(const Cubemap& cube) {
+    double largest = 0;
+    for (int f = 0; f < 6; ++f)
+        for (int y = 0; y < cube.size(); ++y)
+            for (int x = 0; x < cube.size(); ++x) {
+                float expected[3];
+                colour_of(cube_direction(f, {(x + 0.5) / cube.size(), (y + 0.5) / cube.size()}), expected);
+                for (int c = 0; c < 3; ++c)
+                    largest = std::max(largest, double(std::abs(cube.face(f).at(x, y)[c] - expected[c])));
+            }
+    return largest;
+}
+
+ImageF face_picture(int f) {
+    ImageF image(k_size, k_size, 3);
+    for (int y = 0; y < k_size; ++y)
+        for (int x = 0; x < k_size; ++x)
+            colour_of(cube_direction(f, {(x + 0.5) / k_size, (y + 0.5) / k_size}), image.at(x, y));
+    return image;
+}
+
+/// A picture of columns x rows faces. `direction(column, row, s, t)` with s, t in (-1, 1) to the right and down, or
+/// nothing.
+template <typename Direction>
+ImageF picture(int columns, int rows, const Direction& direction) {
+    ImageF image(columns * k_size, rows * k_size, 3, 0.5f);
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) {
+            const double s = 2 * (x % k_size + 0.5) / k_size - 1, t = 2 * (y % k_size + 0.5) / k_size - 1;
+            const std::optional<Vec3d> d = direction(x / k_size, y / k_size, s, t);
+            if (d) colour_of(*d, image.at(x, y));
+        }
+    return image;
+}
+
+constexpr double k_rgbe_step = 1.0 / 64;  // mantissas are cut off, not rounded
+
+}  // namespace
+
+TEST_CASE("cube reader: crosses are unfolded so that the picture continues across every joint") {
+    TemporaryFolder folder;
+    // Told by geometry alone: walking right from +Z comes to +X, then -Z, then -X; up from +Z lies +Y, down lies -Y,
+    // and on down -Z.
+    const auto cross = [](bool vertical) {
+        return [vertical](int column, int row, double s, double t) -> std::optional<Vec3d> {
+            if (row == 1 && column == 0) return Vec3d{-1, -t, s};
+            if (row == 1 && column == 1) return Vec3d{s, -t, 1};
+            if (row == 1 && column == 2) return Vec3d{1, -t, -s};
+            if (row == 1 && column == 3) return Vec3d{-s, -t, -1};
+            if (row == 0 && column == 1) return Vec3d{s, 1, t};
+            if (row == 2 && column == 1) return Vec3d{s, -1, -t};
+            if (vertical && row == 3 && column == 1) return Vec3d{s, t, -1};
+            return std::nullopt;
+        };
+    };
+    save(folder / "h.hdr", as_hdr(picture(4, 3, cross(false))));
+    save(folder / "v.hdr", as_hdr(picture(3, 4, cross(true))));
+    for (const char* name : {"h.hdr", "v.hdr"})
+        for (const char* projection : {"auto", "cube-cross"}) {
+            const auto environment = open_environment({folder / name}, {.projection = projection});
+            REQUIRE_MESSAGE(environment, environment.error().format());
+            CHECK(environment->projection == "cube");
+            REQUIRE(environment->cube.size() == k_size);
+            CHECK(error_of(environment->cube) <= k_rgbe_step);
+        }
+}
+
+TEST_CASE("cube reader: strips hold the faces in order, each in OpenGL's orientation") {
+    TemporaryFolder folder;
+    save(folder / "h.hdr", as_hdr(picture(6, 1, [](int column, int, double s, double t) {
+             return std::optional(cube_direction(column, {0.5 * (s + 1), 0.5 * (t + 1)}));
+         })));
+    save(folder / "v.hdr", as_hdr(picture(1, 6, [](int, int row, double s, double t) {
+             return std::optional(cube_direction(row, {0.5 * (s + 1), 0.5 * (t + 1)}));
+         })));
+    for (const char* name : {"h.hdr", "v.hdr"})
+        for (const char* projection : {"auto", "cube-strip"}) {
+            const auto environment = open_environment({folder / name}, {.projection = projection});
+            REQUIRE_MESSAGE(environment, environment.error().format());
+            CHECK(error_of(environment->cube) <= k_rgbe_step);
+        }
+}
+
+TEST_CASE("cube reader: six files are recognised by name, in any order and case") {
+    const std::vector<std::vector<std::string>> namings{
+        {"px", "nx", "py", "ny", "pz", "nz"},
+        {"sky_posx", "sky_negx", "sky_posy", "sky_negy", "sky_posz", "sky_negz"},
+        {"Right", "LEFT", "top", "bottom", "front", "back"},
+        {"px-studio", "nx-studio", "py-studio", "ny-studio", "pz-studio", "nz-studio"},
+        {"studio.px", "studio.nx", "studio.py", "studio.ny", "studio.pz", "studio.nz"},
+        {"box+x", "box-x", "box+y", "box-y", "box+z", "box-z"},
+    };
+    for (const auto& names : namings) {
+        TemporaryFolder folder;
+        std::vector<std::filesystem::path> files;
+        for (int f = 0; f < 6; ++f) {
+            files.push_back(folder / (names[std::size_t(f)] + ".hdr"));
+            save(files.back(), as_hdr(face_picture(f)));
+        }
+        std::swap(files[0], files[4]);
+        std::swap(files[1], files[2]);
+        for (const auto& input : {files, {folder.path()}}) {
+            const auto environment = open_environment(input);
+            REQUIRE_MESSAGE(environment, environment.error().format());
+            CHECK(error_of(environment->cube) <= k_rgbe_step);
+        }
+        const auto five = open_environment({files[0], files[1], files[2], files[3], files[4], files[4]});
+        REQUIRE_FALSE(five);
+        CHECK(five.error().what.find("same face") != std::string::npos);
+    }
+    CHECK(!cube_face_of_name("expx.hdr"));
+    CHECK(!cube_face_of_name("topaz.hdr"));
+    CHECK(!cube_face_of_name("bright.hdr"));
+}
+
+TEST_CASE("cube reader: faces that do not fit together are refused by name") {
+    TemporaryFolder folder;
+    std::vector<std::filesystem::path> files;
+    for (const char* name : {"px", "nx", "py", "ny", "pz", "nz"}) {
+        files.push_back(folder / (std::string(name) + ".hdr"));
+        save(files.back(), as_hdr(face_picture(0)));
+    }
+    save(files[3], as_hdr(ImageF(4, 4, 3, 1.0f)));
+    const auto smaller = open_environment(files);
+    REQUIRE_FALSE(smaller);
+    CHECK(smaller.error().where == files[3].string());
+    save(files[3], as_hdr(ImageF(8, 4, 3, 1.0f)));
+    CHECK_FALSE(open_environment(files));
+    CHECK_FALSE(open_environment({files[0]}));
+    CHECK_FALSE(open_environment({files[0], files[1]}));
+    CHECK_FALSE(open_environment({files[0], files[1], files[2], files[3], files[4], folder / "other.hdr"}));
+}
+
+TEST_CASE("cube reader: a cube texture of ours is read back as the environment it holds") {
+    TemporaryFolder folder;
+    std::vector<FilteredMap> levels(1);
+    levels[0].cube = Cubemap(k_size);
+    for (int f = 0; f < 6; ++f) {
+        const ImageF face = face_picture(f);
+        for (int y = 0; y < k_size; ++y) std::copy_n(face.row(y), 3 * k_size, levels[0].cube.face(f).row(y));
+    }
+    const Texture texture = encode_texture(levels, Encoding::rgba32f, 1);
+    REQUIRE(write_ktx2(folder / "c.ktx2", texture));
+    REQUIRE(write_ktx1(folder / "c.ktx", texture));
+    REQUIRE(write_dds(folder / "c.dds", texture));
+    for (const char* name : {"c.ktx2", "c.ktx", "c.dds"}) {
+        const auto environment = open_environment({folder / name}, {.exposure = 0});
+        REQUIRE_MESSAGE(environment, environment.error().format());
+        CHECK(environment->projection == "cube");
+        CHECK(error_of(environment->cube) == 0);
+        CHECK_FALSE(open_environment({folder / name}, {.max_bytes = 1000}));
+    }
+    Bytes cut = load(folder / "c.dds");
+    cut.resize(cut.size() / 2);
+    save(folder / "cut.dds", cut);
+    const auto refused = open_environment({folder / "cut.dds"});
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().where == (folder / "cut.dds").string());
+}
