@@ -7,7 +7,8 @@
 // Without files: the environments under DOMELIGHT_DATA (four; --full: all, and 4096 x 2048 ones) and a synthetic
 // 100000:1 half-degree sun.
 
-#include "domelight/environment/environment.h"
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
 
 #include "accuracy.h"
 

@@ -9,7 +9,7 @@
 #include "domelight/texture/texture.h"
 
 #include "texture/block/bc6h_encode.h"
-#include "io/picture_reader.h"
+#include "compare/picture_reader.h"
 #include "texture/block/bc6h_encode_simd.h"
 #include "base/instruction_set.h"
 

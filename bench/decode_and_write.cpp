@@ -8,8 +8,10 @@
 // atomic writer; with `encode` those are Radiance pictures, decoded before the clock starts and encoded again as they
 // are written. The bytes to write are in memory before the clock starts. Prints one JSON object: seconds by the clock
 // and CPU seconds of each step.
-#include "domelight/environment/environment.h"
-#include "domelight/io/image_io.h"
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
+#include "domelight/io/file/atomic_file.h"
+#include "domelight/io/write_image.h"
 
 #include <fmt/core.h>
 

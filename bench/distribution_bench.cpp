@@ -8,8 +8,9 @@
 // Without a file: the 4k environment under DOMELIGHT_DATA, else the built-in sky. CPU time of this thread, medians of
 // interleaved rounds.
 
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/sampling/distribution/distribution.h"
-#include "domelight/environment/environment.h"
 #include "domelight/projection/projection.h"
 #include "domelight/environment/sky/sky.h"
 

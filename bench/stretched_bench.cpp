@@ -6,7 +6,7 @@
 // Without files: five under DOMELIGHT_DATA. Fails where the stretched lobe is over 5 % worse than split-sum, or, with
 // F0 = 1, not at least twice as good over roughness 0.1 to 0.6 and NdotV < 0.4.
 
-#include "domelight/environment/environment.h"
+#include "domelight/io/environment/open_environment.h"
 
 #include "shading_error.h"
 

@@ -1,9 +1,9 @@
+#include "domelight/io/file/atomic_file.h"
 #include "domelight/bake/bake.h"
-#include "domelight/io/image_io.h"
 
-#include "arguments.h"
-#include "commands.h"
-#include "console.h"
+#include "cli/console/arguments.h"
+#include "cli/commands.h"
+#include "cli/console/console.h"
 
 #include <fmt/core.h>
 

@@ -29,7 +29,7 @@ inline void check_scene(const Scene& scene) {
         require(mesh.colors.empty() || mesh.colors.size() == vertices);
         for (const auto& set : mesh.texcoords) require(set.empty() || set.size() == vertices);
     }
-    for (const SceneImage& image : scene.images)
+    for (const Rgba8Image& image : scene.images)
         require(image.rgba.size() == std::size_t(image.width) * std::size_t(image.height) * 4);
 }
 

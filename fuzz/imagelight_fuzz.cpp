@@ -1,6 +1,6 @@
 // glTF with EXT_lights_image_based on arbitrary bytes.
 #include "fuzz_scene.h"
-#include "io/gltf/gltf_image_light.h"
+#include "scene/gltf/gltf_image_light.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     (void)domelight::may_be_gltf_image_light({data, size});

@@ -1,5 +1,5 @@
 // Reader of a scene's textures (PNG, JPEG, WebP) on arbitrary bytes.
-#include "texture/container/texture_image.h"
+#include "io/picture/texture_image.h"
 
 #include <cstdlib>
 

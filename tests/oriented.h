@@ -1,6 +1,8 @@
 #pragma once
 // An environment that says of every direction which one it is: radiance 2 + (x, y, z).
 
+#include "domelight/image/row_source.h"
+#include "domelight/image/repair_report.h"
 #include "domelight/environment/environment.h"
 #include "domelight/projection/projection.h"
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes src/preview/font_glyphs.h: the glyph bitmaps that the contact sheet and the axes environment are lettered with.
+"""Writes src/image/font_glyphs.h: the glyph bitmaps that the contact sheet and the axes environment are lettered with.
 
-    python3 docs/figures/make_font.py /usr/share/fonts/truetype/dejavu src/preview/font_glyphs.h
+    python3 docs/figures/make_font.py /usr/share/fonts/truetype/dejavu src/image/font_glyphs.h
 
 Needs Pillow; the build does not need this script, its output is committed.
 """

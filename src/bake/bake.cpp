@@ -1,6 +1,7 @@
+#include "domelight/io/file/atomic_file.h"
 #include "domelight/bake/bake.h"
 
-#include "domelight/io/image_io.h"
+#include "domelight/io/write_image.h"
 #include "domelight/base/parallel.h"
 
 #include "bake/filter_job.h"

@@ -1,11 +1,12 @@
 #include "bake/engine_files.h"
 
+#include "domelight/image/cube_layout.h"
 #include "domelight/texture/container/babylon_env.h"
-#include "domelight/io/image_io.h"
+#include "domelight/io/write_image.h"
 #include "domelight/filtering/resample/reproject.h"
 
 #include "bake/mirror.h"
-#include "io/gltf/gltf_image_light.h"
+#include "scene/gltf/gltf_image_light.h"
 #include "texture/container/playcanvas_atlas.h"
 
 #include <fmt/core.h>

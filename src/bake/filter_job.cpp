@@ -1,5 +1,6 @@
 #include "bake/filter_job.h"
 
+#include "domelight/image/row_source.h"
 #include "domelight/filtering/resample/area_resample.h"
 
 #include "bake/tap.h"

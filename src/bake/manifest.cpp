@@ -1,5 +1,6 @@
 #include "bake/manifest.h"
 
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/projection/projections.h"
 
 #include "bake/panorama.h"

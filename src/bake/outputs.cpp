@@ -1,6 +1,7 @@
 #include "bake/outputs.h"
 
-#include "domelight/io/image_io.h"
+#include "domelight/image/cube_layout.h"
+#include "domelight/io/write_image.h"
 
 #include "bake/engine_files.h"
 #include "bake/mirror.h"

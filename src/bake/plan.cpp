@@ -1,7 +1,7 @@
 #include "bake/plan.h"
 
 #include "bake/panorama.h"
-#include "io/file/scaled_bytes.h"
+#include "texture/container/scaled_bytes.h"
 #include "projection/latlong_convention.h"
 
 #include <fmt/core.h>

@@ -1,5 +1,5 @@
 // A cube's faces side by side in one picture.
-#include "domelight/io/image_io.h"
+#include "domelight/image/cube_layout.h"
 
 #include <algorithm>
 #include <array>

@@ -15,4 +15,14 @@ Result<void> ImageRowSource::read(ImageView<float> rows) {
     return {};
 }
 
+Result<ImageF> read_latlong(RowSource& source) {
+    ImageF image(source.width(), source.height(), 3);
+    constexpr int rows_a_read = 64;
+    for (int y = 0; y < image.height(); y += rows_a_read) {
+        const int count = std::min(rows_a_read, image.height() - y);
+        if (const auto read = source.read(image.view().rows(y, count)); !read) return read.error();
+    }
+    return image;
+}
+
 }  // namespace domelight

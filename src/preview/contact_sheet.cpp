@@ -3,7 +3,7 @@
 #include "domelight/projection/projection.h"
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
 
-#include "preview/draw.h"
+#include "image/draw.h"
 #include "preview/agx_display.h"
 #include "preview/preview_map.h"
 #include "preview/tonemap.h"

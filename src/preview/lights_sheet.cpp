@@ -3,7 +3,7 @@
 #include "domelight/base/parallel.h"
 #include "domelight/projection/projection.h"
 
-#include "preview/draw.h"
+#include "image/draw.h"
 #include "preview/agx_display.h"
 #include "preview/preview_map.h"
 #include "preview/tonemap.h"

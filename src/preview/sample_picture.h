@@ -2,7 +2,7 @@
 
 #include "domelight/sampling/environment_sampler.h"
 
-#include "preview/draw.h"
+#include "image/draw.h"
 
 #include <cstdint>
 #include <span>

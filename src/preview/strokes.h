@@ -1,6 +1,6 @@
 #pragma once
 
-#include "preview/draw.h"
+#include "image/draw.h"
 
 namespace domelight {
 

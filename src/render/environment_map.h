@@ -4,7 +4,7 @@
 #include "domelight/projection/projection.h"
 #include "domelight/render/shading/shading.h"
 
-#include "image/bordered_cube.h"
+#include "projection/bordered_cube.h"
 
 #include <optional>
 

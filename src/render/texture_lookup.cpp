@@ -31,7 +31,7 @@ int wrap(int i, int n, SceneTexture::Wrap how) {
 
 Rgba look_up(const Scene& scene, const SceneTexture& t, const Mesh::TexCoord& uv, bool srgb) {
     if (!t) return {};
-    const SceneImage& image = scene.images[t.image];
+    const Rgba8Image& image = scene.images[t.image];
     if (image.width < 1 || image.height < 1) return {};
     // KHR_texture_transform: scaled, turned (counter-clockwise as seen with v down), moved.
     const float c = std::cos(t.rotation), s = std::sin(t.rotation), su = uv.u * t.scale_u, sv = uv.v * t.scale_v;

@@ -1,3 +1,4 @@
+#include "domelight/image/row_source.h"
 #include "domelight/sampling/environment_sampler.h"
 
 #include "domelight/filtering/resample/area_resample.h"

@@ -3,7 +3,7 @@
 #include "domelight/base/parallel.h"
 
 #include "io/image_reader.h"
-#include "texture/container/texture_image.h"
+#include "io/picture/texture_image.h"
 
 #include <optional>
 

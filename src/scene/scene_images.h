@@ -4,7 +4,7 @@
 
 #include "io/file/byte_budget.h"
 #include "io/file/file_reader.h"
-#include "io/gltf/gltf_uri.h"
+#include "scene/gltf/gltf_uri.h"
 
 #include <functional>
 #include <memory>

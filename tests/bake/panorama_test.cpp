@@ -1,5 +1,7 @@
 #include "bake/panorama.h"
 
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/bake/bake.h"
 #include "domelight/projection/projections.h"
 #include "domelight/texture/texture.h"

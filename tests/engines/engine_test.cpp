@@ -1,3 +1,4 @@
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/engines/engine.h"
 
 #include "bake/plan.h"

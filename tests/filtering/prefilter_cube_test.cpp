@@ -1,7 +1,7 @@
 #include "domelight/filtering/prefilter.h"
 #include "domelight/projection/projection.h"
 
-#include "image/bordered_cube.h"
+#include "projection/bordered_cube.h"
 #include "base/gauss_legendre.h"
 #include "test.h"
 

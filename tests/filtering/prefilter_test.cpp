@@ -1,6 +1,7 @@
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/filtering/prefilter.h"
 
-#include "domelight/environment/environment.h"
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
 
 #include "accuracy.h"

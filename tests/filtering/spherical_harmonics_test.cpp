@@ -1,6 +1,7 @@
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
 
-#include "domelight/environment/environment.h"
 #include "domelight/projection/projection.h"
 #include "domelight/filtering/kernel/zonal_kernel.h"
 

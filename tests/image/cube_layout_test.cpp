@@ -1,4 +1,4 @@
-#include "domelight/io/image_io.h"
+#include "domelight/image/cube_layout.h"
 #include "domelight/projection/projection.h"
 
 #include "test.h"

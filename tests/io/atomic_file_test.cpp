@@ -1,4 +1,5 @@
-#include "domelight/io/image_io.h"
+#include "domelight/io/file/atomic_file.h"
+#include "domelight/io/write_image.h"
 #include "domelight/texture/texture.h"
 
 #include "texture/chain_encoder.h"

@@ -1,6 +1,6 @@
 #include "io/exr/exr_layers.h"
 
-#include "io/picture_reader.h"
+#include "compare/picture_reader.h"
 #include "test.h"
 
 #include <ImfChannelList.h>

@@ -1,5 +1,7 @@
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/bake/bake.h"
-#include "domelight/io/image_io.h"
+#include "domelight/io/write_image.h"
 #include "domelight/projection/projections.h"
 
 #include "oriented.h"

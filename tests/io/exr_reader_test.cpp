@@ -1,3 +1,6 @@
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
+
 #include "io/reader_samples.h"
 #include "test.h"
 

@@ -1,4 +1,4 @@
-#include "domelight/io/image_io.h"
+#include "domelight/io/write_image.h"
 #include "domelight/projection/projection.h"
 
 #include "texture/texel/half.h"

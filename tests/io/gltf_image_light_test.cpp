@@ -1,5 +1,6 @@
-#include "io/gltf/gltf_image_light.h"
+#include "scene/gltf/gltf_image_light.h"
 
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/bake/bake.h"
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
 

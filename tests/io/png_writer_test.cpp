@@ -1,4 +1,4 @@
-#include "domelight/io/image_io.h"
+#include "domelight/io/write_image.h"
 
 #include "io/io_helpers.h"
 #include "test.h"

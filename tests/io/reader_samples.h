@@ -1,7 +1,6 @@
 #pragma once
 // Small images that the tests of the readers write byte by byte, and short ways to read them.
 
-#include "domelight/environment/environment.h"
 
 #include "io/image_reader.h"
 

@@ -347,7 +347,7 @@ TEST_CASE("lobes: brushing follows the texture coordinates and turns with its ro
 }
 
 TEST_CASE("lobes: layers that a texture takes away leave the base, bit for bit") {
-    SceneImage black;
+    Rgba8Image black;
     black.width = black.height = 1;
     black.rgba = {0, 0, 0, 255};
     const Material base = white(0.2f, 0.4f);

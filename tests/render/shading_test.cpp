@@ -1,7 +1,8 @@
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/render/shading/shading.h"
 
 #include "domelight/bake/bake.h"
-#include "domelight/io/image_io.h"
+#include "domelight/io/write_image.h"
 #include "domelight/projection/projection.h"
 #include "domelight/filtering/reference.h"
 #include "domelight/environment/sky/sky.h"

@@ -1,3 +1,4 @@
+#include "domelight/image/row_source.h"
 #include "domelight/base/parallel.h"
 #include "domelight/render/shading/shading.h"
 #include "domelight/environment/sky/sky.h"

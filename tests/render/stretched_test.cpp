@@ -1,3 +1,4 @@
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/environment/sky/sky.h"
 #include "domelight/filtering/kernel/zonal_kernel.h"
 

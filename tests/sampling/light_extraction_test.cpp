@@ -1,11 +1,12 @@
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/sampling/light_extraction.h"
 
-#include "domelight/environment/environment.h"
 #include "domelight/filtering/prefilter.h"
 #include "domelight/projection/projection.h"
 #include "domelight/environment/sky/sky.h"
 
-#include "io/gltf/gltf_lights_writer.h"
+#include "scene/gltf/gltf_lights_writer.h"
 #include "preview/lights_sheet.h"
 #include "sampling/harmonic_fill.h"
 #include "environment/sky/sky_model.h"

@@ -1,6 +1,7 @@
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/sampling/reflection_estimate.h"
 
-#include "domelight/environment/environment.h"
 #include "domelight/filtering/prefilter.h"
 #include "domelight/sampling/product_sampling.h"
 #include "domelight/projection/projection.h"

@@ -1,5 +1,6 @@
 // Files that other tools wrote: each is read right, or refused with one clear error.
-#include "domelight/environment/environment.h"
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/texture/texture.h"
 
 #include "test.h"

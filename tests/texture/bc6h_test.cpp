@@ -4,7 +4,7 @@
 
 #include "texture/block/bc6h_encode.h"
 #include "texture/texel/half.h"
-#include "io/picture_reader.h"
+#include "compare/picture_reader.h"
 #include "texture/block/bc6h_encode_simd.h"
 #include "base/instruction_set.h"
 #include "test.h"

@@ -1,7 +1,8 @@
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/projection/projection.h"
 #include "domelight/texture/texture.h"
 
-#include "environment/cube_input.h"
+#include "io/environment/cube_input.h"
 #include "io/reader_samples.h"
 #include "test.h"
 

@@ -1,12 +1,14 @@
 #include "texture/container/env.h"
 
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/texture/container/babylon_env.h"
 #include "domelight/bake/bake.h"
 #include "domelight/texture/texture.h"
 
 #include "texture/texel/rgba8_ranges.h"
 #include "io/io_helpers.h"
-#include "texture/container/texture_image.h"
+#include "io/picture/texture_image.h"
 #include "oriented.h"
 #include "test.h"
 

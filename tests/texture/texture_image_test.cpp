@@ -1,4 +1,4 @@
-#include "texture/container/texture_image.h"
+#include "io/picture/texture_image.h"
 
 #include "test.h"
 

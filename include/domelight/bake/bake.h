@@ -1,5 +1,7 @@
 #pragma once
 
+#include "domelight/image/repair_report.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/filtering/brdf/brdf_table.h"
 #include "domelight/environment/environment.h"
 #include "domelight/filtering/prefilter.h"

@@ -29,4 +29,7 @@ class ImageRowSource : public RowSource {
     int next_row_ = 0;
 };
 
+/// All rows of a source, from its next one on, in memory.
+Result<ImageF> read_latlong(RowSource& source);
+
 }  // namespace domelight

@@ -2,6 +2,7 @@
 // What is lit: surfaces, their materials and textures, lights and cameras, in the world of glTF 2.0: metres,
 // right-handed, +Y up.
 
+#include "domelight/image/rgba8_image.h"
 #include "domelight/base/result.h"
 #include "domelight/base/vec.h"
 
@@ -25,13 +26,6 @@ struct Affine {
     /// finite.
     Vec3f normal(const Vec3f& n) const { return cross(y, z) * n.x + cross(z, x) * n.y + cross(x, y) * n.z; }
     float determinant() const { return dot(cross(x, y), z); }
-};
-
-/// Texels as stored, 8 bits, RGBA, rows top to bottom.
-struct SceneImage {
-    std::string name;
-    int width = 0, height = 0;
-    std::vector<std::uint8_t> rgba;
 };
 
 /// How a material reads an image.
@@ -153,7 +147,7 @@ struct Camera {
 };
 
 struct Scene {
-    std::vector<SceneImage> images;
+    std::vector<Rgba8Image> images;
     std::vector<Material> materials;
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;

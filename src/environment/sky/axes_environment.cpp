@@ -2,7 +2,7 @@
 #include "domelight/projection/projection.h"
 #include "domelight/environment/sky/sky.h"
 
-#include "preview/font.h"
+#include "image/font.h"
 
 #include <algorithm>
 #include <array>

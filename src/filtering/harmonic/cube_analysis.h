@@ -2,7 +2,7 @@
 
 #include "filtering/harmonic/bright_texels.h"
 #include "filtering/harmonic/spectrum.h"
-#include "image/bordered_cube.h"
+#include "projection/bordered_cube.h"
 
 namespace domelight {
 

@@ -3,7 +3,7 @@
 #include "domelight/filtering/resample/area_resample.h"
 
 #include "filtering/resample/area_resample_arc.h"
-#include "image/bordered_cube.h"
+#include "projection/bordered_cube.h"
 
 #include <span>
 

@@ -1,6 +1,7 @@
 // Writes OpenEXR images of several layers: channels named LAYER.R and so on, those of the first layer without a name
 // before them.
-#include "domelight/io/image_io.h"
+#include "domelight/io/file/atomic_file.h"
+#include "domelight/io/write_image.h"
 
 #include "io/exr/exr_output_stream.h"
 

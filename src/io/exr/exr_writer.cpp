@@ -1,5 +1,6 @@
 // Writes OpenEXR scanline images.
-#include "domelight/io/image_io.h"
+#include "domelight/io/file/atomic_file.h"
+#include "domelight/io/write_image.h"
 #include "domelight/base/parallel.h"
 
 #include "texture/texel/half.h"

@@ -1,7 +1,7 @@
 #pragma once
 // What the writers of OpenEXR images share. All of it may throw what OpenEXR throws.
 
-#include "domelight/io/image_io.h"
+#include "domelight/io/write_image.h"
 
 #include "io/exr/exr_output_stream.h"
 

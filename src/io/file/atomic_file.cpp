@@ -1,5 +1,5 @@
 // Files that appear whole or not at all.
-#include "domelight/io/image_io.h"
+#include "domelight/io/file/atomic_file.h"
 
 #include "io/file/output_file.h"
 #include "io/file/temporary_files.h"

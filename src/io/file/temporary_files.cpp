@@ -1,6 +1,6 @@
 #include "io/file/temporary_files.h"
 
-#include "domelight/io/image_io.h"
+#include "domelight/io/file/atomic_file.h"
 
 #include <limits.h>
 #include <unistd.h>

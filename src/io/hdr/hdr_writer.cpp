@@ -1,5 +1,6 @@
 // Writes Radiance HDR pictures (Ward, "The RADIANCE Picture File Format"; Real Pixels, Graphics Gems II).
-#include "domelight/io/image_io.h"
+#include "domelight/io/file/atomic_file.h"
+#include "domelight/io/write_image.h"
 #include "domelight/base/parallel.h"
 
 #include "texture/texel/rgbe.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "domelight/environment/environment.h"
+#include "domelight/image/repair_report.h"
 #include "domelight/image/row_source.h"
 
 #include "image/repair.h"

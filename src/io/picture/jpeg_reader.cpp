@@ -6,7 +6,7 @@
 #include <cstring>
 
 // jpeglib.h wants <cstdio> before it.
-#include "io/picture/ldr_reader.h"
+#include "io/picture/screen_curve.h"
 
 #include <jerror.h>
 #include <jpeglib.h>

@@ -1,4 +1,4 @@
-#include "io/picture/ldr_reader.h"
+#include "io/picture/screen_curve.h"
 
 #include <fmt/format.h>
 #include <png.h>

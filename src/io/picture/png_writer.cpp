@@ -1,4 +1,5 @@
-#include "domelight/io/image_io.h"
+#include "domelight/io/file/atomic_file.h"
+#include "domelight/io/write_image.h"
 
 #include "io/file/output_file.h"
 #include "io/picture/png_memory.h"

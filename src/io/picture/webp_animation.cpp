@@ -1,5 +1,5 @@
+#include "domelight/io/file/atomic_file.h"
 #include "domelight/io/picture/animation.h"
-#include "domelight/io/image_io.h"
 
 #include <fmt/core.h>
 #include <webp/encode.h>

@@ -5,7 +5,7 @@
 #include "domelight/engines/engine.h"
 #include "domelight/texture/texture.h"
 
-#include "image/bordered_cube.h"
+#include "projection/bordered_cube.h"
 #include "render/environment_map.h"
 
 #include <fmt/core.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "io/gltf/gltf_document.h"
+#include "scene/gltf/gltf_document.h"
 #include "io/file/json_fields.h"
 
 #include <vector>

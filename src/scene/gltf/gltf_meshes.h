@@ -1,6 +1,6 @@
 #pragma once
 
-#include "io/gltf/gltf_data.h"
+#include "scene/gltf/gltf_data.h"
 #include "scene/mesh/mesh_repair.h"
 
 #include <vector>

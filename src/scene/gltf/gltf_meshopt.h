@@ -1,7 +1,7 @@
 #pragma once
 
 #include "io/file/byte_budget.h"
-#include "io/gltf/gltf_document.h"
+#include "scene/gltf/gltf_document.h"
 
 #include <span>
 #include <vector>

@@ -1,5 +1,5 @@
-#include "io/gltf/gltf_chunks.h"
-#include "io/gltf/gltf_data.h"
+#include "scene/gltf/gltf_chunks.h"
+#include "scene/gltf/gltf_data.h"
 #include "scene/gltf/gltf_meshes.h"
 #include "scene/scene_images.h"
 #include "scene/scene_readers.h"

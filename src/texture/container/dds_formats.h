@@ -1,6 +1,6 @@
 #pragma once
 
-#include "environment/screen_texels.h"
+#include "texture/container/screen_texels.h"
 #include "texture/container/texture_reading.h"
 
 #include <cstdint>

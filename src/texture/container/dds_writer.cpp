@@ -4,7 +4,7 @@
 #include "io/file/byte_buffer.h"
 #include "texture/container/dds.h"
 #include "texture/container/dds_formats.h"
-#include "io/file/scaled_bytes.h"
+#include "texture/container/scaled_bytes.h"
 #include "texture/container/texture_layout.h"
 
 #include <utility>

@@ -1,7 +1,7 @@
 // Reads Babylon's .env.
 #include "texture/container/env.h"
 #include "io/file/json_fields.h"
-#include "texture/container/texture_image.h"
+#include "io/picture/texture_image.h"
 #include "texture/container/texture_reading.h"
 
 #include <fmt/format.h>
@@ -94,7 +94,7 @@ Result<Header> read_header(ByteSource& source) {
 }
 
 /// A face's texels. Nothing is allocated for a picture that says another size of itself, or more than its bytes hold.
-Result<SceneImage> read_face(ByteSource& source, const Place& place, int size) {
+Result<Rgba8Image> read_face(ByteSource& source, const Place& place, int size) {
     const auto bytes = source.take(place.offset, place.length, "picture");
     if (!bytes) return bytes.error();
     const auto claimed = texture_image_size(*bytes);

@@ -1,5 +1,5 @@
 // Writes Babylon's .env, version 2.
-#include "domelight/io/image_io.h"
+#include "domelight/io/file/atomic_file.h"
 
 #include "texture/container/env.h"
 #include "io/file/output_file.h"

@@ -1,7 +1,7 @@
 // Reads KTX 1.1 (Khronos KTX File Format Specification, version 1.1), of either endianness.
 #include "texture/container/gl_formats.h"
 #include "texture/container/ktx1.h"
-#include "io/file/scaled_bytes.h"
+#include "texture/container/scaled_bytes.h"
 #include "texture/container/texture_reading.h"
 
 #include <algorithm>

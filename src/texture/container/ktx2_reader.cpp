@@ -1,6 +1,6 @@
 // Reads KTX 2.0 (Khronos KTX File Format Specification, version 2.0).
 #include "texture/container/ktx2.h"
-#include "io/file/scaled_bytes.h"
+#include "texture/container/scaled_bytes.h"
 #include "texture/container/texture_reading.h"
 #include "texture/container/vulkan_formats.h"
 

@@ -3,7 +3,7 @@
 
 #include "io/file/byte_buffer.h"
 #include "texture/container/ktx2.h"
-#include "io/file/scaled_bytes.h"
+#include "texture/container/scaled_bytes.h"
 #include "texture/container/texture_layout.h"
 
 #include <zstd.h>

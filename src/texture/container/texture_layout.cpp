@@ -1,6 +1,6 @@
 #include "texture/container/texture_layout.h"
 
-#include "domelight/io/image_io.h"
+#include "domelight/io/file/atomic_file.h"
 
 #include "io/file/output_file.h"
 

@@ -1,6 +1,6 @@
 #include "texture/container/texture_stream.h"
 
-#include "domelight/io/image_io.h"
+#include "domelight/io/file/atomic_file.h"
 #include "domelight/base/parallel.h"
 
 #include "texture/chain_encoder.h"

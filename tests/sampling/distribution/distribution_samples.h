@@ -2,7 +2,6 @@
 // Weights that samplers get wrong, and points to draw with.
 
 #include "domelight/sampling/distribution/distribution.h"
-#include "domelight/environment/environment.h"
 #include "domelight/projection/projection.h"
 #include "domelight/environment/sky/sky.h"
 

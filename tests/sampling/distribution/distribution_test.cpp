@@ -1,4 +1,6 @@
 // What every method of drawing from a distribution must do, tested on all of them.
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/sampling/distribution/distribution.h"
 
 #include "sampling/distribution/bilinear_place.h"

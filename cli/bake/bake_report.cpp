@@ -1,0 +1,84 @@
+#include "cli/bake/bake_report.h"
+
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+
+namespace domelight::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string shown_name(const BakedMap& map) {
+    if (!map.file.file.empty()) return map.file.file;
+    const auto& first = map.levels.front().files;
+    return first.empty() ? "" : first.front().file + (map.levels.size() > 1 || first.size() > 1 ? ", ..." : "");
+}
+
+/// Two digits, but never 1.5e+03.
+std::string percent(double part) {
+    return part < 1 ? fmt::format("{:.2g} %", 100 * part) : fmt::format("{:.0f} %", 100 * part);
+}
+
+void print_map(const BakedMap& map) {
+    const int size = map.levels.front().size;
+    const std::string shape =
+        map.layout == Layout::cube ? fmt::format("6 x {}^2", size) : fmt::format("{} x {}", 2 * size, size);
+    std::string line = fmt::format("  {:<28} {}: {}, {}", shown_name(map), map.role, shape, map.encoding);
+    if (map.levels.size() > 1) line += fmt::format(", {} levels to {}", map.levels.size(), map.levels.back().size);
+    if (map.quantity != Quantity::radiance) line += ", " + quantity_name(map.quantity);
+    fmt::print("{}\n", line);
+}
+
+}  // namespace
+
+void print_summary(const BakeOutcome& outcome) {
+    if (outcome.up_to_date) {
+        fmt::print("{}: up to date\n", outcome.folder.string());
+        return;
+    }
+    for (const TargetReport& target : outcome.report.targets) {
+        fmt::print("{}: {} for {}\n", target.folder.string(),
+                   outcome.environment.empty() ? "the built-in sky" : outcome.environment.front(), target.target);
+        for (const BakedMap& map : target.maps) print_map(map);
+        fmt::print("  {:<28} harmonics: {} bands; E is off by {} RMS, {} at most\n", target.sh.files.front().file,
+                   target.sh.bands, percent(target.sh.rms_error), percent(target.sh.max_error));
+        if (!target.brdf.file.file.empty())
+            fmt::print("  {:<28} BRDF table: {}^2, {}, {}\n", target.brdf.file.file, target.brdf.size,
+                       target.brdf.encoding, brdf_form_name(target.brdf.form));
+        if (target.preview) fmt::print("  {:<28} a picture of it all\n", target.preview->file);
+        fmt::print("  {:<28} what everything is\n", "manifest.json");
+        for (const Target& t : targets())
+            if (t.name == target.target && !t.note.empty()) fmt::print("  note: {}\n", t.note);
+    }
+    fmt::print("{:.2f} s\n", outcome.seconds);
+}
+
+void print_json(const std::vector<BakeOutcome>& outcomes) {
+    Json bakes = Json::array();
+    for (const BakeOutcome& o : outcomes) {
+        Json bake{{"environment", o.environment},
+                  {"folder", o.folder.string()},
+                  {"status", o.error        ? "failed"
+                             : o.up_to_date ? "up to date"
+                                            : "baked"},
+                  {"error", o.error ? Json(o.error->format()) : Json(nullptr)},
+                  {"seconds", o.seconds},
+                  {"band_limit", o.report.band_limit},
+                  {"negative_texels_set_to_0", o.report.clamped},
+                  {"warnings", o.report.warnings}};
+        bake["stages"] = Json::array();
+        for (const StageTime& s : o.report.stages)
+            bake["stages"].push_back({{"stage", s.stage}, {"seconds", s.seconds}, {"cpu_seconds", s.cpu_seconds}});
+        bake["targets"] = Json::array();
+        for (const TargetReport& t : o.report.targets)
+            bake["targets"].push_back({{"target", t.target},
+                                       {"folder", t.folder.string()},
+                                       {"manifest", Json::parse(t.manifest, nullptr, false)}});
+        bakes.push_back(bake);
+    }
+    fmt::print("{}\n",
+               Json{{"version", version()}, {"bakes", bakes}}.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+}  // namespace domelight::cli

@@ -1,0 +1,250 @@
+#include "cli/compare/compare_bake.h"
+
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
+#include "domelight/bake/bake.h"
+#include "domelight/compare/bake_audit.h"
+#include "domelight/texture/texture.h"
+
+#include "cli/console/environment_options.h"
+#include "io/environment/cube_texture_reader.h"
+#include "io/file/file_reader.h"
+#include "projection/latlong_convention.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace domelight::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A bake as read: its levels, and what it is.
+struct Bake {
+    std::vector<CubeLevel> levels;
+    std::string format;
+    std::string stated_by;  ///< who says which roughness the levels have
+};
+
+/// "0 0.25 0.5" or "0,0.25,0.5": one number a level, else nothing.
+std::vector<double> numbers_in(std::string text, std::size_t count) {
+    std::replace(text.begin(), text.end(), ',', ' ');
+    std::vector<double> values;
+    for (const std::string& word : split(text, ' ')) {
+        if (word.empty()) continue;
+        const auto value = parse_number(word);
+        if (!value || !(*value >= 0 && *value <= 1)) return {};
+        values.push_back(*value);
+    }
+    return values.size() == count ? values : std::vector<double>{};
+}
+
+Result<Bake> read_chain(const std::string& file) {
+    const auto texture = read_texture(file);
+    if (!texture) return texture.error().at(file);
+    auto cubes = decode_cubes(*texture);
+    if (!cubes) return cubes.error().at(file);
+    const auto info = read_texture_info(file);
+    Bake bake;
+    bake.format = info ? fmt::format("{}, {}", info->container, info->format) : "texture";
+    for (Cubemap& cube : *cubes) bake.levels.emplace_back().cube = std::move(cube);
+    if (const auto key = texture->metadata.find("domelight.roughness"); key != texture->metadata.end()) {
+        const auto stated = numbers_in(key->second, bake.levels.size());
+        for (std::size_t l = 0; l < stated.size(); ++l) bake.levels[l].roughness = stated[l];
+        if (!stated.empty()) bake.stated_by = "the file";
+    }
+    return bake;
+}
+
+/// Whether a file begins as a texture does.
+bool is_texture_file(const std::string& name) {
+    const auto bytes = FileBytes::open(name, std::int64_t(1) << 31);
+    return bytes && !texture_container((*bytes)->bytes()).empty();
+}
+
+/// One level a word: a picture of a cube, or a folder of six faces.
+Result<Bake> read_pictures(const std::vector<std::string>& words, int threads) {
+    Bake bake;
+    EnvironmentOptions options;
+    options.threads = threads;
+    for (const std::string& word : words) {
+        auto cube = open_environment(environment_files({word}), options);
+        if (!cube) return cube.error();
+        if (cube->cube.empty())
+            return Error{
+                "is not a picture of a cube", word,
+                "Give a KTX2, KTX or DDS with its levels, or a cube picture or folder of six faces for each level."};
+        bake.format = cube->format;
+        bake.levels.push_back({std::move(cube->cube), {}});
+    }
+    return bake;
+}
+
+Result<Bake> read_bake(const BakeWords& w, int threads) {
+    auto bake =
+        w.bake.size() == 1 && is_texture_file(w.bake[0]) ? read_chain(w.bake[0]) : read_pictures(w.bake, threads);
+    if (!bake || w.target.empty()) return bake;
+    const auto target = find_target(w.target);
+    if (!target) return target.error();
+    if (!(*target)->roughness) return Error{w.target + " filters by itself: it has no roughness curve", "--for", ""};
+    const int count = int(bake->levels.size());
+    for (int l = 0; l < count; ++l)
+        bake->levels[std::size_t(l)].roughness = (*target)->roughness(l, count, bake->levels[0].cube.size());
+    bake->stated_by = w.target + "'s curve";
+    return bake;
+}
+
+/// The named lat-long convention by which the baker read the source, where that explains the orientation.
+std::string convention_of(const Mat3& ours_from_theirs, const Mat3& world_to_source) {
+    if (ours_from_theirs == Mat3()) return "";
+    const Mat3 read = world_to_source * ours_from_theirs;
+    for (const char* name : {"default", "usd", "materialx", "mod"})
+        if (const auto convention = latlong_convention(name); convention && convention->world_to_default() == read)
+            return name;
+    return "";
+}
+
+// --- telling ---
+
+Json level_json(int index, const LevelAudit& l) {
+    Json json{{"level", index},
+              {"size", l.size},
+              {"roughness", l.roughness_known ? Json(l.roughness) : Json()},
+              {"roughness_within", l.roughness_within},
+              {"scale", l.scale},
+              {"energy", l.energy},
+              {"error", l.error},
+              {"relative_rmse", l.relative_rmse},
+              {"largest", l.largest}};
+    if (l.stated_roughness) {
+        json["stated_roughness"] = *l.stated_roughness;
+        json["stated_error"] = l.stated_error;
+        json["stated_relative_rmse"] = l.stated_relative_rmse;
+    }
+    return json;
+}
+
+void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, const std::string& as_convention,
+                const std::vector<std::string>& warnings) {
+    const CubeOrientation& o = audit.orientation;
+    Json matrix = Json::array(), levels = Json::array();
+    for (const Vec3d& row : o.ours_from_theirs.row) matrix.push_back({row.x, row.y, row.z});
+    for (std::size_t l = 0; l < audit.levels.size(); ++l) levels.push_back(level_json(int(l), audit.levels[l]));
+    const Json json{{"version", version()},
+                    {"kind", "audit"},
+                    {"bake", w.bake},
+                    {"format", bake.format},
+                    {"env", w.env},
+                    {"orientation",
+                     {{"words", o.words},
+                      {"ours_from_theirs", matrix},
+                      {"latlong", as_convention.empty() ? Json() : Json(as_convention)},
+                      {"certain", o.certain},
+                      {"error", o.error},
+                      {"next_error", o.next_error}}},
+                    {"roughness_stated_by", bake.stated_by},
+                    {"levels", levels},
+                    {"warnings", warnings}};
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+std::string percent(double v) {
+    return fmt::format("{:.3g} %", 100 * v);
+}
+
+void print_text(const BakeWords& w, const Bake& bake, const BakeAudit& audit, const std::string& as_convention) {
+    const CubeOrientation& o = audit.orientation;
+    fmt::print("{}: {}, {}², {} level{}\n", join(w.bake, " "), bake.format, bake.levels[0].cube.size(),
+               bake.levels.size(), bake.levels.size() == 1 ? "" : "s");
+    fmt::print("against the exact filter of {}\n\n", w.env.empty() ? "the built-in sky" : join(w.env, " "));
+    fmt::print("  orientation   {}\n", o.words);
+    if (!as_convention.empty()) fmt::print("                that is as ours with --latlong {}\n", as_convention);
+    fmt::print("                error {}, the next best orientation {}{}\n\n", percent(o.error), percent(o.next_error),
+               o.certain ? "" : ": the light cannot tell them apart");
+    const bool stated = std::any_of(audit.levels.begin(), audit.levels.end(),
+                                    [](const LevelAudit& l) { return l.stated_roughness.has_value(); });
+    fmt::print("  {:>5}  {:>5}  {:>16}  {:>7}  {:>7}  {:>8}  {:>8}  {:>8}", "level", "size", "roughness", "scale",
+               "energy", "error", "RMSE", "largest");
+    if (stated) fmt::print("  | {:>7}  {:>8}  {:>8}", "stated", "error", "RMSE");
+    fmt::print("\n");
+    for (std::size_t i = 0; i < audit.levels.size(); ++i) {
+        const LevelAudit& l = audit.levels[i];
+        const std::string roughness = !l.roughness_known ? "any fits"
+                                      : l.roughness_within > 0
+                                          ? fmt::format("{:.4f} ± {:<6.2g}", l.roughness, l.roughness_within)
+                                          : fmt::format("{:.4f}         ", l.roughness);
+        fmt::print("  {:>5}  {:>5}  {:>16}  {:>7.4f}  {:>7.4f}  {:>8}  {:>8}  {:>8}", i, l.size, roughness, l.scale,
+                   l.energy, percent(l.error), percent(l.relative_rmse), percent(l.largest));
+        if (l.stated_roughness)
+            fmt::print("  | {:>7.4f}  {:>8}  {:>8}", *l.stated_roughness, percent(l.stated_error),
+                       percent(l.stated_relative_rmse));
+        fmt::print("\n");
+    }
+    fmt::print(
+        "\n  roughness     of GGX (n = v = r) that fits best, 0: the environment itself\n"
+        "  scale         median of theirs / exact          energy   ratio of the means over the sphere\n"
+        "  error         RMS of (theirs - fit) / max(theirs, fit), every direction alike; RMSE relative, the brightest "
+        "count most\n");
+    if (stated) fmt::print("  stated        roughness by {}; errors there, at scale 1\n", bake.stated_by);
+}
+
+}  // namespace
+
+void add_bake_options(Arguments& a, BakeWords& w) {
+    std::vector<std::string> names;
+    for (const Target& target : targets()) names.push_back(target.name);
+    a.group("A bake against its source");
+    a.texts("--bake", "FILE", w.bake,
+            "a baked specular cube: KTX2, KTX or DDS with its levels, or one cube picture or folder of faces a level");
+    a.texts("--env", "SRC", w.env, "the environment it was baked from");
+    a.choice("--for", w.target, names,
+             "whose curve says which roughness a level should have (a Domelight file says it itself)");
+    a.integer("--texels", "N", w.texels, "looked at in each level (6144)");
+    add_environment_options(a, w.environment);
+}
+
+int compare_bake(const BakeWords& w, const CommonOptions& common) {
+    const int threads = common.threads.value_or(0);
+    if (w.texels && (*w.texels < 96 || *w.texels > 10'000'000))
+        return print_error({"is not from 96 to 10000000", "--texels", ""}, exit_usage);
+    EnvironmentOptions options = w.environment;
+    options.threads = threads;
+    auto bake = read_bake(w, threads);
+    if (!bake) return print_error(bake.error());
+    auto environment = open_environment_or_sky(w.env, options);
+    if (!environment) return print_error(environment.error());
+    ImageF latlong;
+    AuditSource source;
+    source.world_to_source = environment->world_to_source;
+    if (environment->latlong) {
+        auto pixels = read_latlong(*environment->latlong);
+        if (!pixels) return print_error(pixels.error().at(join(w.env, " ")));
+        latlong = std::move(*pixels);
+        source.latlong = latlong.view();
+    } else {
+        source.cube = &environment->cube;
+    }
+    AuditOptions audit_options;
+    audit_options.threads = threads;
+    audit_options.texels = w.texels.value_or(audit_options.texels);
+    Result<BakeAudit> audit = Error{};
+    {
+        ProgressBar bar(w.bake[0], common);
+        audit_options.progress = bar.callback();
+        audit = audit_bake(bake->levels, source, audit_options);
+    }
+    if (!audit) return print_error(audit.error().at(w.bake[0]));
+    print_warnings(environment->report->warnings, common, join(w.env, " "));
+    const std::string convention =
+        source.cube ? "" : convention_of(audit->orientation.ours_from_theirs, source.world_to_source);
+    if (common.json)
+        print_json(w, *bake, *audit, convention, environment->report->warnings);
+    else if (!common.quiet)
+        print_text(w, *bake, *audit, convention);
+    return exit_done;
+}
+
+}  // namespace domelight::cli

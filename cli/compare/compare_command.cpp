@@ -1,0 +1,44 @@
+#include "domelight/bake/bake.h"
+
+#include "cli/commands.h"
+#include "cli/compare/compare_bake.h"
+#include "cli/compare/compare_pictures.h"
+#include "cli/console/console.h"
+
+#include <fmt/core.h>
+
+namespace domelight::cli {
+
+int run_compare(const std::vector<std::string>& words) {
+    CommonOptions common;
+    PictureWords pictures;
+    BakeWords bake;
+    std::vector<std::string> inputs;
+    Arguments arguments(
+        "compare",
+        "Says how far picture A is from the reference B: in numbers, as a heat map, side by side. With --bake, "
+        "how far a baked specular cube of any tool is from the exact filter of its source.",
+        {"domelight compare studio.hdr evening.hdr",
+         "domelight compare studio.hdr studio.hdr --fail-above relative=0.01 --json",
+         "domelight compare studio.hdr evening.hdr --heat heat.png --sheet sheet.png",
+         "domelight compare --bake out/specular.ktx2 --env studio.hdr"});
+    arguments.positional("A B", inputs,
+                         "the picture and the reference: OpenEXR, Radiance HDR, PNG, JPEG, KTX2, KTX, DDS");
+    add_picture_options(arguments, pictures);
+    add_bake_options(arguments, bake);
+    add_common_options(arguments, common);
+    if (const auto code = begin_command(arguments, words, common)) return *code;
+    if (!bake.bake.empty()) {
+        if (!inputs.empty())
+            return print_error({"audits a bake: it takes no pictures A and B", "--bake", "Name the source with --env."},
+                               exit_usage);
+        return compare_bake(bake, common);
+    }
+    if (inputs.size() != 2)
+        return print_error({fmt::format("needs two pictures, got {}", inputs.size()), "compare",
+                            "Say: domelight compare A B, or: domelight compare --bake THEIRS --env SRC."},
+                           exit_usage);
+    return compare_pictures(inputs[0], inputs[1], pictures, common);
+}
+
+}  // namespace domelight::cli

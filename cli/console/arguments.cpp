@@ -1,0 +1,275 @@
+#include "cli/console/arguments.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <functional>
+
+namespace domelight::cli {
+
+namespace {
+
+template <typename T>
+Result<T> parse_whole(const std::string& text, const char* what) {
+    T value{};
+    const char* const end = text.data() + text.size();
+    const auto [stop, code] = std::from_chars(text.data(), end, value);
+    if (code != std::errc() || stop != end || text.empty())
+        return Error{fmt::format("\"{}\" is not {}", text, what), "", ""};
+    return value;
+}
+
+/// What a callback tells parse() through CLI11's own exception.
+struct ValueError : CLI::Error {
+    explicit ValueError(domelight::Error e) : CLI::Error("ValueError", e.what, 2), error(std::move(e)) {}
+    domelight::Error error;
+};
+
+}  // namespace
+
+Result<double> parse_number(const std::string& text) {
+    return parse_whole<double>(text, "a number");
+}
+Result<int> parse_integer(const std::string& text) {
+    return parse_whole<int>(text, "a whole number");
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> words;
+    std::size_t begin = 0;
+    for (std::size_t end; (end = text.find(separator, begin)) != std::string::npos; begin = end + 1)
+        words.push_back(text.substr(begin, end - begin));
+    words.push_back(text.substr(begin));
+    return words;
+}
+
+std::string join(const std::vector<std::string>& words, const std::string& separator) {
+    std::string text;
+    for (const std::string& word : words) {
+        if (!text.empty()) text += separator;
+        text += word;
+    }
+    return text;
+}
+
+struct Arguments::Parser {
+    CLI::App app;
+    struct Entry {
+        std::string group, name, value_name, help;
+        CLI::Option* option = nullptr;
+    };
+    std::vector<Entry> entries;
+    bool help = false;
+
+    /// An option whose every value goes through `take`.
+    void add(const std::string& group, const std::string& name, const std::string& value_name,
+             const std::string& help_text, std::function<Result<void>(const std::string&)> take,
+             bool repeatable = false) {
+        const std::string long_name = "--" + split(name.substr(name.find("--") + 2), ',')[0];
+        CLI::Option* option = app.add_option(
+            name,
+            [take, long_name](const CLI::results_t& values) {
+                for (const std::string& value : values)
+                    if (auto ok = take(value); !ok) throw ValueError(ok.error().at(long_name));
+                return true;
+            },
+            help_text);
+        option->expected(1);
+        option->multi_option_policy(repeatable ? CLI::MultiOptionPolicy::TakeAll : CLI::MultiOptionPolicy::TakeLast);
+        option->allow_extra_args(false);
+        entries.push_back({group, name, value_name, help_text, option});
+    }
+
+    std::vector<std::string> option_names() const {
+        std::vector<std::string> names;
+        for (const Entry& entry : entries)
+            if (entry.name.starts_with("-")) names.push_back(entry.name.substr(entry.name.find("--")));
+        return names;
+    }
+};
+
+Arguments::Arguments(std::string command, std::string summary, std::vector<std::string> examples)
+    : parser_(std::make_unique<Parser>()),
+      command_(std::move(command)),
+      summary_(std::move(summary)),
+      examples_(std::move(examples)) {
+    parser_->app.set_help_flag();
+    parser_->app.allow_extras(false);
+}
+
+Arguments::~Arguments() = default;
+
+void Arguments::positional(const std::string& name, std::vector<std::string>& values, const std::string& help) {
+    CLI::Option* option = parser_->app.add_option(name, values, help);
+    option->expected(0, CLI::detail::expected_max_vector_size);
+    parser_->entries.push_back({"", name, "", help, option});
+}
+
+void Arguments::flag(const std::string& name, bool& value, const std::string& help) {
+    parser_->entries.push_back({group_, name, "", help, parser_->app.add_flag(name, value, help)});
+}
+
+void Arguments::text(const std::string& name, const std::string& value_name, std::string& value,
+                     const std::string& help) {
+    parser_->add(group_, name, value_name, help, [&value](const std::string& word) -> Result<void> {
+        value = word;
+        return {};
+    });
+}
+
+void Arguments::texts(const std::string& name, const std::string& value_name, std::vector<std::string>& values,
+                      const std::string& help) {
+    parser_->add(
+        group_, name, value_name, help,
+        [&values](const std::string& word) -> Result<void> {
+            values.push_back(word);
+            return {};
+        },
+        true);
+}
+
+void Arguments::integer(const std::string& name, const std::string& value_name, std::optional<int>& value,
+                        const std::string& help) {
+    parser_->add(group_, name, value_name, help, [&value](const std::string& word) -> Result<void> {
+        const auto number = parse_integer(word);
+        if (!number) return number.error();
+        value = *number;
+        return {};
+    });
+}
+
+void Arguments::number(const std::string& name, const std::string& value_name, double& value, const std::string& help) {
+    parser_->add(group_, name, value_name, help, [&value](const std::string& word) -> Result<void> {
+        const auto number = parse_number(word);
+        if (!number) return number.error();
+        value = *number;
+        return {};
+    });
+}
+
+void Arguments::numbers(const std::string& name, const std::string& value_name, std::vector<double>& values,
+                        const std::string& help) {
+    parser_->add(group_, name, value_name, help, [&values](const std::string& list) -> Result<void> {
+        values.clear();
+        for (const std::string& word : split(list, ',')) {
+            const auto number = parse_number(word);
+            if (!number) return number.error();
+            values.push_back(*number);
+        }
+        return {};
+    });
+}
+
+namespace {
+
+Result<void> check_choice(const std::string& word, const std::vector<std::string>& accepted) {
+    if (std::find(accepted.begin(), accepted.end(), word) != accepted.end()) return {};
+    return Error{fmt::format("\"{}\" is not one of its values", word), "", "Accepted: " + join(accepted, ", ") + "."};
+}
+
+}  // namespace
+
+void Arguments::choice(const std::string& name, std::string& value, const std::vector<std::string>& accepted,
+                       const std::string& help) {
+    parser_->add(group_, name, join(accepted, "|"), help, [&value, accepted](const std::string& word) -> Result<void> {
+        value = word;
+        return check_choice(word, accepted);
+    });
+}
+
+void Arguments::choices(const std::string& name, std::vector<std::string>& values,
+                        const std::vector<std::string>& accepted, const std::string& help) {
+    parser_->add(
+        group_, name, join(accepted, "|"), help,
+        [&values, accepted](const std::string& list) -> Result<void> {
+            for (const std::string& word : split(list, ',')) {
+                if (auto ok = check_choice(word, accepted); !ok) return ok;
+                values.push_back(word);
+            }
+            return {};
+        },
+        true);
+}
+
+bool Arguments::given(const std::string& name) const {
+    for (const auto& entry : parser_->entries)
+        if (entry.name.ends_with(name)) return entry.option->count() > 0;
+    return false;
+}
+
+Result<void> Arguments::parse(const std::vector<std::string>& words) {
+    if (std::any_of(words.begin(), words.end(), [](const auto& word) { return word == "--help" || word == "-h"; })) {
+        parser_->help = true;
+        return {};
+    }
+    const std::string see = "See domelight " + command_ + " --help.";
+    try {
+        parser_->app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 takes them from the back
+    } catch (const ValueError& e) {
+        return e.error;
+    } catch (const CLI::ExtrasError&) {
+        const auto rest = parser_->app.remaining();
+        const std::string first = rest.empty() ? "" : rest.front();
+        if (!first.starts_with("-")) return Error{"\"" + first + "\" is one argument too many", "", see};
+        return Error{"unknown option " + first, "", "Accepted: " + join(parser_->option_names(), ", ") + ", --help."};
+    } catch (const CLI::ArgumentMismatch&) {
+        // The one that is the last word has nothing behind it; CLI11's own text does not read well.
+        return Error{"needs one value", words.empty() ? "" : words.back(), see};
+    } catch (const CLI::Error& e) {
+        return Error{e.what(), "", see};
+    }
+    return {};
+}
+
+bool Arguments::help_wanted() const {
+    return parser_->help;
+}
+
+namespace {
+
+/// `text` broken at spaces into lines of at most `width`, those after the first indented.
+std::string wrap(const std::string& text, std::size_t width, std::size_t indent) {
+    std::string out;
+    std::size_t column = 0;
+    for (const std::string& word : split(text, ' ')) {
+        if (column && column + 1 + word.size() > width) {
+            out += "\n" + std::string(indent, ' ');
+            column = 0;
+        } else if (column) {
+            out += ' ';
+            ++column;
+        }
+        out += word;
+        column += word.size();
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string Arguments::help() const {
+    std::string out = "Examples:\n";
+    for (const std::string& example : examples_) out += "  " + example + "\n";
+    std::string usage = "domelight " + command_;
+    for (const auto& entry : parser_->entries)
+        if (entry.group.empty()) usage += " [" + entry.name + " ...]";
+    out += "\n" + usage + " [OPTIONS]\n" + wrap(summary_, 100, 0) + "\n";
+    std::string group;
+    for (const auto& entry : parser_->entries) {
+        if (entry.group != group) {
+            group = entry.group;
+            out += "\n" + group + ":\n";
+        }
+        std::string left =
+            "  " + join(split(entry.name, ','), ", ") + (entry.value_name.empty() ? "" : " " + entry.value_name);
+        constexpr std::size_t column = 30;
+        out += left.size() < column - 1 ? left + std::string(column - left.size(), ' ')
+                                        : left + "\n" + std::string(column, ' ');
+        out += wrap(entry.help, 110 - column, column) + "\n";
+    }
+    return out + "  --help                      this text\n";
+}
+
+}  // namespace domelight::cli

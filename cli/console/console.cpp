@@ -1,0 +1,93 @@
+#include "cli/console/console.h"
+
+#include <fmt/core.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace domelight::cli {
+
+void add_common_options(Arguments& arguments, CommonOptions& options) {
+    arguments.group("Running");
+    arguments.integer("--threads", "N", options.threads,
+                      "threads to use; 0: all (0). The results are the same bytes on any number");
+    arguments.flag("--json", options.json, "print one JSON document to stdout instead of text");
+    arguments.flag("--quiet", options.quiet, "no progress, no warnings, no summary");
+}
+
+Result<void> check_common_options(const CommonOptions& options) {
+    if (options.threads && (*options.threads < 0 || *options.threads > 1024))
+        return Error{fmt::format("{} is not from 0 to 1024", *options.threads), "--threads", ""};
+    return {};
+}
+
+int print_error(const Error& error, int otherwise) {
+    fmt::print(stderr, "error: {}\n", error.format());
+    return error.where.starts_with("--") ? exit_usage : otherwise;
+}
+
+std::optional<int> begin_command(Arguments& arguments, const std::vector<std::string>& words,
+                                 const CommonOptions& options) {
+    if (auto ok = arguments.parse(words); !ok) return print_error(ok.error(), exit_usage);
+    if (arguments.help_wanted()) {
+        fmt::print("{}", arguments.help());
+        return exit_done;
+    }
+    if (auto ok = check_common_options(options); !ok) return print_error(ok.error(), exit_usage);
+    return std::nullopt;
+}
+
+void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options, const std::string& place) {
+    if (options.quiet) return;
+    for (const std::string& warning : warnings)
+        fmt::print(stderr, "warning: {}{}{}\n", place, place.empty() ? "" : ": ", warning);
+}
+
+std::string clock_text(double seconds) {
+    const auto s = std::int64_t(std::clamp(seconds, 0.0, 1e9) + 0.5);
+    if (s < 3600) return fmt::format("{}:{:02}", s / 60, s % 60);
+    return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+}
+
+ProgressBar::ProgressBar(std::string title, const CommonOptions& options)
+    : title_(std::move(title)),
+      start_(std::chrono::steady_clock::now()),
+      on_(!options.quiet && !options.json && isatty(STDERR_FILENO)) {}
+
+ProgressBar::~ProgressBar() {
+    if (!shown_.empty()) fmt::print(stderr, "\r\033[K");
+}
+
+Progress ProgressBar::callback() {
+    if (!on_) return {};
+    return [this](std::string_view stage, double done) { return update(stage, done); };
+}
+
+bool ProgressBar::update(std::string_view stage, double done) {
+    using Seconds = std::chrono::duration<double>;
+    const auto now = std::chrono::steady_clock::now();
+    // Ten times a second, or the terminal is what takes the time.
+    if (!on_ || (stage == stage_ && done < 1 && Seconds(now - drawn_).count() < 0.1)) return true;
+    if (stage != stage_) start_ = now;
+    stage_ = stage;
+    drawn_ = now;
+    const int full = int(std::clamp(done, 0.0, 1.0) * 24);
+    std::string line = fmt::format("{}  {:<8} [{}{}] {:3.0f} %", title_, stage, std::string(full, '#'),
+                                   std::string(24 - full, '.'), 100 * done);
+    if (!detail_.empty()) line += "  " + detail_;
+    // By what has been done so far; too early it would jump about.
+    const double spent = Seconds(now - start_).count();
+    if (spent > 1 && done > 0.01 && done < 1) line += fmt::format("  {} left", clock_text(spent / done * (1 - done)));
+    // A line that wraps could not be taken back.
+    if (winsize window{}; ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 1)
+        line.resize(std::min(line.size(), std::size_t(window.ws_col) - 1));
+    if (line == shown_) return true;
+    shown_ = line;
+    fmt::print(stderr, "\r{}\033[K", line);
+    std::fflush(stderr);
+    return true;
+}
+
+}  // namespace domelight::cli

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "domelight/base/progress.h"
+#include "domelight/base/result.h"
+
+#include "cli/console/arguments.h"
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+namespace domelight::cli {
+
+enum ExitCode { exit_done = 0, exit_failed = 1, exit_usage = 2 };
+
+/// What every command has.
+struct CommonOptions {
+    std::optional<int> threads;
+    bool json = false, quiet = false;
+};
+void add_common_options(Arguments& arguments, CommonOptions& options);
+/// Errors: --threads out of range.
+Result<void> check_common_options(const CommonOptions& options);
+
+/// Prints "error: ..." to stderr and returns the exit code: 2 where the error's place is an option, else `otherwise`.
+int print_error(const Error& error, int otherwise = exit_failed);
+/// What every command begins with: reads its words and answers --help, wrong words and wrong common options. The exit
+/// code where that was all; nothing where the command goes on.
+std::optional<int> begin_command(Arguments& arguments, const std::vector<std::string>& words,
+                                 const CommonOptions& options);
+
+/// Prints "warning: ..." to stderr unless quiet.
+void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options,
+                    const std::string& place = "");
+
+/// "0:07", "12:30", "3:05:00".
+std::string clock_text(double seconds);
+
+/// Long work's bar on stderr, with the time left: drawn only on a terminal, never with --quiet or --json, removed at
+/// the end.
+class ProgressBar {
+  public:
+    ProgressBar(std::string title, const CommonOptions& options);
+    ~ProgressBar();
+    Progress callback();
+    /// What is shown behind the bar from the next update on: "22 samples, noise 0.012".
+    void detail(std::string text) { detail_ = std::move(text); }
+    bool update(std::string_view stage, double done);
+
+  private:
+    std::string title_, detail_, stage_, shown_;
+    std::chrono::steady_clock::time_point start_, drawn_;
+    bool on_ = false;
+};
+
+}  // namespace domelight::cli

@@ -1,0 +1,128 @@
+#include "cli/console/environment_options.h"
+
+#include "domelight/io/environment/open_environment.h"
+#include "domelight/environment/sky/sky.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace domelight::cli {
+namespace {
+
+/// Another source's rows times a factor: --exposure for the built-in sky.
+class ScaledRows : public RowSource {
+  public:
+    ScaledRows(std::unique_ptr<RowSource> source, float factor) : source_(std::move(source)), factor_(factor) {}
+    int width() const override { return source_->width(); }
+    int height() const override { return source_->height(); }
+    Result<void> read(ImageView<float> rows) override {
+        auto ok = source_->read(rows);
+        for (int y = 0; ok && y < rows.height; ++y)
+            for (int i = 0; i < rows.width * rows.channels; ++i) rows.row(y)[i] *= factor_;
+        return ok;
+    }
+
+  private:
+    std::unique_ptr<RowSource> source_;
+    float factor_;
+};
+
+Result<Environment> built_in_sky(const EnvironmentOptions& options) {
+    const EnvironmentOptions none;
+    const auto refuse = [](const char* option) {
+        return Error{"says how to read a file, but no environment is given", option,
+                     "Without one the built-in sky is used."};
+    };
+    if (options.projection != none.projection) return refuse("--projection");
+    if (options.latlong != none.latlong) return refuse("--latlong");
+    if (options.decode != none.decode) return refuse("--decode");
+    if (options.up != none.up) return refuse("--up");
+    if (!std::isfinite(options.rotate_y_deg)) return Error{"angle is not a number", "--rotate-y-deg", ""};
+    if (!(std::abs(options.exposure) <= 64))
+        return Error{"exposure must lie between -64 and 64 stops", "--exposure", ""};
+    Environment sky;
+    sky.format = "sky";
+    sky.projection = "latlong";
+    // A sun of true radiance, 1e7 W/(m^2 sr), is far beyond half floats: eight stops down it fits.
+    constexpr double built_in_exposure = -8;
+    sky.latlong =
+        std::make_unique<ScaledRows>(make_sky(SkyOptions{}), float(std::exp2(options.exposure + built_in_exposure)));
+    sky.width = sky.latlong->width();
+    sky.height = sky.latlong->height();
+    sky.world_to_source = rotation_y(options.rotate_y_deg * k_pi / 180).transposed();
+    sky.report = std::make_shared<RepairReport>();
+    return sky;
+}
+
+/// Which face a file's name ends in, 0..5, or -1: "room_posx.hdr", "px.exr", "sky-top.png".
+int face_of(const std::filesystem::path& file) {
+    static const std::vector<std::vector<std::string>> endings = {
+        {"posx", "px", "right"},          {"negx", "nx", "left"},  {"posy", "py", "top", "up"},
+        {"negy", "ny", "bottom", "down"}, {"posz", "pz", "front"}, {"negz", "nz", "back"}};
+    std::string stem = file.stem().string();
+    std::transform(stem.begin(), stem.end(), stem.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    for (int f = 0; f < 6; ++f)
+        for (const std::string& ending : endings[f])
+            if (stem.ends_with(ending) && (stem.size() == ending.size() || !std::isalnum(static_cast<unsigned char>(
+                                                                               stem[stem.size() - ending.size() - 1]))))
+                return f;
+    return -1;
+}
+
+}  // namespace
+
+void add_environment_options(Arguments& arguments, EnvironmentOptions& options) {
+    arguments.group("Reading the environment");
+    arguments.text(
+        "--projection", "NAME", options.projection,
+        "what the image shows: latlong, cube-cross, cube-strip, cube-faces, sphere-map, mirror-ball/fov=DEGREES, "
+        "angular, hemisphere, paraboloid, paraboloid-opposite, dual-paraboloid, octahedral, "
+        "equal-area-octahedral, each with /centre=+Z,right=+X,up=+Y where it differs (auto: latlong or a "
+        "cube, from its shape and attributes)");
+    arguments.text(
+        "--latlong", "NAME", options.latlong,
+        "lat-long convention: default, usd, mitsuba, openexr, materialx, mod, pbrt, or centre=+X,right=+Z[,up=+Y]");
+    arguments.choice("--decode", options.decode, {"auto", "srgb", "gamma22", "linear", "rgbm", "rgbd", "rgbp"},
+                     "transfer function of PNG and JPEG (auto: srgb)");
+    arguments.number("--rotate-y-deg", "DEGREES", options.rotate_y_deg, "turn the light about +Y: +X moves towards +Z");
+    arguments.text("--up", "AXIS", options.up, "the axis that the image's top shows: +Y, +Z, ... (+Y)");
+    arguments.number("--exposure", "STOPS", options.exposure, "multiply radiance by 2^STOPS");
+}
+
+bool are_cube_faces(const std::vector<std::string>& files) {
+    std::set<int> faces;
+    for (const std::string& file : files) faces.insert(face_of(file));
+    return files.size() == 6 && faces.size() == 6 && !faces.contains(-1);
+}
+
+std::vector<std::filesystem::path> environment_files(const std::vector<std::string>& arguments) {
+    std::vector<std::filesystem::path> files(arguments.begin(), arguments.end());
+    std::error_code failure;
+    if (files.size() == 1 && std::filesystem::is_directory(files[0], failure)) {
+        std::vector<std::string> faces;
+        for (const auto& entry : std::filesystem::directory_iterator(files[0], failure))
+            if (entry.is_regular_file(failure) && face_of(entry.path()) >= 0) faces.push_back(entry.path().string());
+        if (are_cube_faces(faces)) files.assign(faces.begin(), faces.end());
+    }
+    // In the order of the faces, so that the hash does not depend on how they were named on the command line.
+    if (files.size() == 6)
+        std::stable_sort(files.begin(), files.end(),
+                         [](const auto& a, const auto& b) { return face_of(a) < face_of(b); });
+    return files;
+}
+
+Result<Environment> open_environment_or_sky(const std::vector<std::string>& arguments,
+                                            const EnvironmentOptions& options) {
+    if (arguments.empty()) return built_in_sky(options);
+    const auto files = environment_files(arguments);
+    for (const auto& file : files) {
+        std::error_code failure;
+        if (std::filesystem::is_directory(file, failure))
+            return Error{"is a folder without the six faces of a cube", file.string(),
+                         "Name an image, or six files px, nx, py, ny, pz, nz."};
+    }
+    return open_environment(files, options);
+}
+
+}  // namespace domelight::cli

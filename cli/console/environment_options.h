@@ -1,0 +1,28 @@
+#pragma once
+
+#include "domelight/io/environment/open_environment.h"
+#include "domelight/environment/environment.h"
+
+#include "cli/console/arguments.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace domelight::cli {
+
+/// The options of every command that takes an environment.
+void add_environment_options(Arguments& arguments, EnvironmentOptions& options);
+
+/// The environment in `files` (one image, the six faces of a cube, or a folder with these); the built-in sky where
+/// there is none.
+Result<Environment> open_environment_or_sky(const std::vector<std::string>& files, const EnvironmentOptions& options);
+
+/// The files that make up an environment: the six in a folder of faces, else the arguments themselves.
+std::vector<std::filesystem::path> environment_files(const std::vector<std::string>& arguments);
+
+/// Whether the arguments are the six faces of one cube, by their names (px nx ..., posx negx ..., right left top ...).
+bool are_cube_faces(const std::vector<std::string>& files);
+
+}  // namespace domelight::cli

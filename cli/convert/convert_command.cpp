@@ -1,0 +1,230 @@
+#include "domelight/io/environment/open_environment.h"
+#include "domelight/bake/bake.h"
+#include "domelight/image/colour.h"
+#include "domelight/io/environment/convert.h"
+
+#include "cli/commands.h"
+#include "cli/console/console.h"
+#include "cli/convert/convert_output.h"
+#include "cli/console/environment_options.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace domelight::cli {
+namespace {
+
+struct ConvertWords {
+    CommonOptions common;
+    std::vector<std::string> files;
+    std::string to, mirror;
+    std::vector<std::string> rotations;
+    std::optional<int> size;
+    bool sharp = false;
+    ConvertOutput output;
+    EnvironmentOptions environment;
+};
+
+void declare(Arguments& a, ConvertWords& w) {
+    a.positional("IN", w.files,
+                 "an environment (or the six faces of a cube, a folder of them, front and back of a dual paraboloid), "
+                 "then where to write: .hdr, .exr, .ktx2, .ktx, .dds, or .png for a look");
+    a.group("What to make");
+    a.text("--to", "PROJECTION", w.to,
+           "latlong, cube, sphere-map, mirror-ball/fov=DEGREES, angular, hemisphere, paraboloid, paraboloid-opposite, "
+           "dual-paraboloid, octahedral, equal-area-octahedral; with its convention: latlong/usd, latlong/mitsuba, "
+           "latlong/openexr, latlong/materialx, latlong/mod, cube/openexr, or NAME/centre=+X,right=+Z,up=+Y (cube in a "
+           "texture, else latlong)");
+    a.integer("--size", "N", w.size, "height of the picture, of a cube's face, of one half (as fine as the source)");
+    a.flag("--sharp", w.sharp,
+           "keep more of the finest detail in lat-long to cube and to lat-long, for ten times the time");
+    a.text("--layout", "NAME", w.output.layout,
+           "a cube: cross, vertical-cross, strip, vertical-strip, faces (name_px.hdr ...); a dual paraboloid: "
+           "side-by-side, files (name_front.hdr ...)");
+    a.text("--encoding", "NAME", w.output.encoding,
+           ".exr: half, float (half); textures: rgba16f, rgba32f, rgb9e5, r11g11b10f, bc6h, .ktx2 also uastc-hdr, "
+           "astc4x4-hdr, astc6x6-hdr, rgbm, rgbd, rgbp (rgba16f)");
+    a.texts("--rotate", "X,Y,Z,DEGREES", w.rotations,
+            "turn the light about an axis, clockwise as seen from the axis's tip: 0,1,0,90 is --rotate-y-deg 90; "
+            "several are done one after the other");
+    a.text("--mirror", "AXIS", w.mirror, "mirror the light: x, y or z is turned around");
+    add_environment_options(a, w.environment);
+    a.text("--from", "NAME", w.environment.projection, "the same as --projection");
+    add_common_options(a, w.common);
+}
+
+/// Turns directions about `axis` (of any length) by `angle`, in the sense of rotation_y. (Rodrigues' formula.)
+Mat3 rotation(const Vec3d& axis, double angle) {
+    const Vec3d k = normalize(axis);
+    const double c = std::cos(angle), s = -std::sin(angle);
+    const auto column = [&](const Vec3d& v) { return v * c + cross(k, v) * s + k * (dot(k, v) * (1 - c)); };
+    return Mat3{{column({1, 0, 0}), column({0, 1, 0}), column({0, 0, 1})}}.transposed();
+}
+
+Result<Mat3> parse_rotation(const std::string& words) {
+    const auto wrong = [&](const std::string& what) {
+        return Error{fmt::format("\"{}\" {}", words, what), "--rotate",
+                     "Write an axis and degrees: X,Y,Z,DEGREES, as in 0,0,1,90."};
+    };
+    const auto parts = split(words, ',');
+    if (parts.size() != 4) return wrong("is not four numbers");
+    double v[4];
+    for (std::size_t k = 0; k < 4; ++k) {
+        const auto number = parse_number(parts[k]);
+        if (!number || !std::isfinite(*number)) return wrong("is not four numbers");
+        v[k] = *number;
+    }
+    const Vec3d axis{v[0], v[1], v[2]};
+    if (!(length(axis) > 0) || !std::isfinite(length(axis))) return wrong("has no axis");
+    // Quarter turns about an axis of the world only exchange axes: exactly.
+    Mat3 m = rotation(axis, v[3] * k_pi / 180);
+    for (Vec3d& row : m.row)
+        for (double* e : {&row.x, &row.y, &row.z})
+            if (std::abs(*e - std::round(*e)) < 1e-14) *e = std::round(*e);
+    return m;
+}
+
+Result<Mat3> light_turn(const ConvertWords& w) {
+    Mat3 turn;
+    for (const std::string& words : w.rotations) {
+        const auto m = parse_rotation(words);
+        if (!m) return m.error();
+        turn = *m * turn;
+    }
+    if (w.mirror.empty()) return turn;
+    Mat3 mirror;
+    if (w.mirror == "x" || w.mirror == "X")
+        mirror.row[0].x = -1;
+    else if (w.mirror == "y" || w.mirror == "Y")
+        mirror.row[1].y = -1;
+    else if (w.mirror == "z" || w.mirror == "Z")
+        mirror.row[2].z = -1;
+    else
+        return Error{fmt::format("\"{}\" is not an axis", w.mirror), "--mirror", "Accepted: x, y, z."};
+    return mirror * turn;
+}
+
+/// Width and height of a chart.
+Result<std::pair<int, int>> chart_size(const ConvertWords& w, const Environment& environment,
+                                       const Projection& target) {
+    const int height = w.size.value_or(matched_height(environment, target));
+    const std::int64_t width = std::llround(height * target.shape().aspect());
+    const std::int64_t bytes = width * height * target.charts() * 12;
+    if (bytes > std::int64_t(4) << 30)
+        return Error{
+            fmt::format("{} x {} texels a picture need {} bytes, more than the limit of 4 GiB", width, height, bytes),
+            "--size", ""};
+    return std::pair{int(width), height};
+}
+
+double relative(double before, double after) {
+    return before > 0 ? after / before - 1 : 0;
+}
+
+nlohmann::ordered_json json_of(const Vec3d& v) {
+    return {v.x, v.y, v.z};
+}
+
+void print_json(const ConvertWords& w, const Environment& environment, const Conversion& made,
+                const WrittenPicture& written) {
+    nlohmann::ordered_json json{
+        {"version", version()},
+        {"source",
+         {{"file", environment.file.string()},
+          {"projection", environment.projection},
+          {"width", environment.width},
+          {"height", environment.height},
+          {"repaired", environment.report->repaired()}}},
+        {"files", written.files},
+        {"projection", w.to},
+        {"layout", w.output.layout},
+        {"width", made.image.width()},
+        {"height", made.image.height()},
+        {"encoding", w.output.encoding},
+        {"method", made.method},
+        {"power",
+         {{"before", json_of(made.power_before)},
+          {"after", json_of(made.power_after)},
+          {"relative_change", relative(luminance(made.power_before), luminance(made.power_after))}}},
+        {"clipped_texels", written.encoding.clipped_texels},
+        {"clipped_energy", written.encoding.clipped_energy}};
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+void print_text(const ConvertWords& w, const Conversion& made, const WrittenPicture& written) {
+    fmt::print("{}: {} ({}), {} x {}{}\n", join(written.files, ", "), w.to, w.output.layout, made.image.width(),
+               made.image.height(), made.image.projection.charts() > 1 ? " each" : "");
+    const double before = luminance(made.power_before), after = luminance(made.power_after);
+    fmt::print("radiant power {:.6g} before, {:.6g} after ({:+.2g} %), resampled: {}\n", before, after,
+               100 * relative(before, after), made.method);
+    if (written.encoding.clipped_texels > 0)
+        fmt::print("{} clips {} texels and {:.3g} % of the power\n", w.output.encoding, written.encoding.clipped_texels,
+                   100 * written.encoding.clipped_energy);
+}
+
+Result<void> check(ConvertWords& w) {
+    if (w.files.empty())
+        return Error{"is missing", "OUT", "Say what to convert and where to: domelight convert IN OUT."};
+    w.output.file = w.files.back();
+    w.files.pop_back();
+    if (w.size && (*w.size < 1 || *w.size > 32768))
+        return Error{fmt::format("{} is not from 1 to 32768", *w.size), "--size", ""};
+    if (w.to.empty()) {
+        const std::string& f = w.output.file;
+        w.to = f.ends_with(".ktx2") || f.ends_with(".ktx") || f.ends_with(".dds") ? "cube" : "latlong";
+    }
+    return {};
+}
+
+}  // namespace
+
+int run_convert(const std::vector<std::string>& words) {
+    ConvertWords w;
+    Arguments arguments(
+        "convert",
+        "Converts an environment to another projection, convention, orientation, size or format. Light is kept: "
+        "texels are averaged by solid angle, and the radiant power before and after is told. Without IN the built-in "
+        "sky.",
+        {"domelight convert studio.hdr studio_cube.hdr --to cube --layout faces --size 32",
+         "domelight convert studio.hdr studio_usd.exr --to latlong/usd --exposure 1",
+         "domelight convert studio.hdr ball.hdr --to mirror-ball/fov=20 --size 64",
+         "domelight convert ball.hdr studio_again.hdr --from mirror-ball/fov=20",
+         "domelight convert studio.hdr studio.ktx2 --rotate 0,0,1,90 --mirror x --encoding rgb9e5"});
+    declare(arguments, w);
+    if (const auto code = begin_command(arguments, words, w.common)) return *code;
+    if (auto ok = check(w); !ok) return print_error(ok.error(), exit_usage);
+    const auto target = projection_from_name(w.to);
+    if (!target) return print_error({target.error().what, "--to", target.error().hint}, exit_usage);
+    if (auto ok = check_output(w.output, *target); !ok) return print_error(ok.error(), exit_usage);
+    const auto turn = light_turn(w);
+    if (!turn) return print_error(turn.error(), exit_usage);
+
+    const int threads = w.common.threads.value_or(0);
+    w.environment.threads = w.output.threads = threads;
+    w.environment.keep_projection = true;
+    auto environment = open_environment_or_sky(w.files, w.environment);
+    if (!environment) return print_error(environment.error());
+    const auto size = chart_size(w, *environment, *target);
+    if (!size) return print_error(size.error());
+    ProgressBar bar(w.output.file, w.common);
+    ConvertOptions options{*turn, size->first, size->second, w.sharp, threads, bar.callback()};
+    const auto made = convert(*environment, *target, options);
+    if (!made) return print_error(made.error());
+    const auto written = write_projected(made->image, w.output);
+    if (!written) return print_error(written.error());
+    print_warnings(environment->report->warnings, w.common);
+    if (written->clips) print_warnings({w.output.file + ": 8 bits clip at 1; write .hdr or .exr for light"}, w.common);
+    if (!target->full())
+        print_warnings({fmt::format("{} shows {:.0f} % of all directions: the rest is lost", target->name(),
+                                    25 * target->shape().coverage() / k_pi)},
+                       w.common);
+    if (w.common.json)
+        print_json(w, *environment, *made, *written);
+    else if (!w.common.quiet)
+        print_text(w, *made, *written);
+    return exit_done;
+}
+
+}  // namespace domelight::cli

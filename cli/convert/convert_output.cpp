@@ -1,0 +1,163 @@
+#include "cli/convert/convert_output.h"
+
+#include "domelight/image/cube_layout.h"
+#include "domelight/io/write_image.h"
+
+#include "cli/console/arguments.h"
+#include "cli/console/eight_bit.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+namespace domelight::cli {
+namespace {
+
+std::string extension_of(const std::string& file) {
+    std::string extension = std::filesystem::path(file).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return extension;
+}
+
+bool is_texture(const std::string& extension) {
+    return extension == ".ktx2" || extension == ".ktx" || extension == ".dds";
+}
+
+std::vector<std::string> layouts_of(const Projection& projection, const std::string& extension) {
+    if (projection.charts() == 2) return {"side-by-side", "files"};
+    if (projection.charts() == 1) return {"picture"};
+    if (is_texture(extension)) return {"cube"};
+    if (projection.grid() == SampleGrid::both_on_edges) return {"envmap"};
+    return {"cross", "vertical-cross", "strip", "vertical-strip", "faces"};
+}
+
+std::vector<std::string> encodings_of(const std::string& extension) {
+    if (extension == ".exr") return {"half", "float"};
+    if (extension == ".hdr") return {"rgbe"};
+    if (extension == ".png") return {"srgb"};
+    std::vector<std::string> all{"rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "bc6h"};
+    if (extension != ".dds") all.insert(all.end(), {"astc4x4-hdr", "astc6x6-hdr"});
+    if (extension == ".ktx2") all.insert(all.end(), {"uastc-hdr", "rgbm", "rgbd", "rgbp"});
+    return all;
+}
+
+ImageF side_by_side(const ProjectedImage& image) {
+    const int w = image.width(), h = image.height();
+    ImageF out(2 * w, h, 3);
+    for (int y = 0; y < h; ++y)
+        for (int c = 0; c < 2; ++c) std::copy_n(image.pixels.row(c * h + y), 3 * w, out.at(c * w, y));
+    return out;
+}
+
+/// What goes into one file: pixels that lie in the image, or are laid out anew.
+struct Picture {
+    std::string suffix;
+    ImageF owned;
+    ImageView<const float> pixels;
+};
+
+std::vector<Picture> pictures(const ProjectedImage& image, const std::string& layout) {
+    std::vector<Picture> list;
+    if (layout == "files" || layout == "faces") {
+        static const std::vector<std::string> halves{"_front", "_back"},
+            faces{"_px", "_nx", "_py", "_ny", "_pz", "_nz"};
+        const auto& names = layout == "files" ? halves : faces;
+        for (std::size_t c = 0; c < names.size(); ++c)
+            list.push_back({names[c], {}, image.pixels.view().rows(int(c) * image.height(), image.height())});
+        return list;
+    }
+    list.emplace_back();
+    if (layout == "side-by-side") list[0].owned = side_by_side(image);
+    if (image.projection.charts() == 6 && layout != "envmap")
+        list[0].owned = cube_layout(Cubemap(image.pixels), layout);
+    list[0].pixels = list[0].owned.empty() ? image.pixels.view() : std::as_const(list[0].owned).view();
+    return list;
+}
+
+/// The picture as a level to encode.
+FilteredMap as_level(const ProjectedImage& image) {
+    FilteredMap level;
+    if (image.projection.charts() == 6)
+        level.cube = Cubemap(image.pixels);
+    else
+        level.latlong = image.projection.charts() == 2 ? side_by_side(image) : image.pixels;
+    return level;
+}
+
+Result<void> write_picture(const std::string& file, ImageView<const float> picture, const ProjectedImage& image,
+                           const ConvertOutput& output) {
+    const std::string extension = extension_of(file);
+    if (extension == ".hdr") return write_hdr(file, picture, output.threads);
+    if (extension == ".png") {
+        ImageRowSource rows(picture);
+        return write_8bit(file, rows);
+    }
+    ExrWriteOptions exr;
+    exr.half = output.encoding == "half";
+    exr.threads = output.threads;
+    if (image.projection.grid() == SampleGrid::both_on_edges)
+        exr.envmap = image.projection.charts() == 6 ? "cube" : "latlong";
+    return write_exr(file, picture, exr);
+}
+
+}  // namespace
+
+Result<void> check_output(ConvertOutput& output, const Projection& projection) {
+    const std::string extension = extension_of(output.file);
+    static const std::vector<std::string> formats{".hdr", ".exr", ".png", ".ktx2", ".ktx", ".dds"};
+    if (std::find(formats.begin(), formats.end(), extension) == formats.end())
+        return Error{fmt::format("\"{}\" ends in none of the formats", output.file), "OUT",
+                     "Accepted: " + join(formats, ", ") + "."};
+    const auto check = [&](std::string& value, const char* option, const std::vector<std::string>& accepted,
+                           const std::string& of) -> Result<void> {
+        if (value.empty()) value = accepted[0];
+        if (std::find(accepted.begin(), accepted.end(), value) != accepted.end()) return {};
+        return Error{fmt::format("\"{}\" does not go with {}", value, of), option,
+                     "Accepted: " + join(accepted, ", ") + "."};
+    };
+    if (auto ok = check(output.layout, "--layout", layouts_of(projection, extension),
+                        fmt::format("{} in {}", projection.name(), extension));
+        !ok)
+        return ok;
+    if (output.layout == "envmap" && extension != ".exr")
+        return Error{"cube/openexr is OpenEXR's own", "--to", "Write an .exr, or convert to cube."};
+    return check(output.encoding, "--encoding", encodings_of(extension), extension);
+}
+
+Result<WrittenPicture> write_projected(const ProjectedImage& image, const ConvertOutput& output) {
+    const std::string extension = extension_of(output.file);
+    WrittenPicture written;
+    written.clips = extension == ".png";
+    if (is_texture(extension)) {
+        const FilteredMap level = as_level(image);
+        std::vector<EncodingReport> reports;
+        const Texture texture =
+            encode_texture({&level, 1}, *encoding_from_name(output.encoding), output.threads, &reports);
+        written.encoding = reports[0];
+        written.files = {output.file};
+        const auto ok = extension == ".ktx2"  ? write_ktx2(output.file, texture)
+                        : extension == ".ktx" ? write_ktx1(output.file, texture)
+                                              : write_dds(output.file, texture);
+        if (!ok) return ok.error().at(output.file);
+        return written;
+    }
+    if (extension == ".exr" && output.encoding == "half") {
+        const FilteredMap level = as_level(image);
+        std::vector<EncodingReport> reports;
+        encode_texture({&level, 1}, Encoding::rgba16f, output.threads, &reports);
+        written.encoding = reports[0];
+    }
+    const std::filesystem::path path = output.file;
+    for (const Picture& picture : pictures(image, output.layout)) {
+        const std::string file =
+            (path.parent_path() / (path.stem().string() + picture.suffix + path.extension().string())).string();
+        if (auto ok = write_picture(file, picture.pixels, image, output); !ok) return ok.error().at(file);
+        written.files.push_back(file);
+    }
+    return written;
+}
+
+}  // namespace domelight::cli

@@ -1,0 +1,261 @@
+#include "domelight/io/environment/open_environment.h"
+#include "domelight/bake/bake.h"
+
+#include "cli/commands.h"
+#include "cli/console/console.h"
+#include "base/sha256.h"
+#include "cli/console/environment_options.h"
+#include "cli/info/environment_survey.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace domelight::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct InfoWords {
+    CommonOptions common;
+    std::vector<std::string> inputs;
+    EnvironmentOptions environment;
+};
+
+const char* const k_axes[] = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
+
+Json vector_json(const Vec3d& v) {
+    return Json::array({v.x, v.y, v.z});
+}
+std::string rgb(const Vec3d& v) {
+    return fmt::format("{:9.4g} {:9.4g} {:9.4g}", v.x, v.y, v.z);
+}
+
+void print_document(const Json& json) {
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+// --- an environment ---
+
+Json environment_json(const std::string& name, const Environment& e, const EnvironmentSurvey& s) {
+    Json irradiance = Json::object(), lights = Json::array();
+    for (int f = 0; f < 6; ++f) irradiance[k_axes[f]] = vector_json(s.irradiance[f]);
+    for (const BrightLight& light : s.lights)
+        lights.push_back({{"direction", vector_json(light.direction)},
+                          {"azimuth_deg", light.azimuth_deg},
+                          {"elevation_deg", light.elevation_deg},
+                          {"radius_deg", light.radius_deg},
+                          {"share", light.share}});
+    const RepairReport& r = *e.report;
+    return {{"version", version()},
+            {"kind", "environment"},
+            {"file", name},
+            {"format", e.format},
+            {"projection", e.projection},
+            {"width", e.width},
+            {"height", e.height},
+            {"range", {s.least, s.largest}},
+            {"mean_radiance", vector_json(s.mean_radiance)},
+            {"irradiance", irradiance},
+            {"lights", lights},
+            {"repaired",
+             {{"not_a_number", r.not_a_number},
+              {"infinite", r.infinite},
+              {"negative", r.negative},
+              {"most_negative", r.negative_radiance}}},
+            {"warnings", r.warnings}};
+}
+
+void print_environment(const std::string& name, const Environment& e, const EnvironmentSurvey& s) {
+    fmt::print("{}: {}, {} x {}, {}\n", name, e.format, e.width, e.height, e.projection);
+    fmt::print("  range            {:.6g} to {:.6g}\n", s.least, s.largest);
+    fmt::print("  mean radiance    {}   (red, green, blue)\n", rgb(s.mean_radiance));
+    for (int f = 0; f < 6; ++f) fmt::print("  irradiance {}    {}\n", k_axes[f], rgb(s.irradiance[f]));
+    for (const BrightLight& l : s.lights)
+        fmt::print(
+            "  bright light     {:4.1f} % of the power, direction ({:.3f}, {:.3f}, {:.3f}): azimuth {:.1f}, elevation "
+            "{:.1f} degrees, {:.2g} degrees wide\n",
+            100 * l.share, l.direction.x, l.direction.y, l.direction.z, l.azimuth_deg, l.elevation_deg,
+            2 * l.radius_deg);
+    if (s.lights.empty()) fmt::print("  bright light     none stands out\n");
+    const RepairReport& r = *e.report;
+    if (r.repaired())
+        fmt::print(
+            "  bad texels       {} not a number, {} infinite, {} negative (down to {:.4g}); repaired on reading\n",
+            r.not_a_number, r.infinite, r.negative, r.negative_radiance);
+    else
+        fmt::print("  bad texels       none\n");
+}
+
+int info_environment(const InfoWords& w) {
+    const std::string name = w.inputs.empty() ? "built-in sky" : w.inputs[0];
+    EnvironmentOptions options = w.environment;
+    options.threads = w.common.threads.value_or(0);
+    auto environment = open_environment_or_sky(w.inputs, options);
+    if (!environment) return print_error(environment.error());
+    Result<EnvironmentSurvey> survey = Error{};
+    {
+        ProgressBar bar(name, w.common);
+        survey = survey_environment(*environment, options.threads, bar.callback());
+    }
+    if (!survey) return print_error(survey.error().at(name));
+    print_warnings(environment->report->warnings, w.common, name);
+    if (w.common.json)
+        print_document(environment_json(name, *environment, *survey));
+    else
+        print_environment(name, *environment, *survey);
+    return exit_done;
+}
+
+// --- a texture ---
+
+/// Values of keys may be anything in other tools' files: one line, printable, not too long.
+std::string shown(const std::string& value) {
+    std::string line;
+    for (const unsigned char c : value.substr(0, 200)) line += c == '\n' ? ' ' : c < 32 || c == 127 ? '?' : char(c);
+    return value.size() > 200 ? line + "..." : line;
+}
+
+int info_texture(const std::string& file, const InfoWords& w) {
+    const auto info = read_texture_info(file);
+    if (!info) return print_error(info.error().at(file));
+    if (w.common.json) {
+        print_document({{"version", version()},
+                        {"kind", "texture"},
+                        {"file", file},
+                        {"container", info->container},
+                        {"format", info->format},
+                        {"supercompression", info->supercompression},
+                        {"width", info->width},
+                        {"height", info->height},
+                        {"depth", info->depth},
+                        {"faces", info->faces},
+                        {"layers", info->layers},
+                        {"levels", info->levels},
+                        {"metadata", info->metadata},
+                        {"decodable", info->decodable}});
+        return exit_done;
+    }
+    fmt::print("{}: {}, {}, {} x {}", file, info->container, info->format, info->width, info->height);
+    if (info->depth > 1) fmt::print(" x {}", info->depth);
+    if (info->faces > 1) fmt::print(", {} faces", info->faces);
+    if (info->layers > 1) fmt::print(", {} layers", info->layers);
+    fmt::print(", {} level{}{}\n", info->levels, info->levels == 1 ? "" : "s",
+               info->supercompression.empty() || info->supercompression == "none" ? "" : ", " + info->supercompression);
+    for (const auto& [key, value] : info->metadata) fmt::print("  {:<24} {}\n", shown(key), shown(value));
+    return exit_done;
+}
+
+// --- a bake ---
+
+/// Every file that a manifest names, with the hash it should have.
+void list_files(const Json& json, std::vector<std::pair<std::string, std::string>>& files, int depth = 0) {
+    if (depth > 16 || !json.is_structured()) return;
+    if (json.is_object() && json.contains("file") && json["file"].is_string() && json.contains("sha256"))
+        files.emplace_back(json["file"], json["sha256"].is_string() ? json["sha256"].get<std::string>() : "");
+    for (const auto& [key, value] : json.items()) list_files(value, files, depth + 1);
+}
+
+std::string file_state(const fs::path& file, const std::string& expected) {
+    std::error_code failure;
+    if (!fs::exists(file, failure)) return "missing";
+    if (expected.empty()) return "there";
+    const auto hash = sha256_file(file);
+    return !hash ? "unreadable" : *hash == expected ? "unchanged" : "changed";
+}
+
+/// A member's text, whatever it is.
+std::string member(const Json& json, const char* key) {
+    if (!json.is_object() || !json.contains(key)) return "?";
+    const Json& value = json[key];
+    return value.is_string() ? value.get<std::string>() : value.is_structured() ? "..." : value.dump();
+}
+
+void print_levels(const Json& map) {
+    if (!map.contains("levels") || !map["levels"].is_array()) return;
+    for (const Json& level : map["levels"]) {
+        const bool phong = level.is_object() && level.contains("exponent");
+        fmt::print("    level {:<3} size {:<6} {} {:<10} clipped energy {}\n", member(level, "level"),
+                   member(level, "size"), phong ? "exponent" : "roughness",
+                   member(level, phong ? "exponent" : "roughness"), member(level, "clipped_energy"));
+    }
+}
+
+int info_bake(const fs::path& folder, const InfoWords& w) {
+    const fs::path file = folder / "manifest.json";
+    std::ifstream stream(file, std::ios::binary);
+    const Json manifest = Json::parse(stream, nullptr, false);
+    if (!manifest.is_object() || !manifest.contains("source") || !manifest.contains("options"))
+        return print_error({"is not a manifest that a bake wrote", file.string(), ""});
+    std::vector<std::pair<std::string, std::string>> files;
+    for (const auto& [key, value] : manifest.items())
+        if (key != "source") list_files(value, files);
+    Json states = Json::array();
+    bool whole = true;
+    for (const auto& [name, hash] : files) {
+        const std::string state = file_state(folder / name, hash);
+        whole = whole && (state == "unchanged" || state == "there");
+        states.push_back({{"file", name}, {"state", state}});
+    }
+    if (w.common.json) {
+        print_document({{"version", version()},
+                        {"kind", "bake"},
+                        {"folder", folder.string()},
+                        {"files", states},
+                        {"manifest", manifest}});
+        return whole ? exit_done : exit_failed;
+    }
+    const Json& source = manifest["source"];
+    fmt::print("{}: baked by domelight {} from {} ({} x {}, {}) for {}\n", folder.string(), member(manifest, "version"),
+               member(source, "file"), member(source, "width"), member(source, "height"), member(source, "projection"),
+               member(manifest["options"], "for"));
+    for (const auto& [role, map] : manifest.items())
+        if (map.is_object() && map.contains("quantity") && map.contains("encoding")) {
+            fmt::print("  {}: {}, {}, {}\n", role, member(map, "quantity"), member(map, "encoding"),
+                       member(map, "layout"));
+            if (member(map, "quantity") == "radiance") print_levels(map);
+        }
+    for (const Json& state : states) fmt::print("  {:<28} {}\n", member(state, "file"), member(state, "state"));
+    return whole ? exit_done : print_error({"not all files are as they were written", folder.string(), "Bake again."});
+}
+
+bool is_texture(const fs::path& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return extension == ".ktx2" || extension == ".ktx" || extension == ".dds";
+}
+
+}  // namespace
+
+int run_info(const std::vector<std::string>& words) {
+    InfoWords w;
+    Arguments arguments("info",
+                        "Tells of an environment (size, projection, range, mean radiance, irradiance by direction, "
+                        "brightest lights, bad texels), "
+                        "of a texture (KTX2, KTX, DDS, other tools' too), or of a folder that a bake wrote.",
+                        {"domelight info studio.hdr", "domelight info studio.hdr --json", "domelight info out",
+                         "domelight info out/specular.ktx2"});
+    arguments.positional("ENV|FILE|FOLDER", w.inputs,
+                         "an environment, a texture, or a bake; without one the built-in sky");
+    add_environment_options(arguments, w.environment);
+    add_common_options(arguments, w.common);
+    if (const auto code = begin_command(arguments, words, w.common)) return *code;
+    if (w.inputs.size() == 1) {
+        const fs::path input = w.inputs[0];
+        std::error_code failure;
+        if (fs::exists(input / "manifest.json", failure)) return info_bake(input, w);
+        if (input.filename() == "manifest.json" && fs::exists(input, failure)) return info_bake(input.parent_path(), w);
+        if (is_texture(input)) return info_texture(input.string(), w);
+    } else if (w.inputs.size() > 1 && !are_cube_faces(w.inputs) && w.environment.projection != "cube-faces") {
+        return print_error({"more than one input, and not the six faces of a cube", "", "Ask for one at a time."},
+                           exit_usage);
+    }
+    return info_environment(w);
+}
+
+}  // namespace domelight::cli

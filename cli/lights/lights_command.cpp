@@ -1,0 +1,269 @@
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
+#include "domelight/io/file/atomic_file.h"
+#include "domelight/filtering/resample/area_resample.h"
+#include "domelight/bake/bake.h"
+#include "domelight/io/write_image.h"
+#include "domelight/sampling/light_extraction.h"
+
+#include "bake/staging.h"
+#include "cli/commands.h"
+#include "cli/console/console.h"
+#include "base/sha256.h"
+#include "cli/console/environment_options.h"
+#include "scene/gltf/gltf_lights_writer.h"
+#include "preview/lights_sheet.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace domelight::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct LightsWords {
+    CommonOptions common;
+    std::vector<std::string> environment_files;
+    std::string output, format = "auto";
+    std::optional<int> max_lights;
+    double lux_per_unit = 1;
+    bool no_preview = false;
+    LightExtractionOptions options;
+    EnvironmentOptions environment;
+};
+
+void declare(Arguments& a, LightsWords& w) {
+    a.positional(
+        "ENV", w.environment_files,
+        "an environment; without one the built-in sky, eight stops down; six faces (px nx py ny pz nz) are one cube");
+    a.group("What counts as a light");
+    a.integer("--max-lights", "N", w.max_lights, "the strongest are taken, the others stay in the remainder (8)");
+    a.number("--least-share", "SHARE", w.options.least_share, "of all luminance that a light must hold, 0 to 1 (0.01)");
+    a.number("--least-contrast", "RATIO", w.options.least_contrast,
+             "how far the luminance must fall all around it, 1.5 or more (4)");
+    a.number("--largest-diameter-deg", "DEGREES", w.options.largest_diameter_deg,
+             "widest angle that counts as small, up to 30 (6); three texels always do");
+    a.number("--merge-deg", "DEGREES", w.options.merge_deg, "sources closer than this are one light (1.5)");
+    a.group("What to write");
+    a.text("-o,--output", "DIR", w.output,
+           "folder for lights.json, lights.gltf, remainder.hdr or .exr, and preview.png");
+    a.choice("--format", w.format, {"auto", "hdr", "exr"},
+             "of the remainder; exr has 32-bit floats (auto: hdr where ENV is Radiance HDR, else exr)");
+    a.number("--lux-per-unit", "LUX", w.lux_per_unit,
+             "of an irradiance of 1, for lights.gltf: 1 keeps the environment's unit; 683 or 179 (lm/W) if that is "
+             "watts (1)");
+    a.flag("--no-preview", w.no_preview, "no preview.png");
+    add_environment_options(a, w.environment);
+    add_common_options(a, w.common);
+}
+
+Result<void> check(const LightsWords& w) {
+    if (w.output.empty()) return Error{"is missing", "--output", "Say where the results go: -o DIR."};
+    if (!(w.lux_per_unit > 0 && w.lux_per_unit <= 1e12))
+        return Error{fmt::format("{:g} is not from above 0 to 1e12", w.lux_per_unit), "--lux-per-unit", ""};
+    if (w.environment_files.size() > 1 && !are_cube_faces(w.environment_files) &&
+        w.environment.projection != "cube-faces")
+        return Error{"more than one environment, and not the six faces of a cube", "", "Ask for one at a time."};
+    return check_light_extraction_options(w.options);
+}
+
+/// The whole environment as a lat-long, and what turns the world's directions to it.
+struct Picture {
+    ImageF image;
+    Mat3 world_to_source;
+};
+
+Result<Picture> read_picture(Environment& environment, int threads) {
+    if (environment.latlong) {
+        auto image = read_latlong(*environment.latlong);
+        if (!image) return image.error();
+        return Picture{*std::move(image), environment.world_to_source};
+    }
+    // A cube has no lat-long convention to keep: the world in the default one.
+    return Picture{area_resample_cube_to_latlong(environment.cube, 2 * environment.cube.size(),
+                                                 environment.world_to_source, threads),
+                   {}};
+}
+
+Json array(const Vec3d& v) {
+    return Json::array({v.x, v.y, v.z});
+}
+
+Json light_json(const ExtractedLight& l) {
+    Json json{{"direction", array(l.direction)},
+              {"azimuth_deg", std::atan2(l.direction.z, l.direction.x) * 180 / k_pi},
+              {"elevation_deg", std::atan2(l.direction.y, std::hypot(l.direction.x, l.direction.z)) * 180 / k_pi},
+              {"u", l.u},
+              {"v", l.v},
+              {"angular_diameter_deg", l.angular_diameter_deg},
+              {"resolved", l.resolved},
+              {"irradiance", array(l.irradiance)},
+              {"mean_radiance", array(l.mean_radiance)},
+              {"colour", array(l.colour)},
+              {"share", l.share},
+              {"contrast", nullptr},
+              {"texels", l.texels}};
+    if (std::isfinite(l.contrast)) json["contrast"] = l.contrast;  // null: in front of black
+    return json;
+}
+
+struct Outcome {
+    std::string name, source_sha256, remainder_file, remainder_sha256;
+    const Environment& environment;
+    const Picture& picture;
+    const LightExtraction& found;
+};
+
+Json document(const LightsWords& w, const Outcome& o) {
+    const LightExtractionReport& r = o.found.report;
+    const LightExtractionOptions& e = w.options;
+    Json lights = Json::array();
+    for (const ExtractedLight& light : o.found.lights) lights.push_back(light_json(light));
+    Json source{{"file", o.name}};
+    if (!o.source_sha256.empty()) source["sha256"] = o.source_sha256;
+    source.update({{"width", o.environment.width},
+                   {"height", o.environment.height},
+                   {"projection", o.environment.projection},
+                   {"repaired", o.environment.report->repaired()}});
+    const Mat3& m = o.picture.world_to_source;
+    return {{"version", version()},
+            {"source", source},
+            {"options",
+             {{"max_lights", e.max_lights},
+              {"least_share", e.least_share},
+              {"least_contrast", e.least_contrast},
+              {"largest_diameter_deg", e.largest_diameter_deg},
+              {"merge_deg", e.merge_deg},
+              {"exposure", w.environment.exposure},
+              {"rotate_y_deg", w.environment.rotate_y_deg},
+              {"up", w.environment.up},
+              {"latlong", w.environment.latlong},
+              {"lux_per_unit", w.lux_per_unit}}},
+            {"lights", lights},
+            {"remainder",
+             {{"file", o.remainder_file},
+              {"sha256", o.remainder_sha256},
+              {"width", o.picture.image.width()},
+              {"height", o.picture.image.height()},
+              {"world_to_source", Json::array({array(m.row[0]), array(m.row[1]), array(m.row[2])})}}},
+            {"power",
+             {{"original", array(r.original_power)},
+              {"lights", array(r.light_power)},
+              {"remainder", array(r.remainder_power)},
+              {"unaccounted", r.unaccounted}}},
+            {"candidates", r.candidates},
+            {"left_out", r.left_out},
+            {"texel_deg", r.texel_deg}};
+}
+
+Result<void> write_text(const std::filesystem::path& file, const std::string& text) {
+    return write_file_atomically(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+Result<void> write_remainder(const std::filesystem::path& file, const LightExtraction& found, bool hdr, int threads) {
+    if (hdr) return write_hdr(file, found.remainder.view(), threads);
+    ExrWriteOptions exr;
+    exr.half = false;
+    exr.threads = threads;
+    return write_exr(file, found.remainder.view(), exr);
+}
+
+/// Writes everything into the folder; fills in the remainder's name and hash.
+Result<Json> write_all(const LightsWords& w, Outcome& o) {
+    const int threads = w.common.threads.value_or(0);
+    const bool hdr = w.format == "hdr" || (w.format == "auto" && o.environment.format == "Radiance HDR");
+    o.remainder_file = hdr ? "remainder.hdr" : "remainder.exr";
+    auto staging = Staging::open(w.output);
+    if (!staging) return staging.error();
+    const auto remainder = staging->stage(o.remainder_file);
+    if (auto ok = write_remainder(remainder, o.found, hdr, threads); !ok) return ok.error();
+    auto hash = sha256_file(remainder);
+    if (!hash) return hash.error();
+    o.remainder_sha256 = *hash;
+    if (!w.no_preview) {
+        const auto sheet = lights_sheet({o.name, o.picture.image.view(), o.found.remainder.view(),
+                                         o.picture.world_to_source, o.found.lights, 1600, threads});
+        if (auto ok = write_png(staging->stage("preview.png"), sheet.view()); !ok) return ok.error();
+    }
+    const std::string gltf = gltf_lights(o.found.lights, w.lux_per_unit, fmt::format("domelight {}", version()));
+    if (auto ok = write_text(staging->stage("lights.gltf"), gltf); !ok) return ok.error();
+    Json json = document(w, o);
+    if (auto ok =
+            write_text(staging->stage("lights.json"), json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+        !ok)
+        return ok.error();
+    if (auto ok = staging->commit("lights.json"); !ok) return ok.error();
+    return json;
+}
+
+void print_summary(const LightsWords& w, const Outcome& o) {
+    const LightExtractionReport& r = o.found.report;
+    for (std::size_t i = 0; i < o.found.lights.size(); ++i) {
+        const ExtractedLight& l = o.found.lights[i];
+        fmt::print(
+            "  light {:<3} {:5.1f} % of the light, direction ({:.4f}, {:.4f}, {:.4f}), {}{:.2g} degrees across, "
+            "irradiance {:.4g} {:.4g} {:.4g}\n",
+            i + 1, 100 * l.share, l.direction.x, l.direction.y, l.direction.z, l.resolved ? "" : "under ",
+            l.angular_diameter_deg, l.irradiance.x, l.irradiance.y, l.irradiance.z);
+    }
+    if (o.found.lights.empty()) fmt::print("  no light stands out\n");
+    if (r.left_out) fmt::print("  {} weaker ones stay in the remainder\n", r.left_out);
+    fmt::print("{}: lights.json, lights.gltf, {}{}; {:.1g} of the power unaccounted for\n", w.output, o.remainder_file,
+               w.no_preview ? "" : ", preview.png", r.unaccounted);
+}
+
+int run(const LightsWords& w) {
+    const std::string name = w.environment_files.empty() ? "built-in sky" : w.environment_files[0];
+    EnvironmentOptions reading = w.environment;
+    reading.threads = w.common.threads.value_or(0);
+    auto environment = open_environment_or_sky(w.environment_files, reading);
+    if (!environment) return print_error(environment.error());
+    auto picture = read_picture(*environment, reading.threads);
+    if (!picture) return print_error(picture.error().at(name));
+    auto found = extract_lights(picture->image.view(), w.options, picture->world_to_source);
+    if (!found) return print_error(found.error().at(name));
+    std::string hash;
+    if (!w.environment_files.empty()) {
+        const auto files = environment_files(w.environment_files);
+        auto computed = sha256_files(files);
+        if (!computed) return print_error(computed.error());
+        hash = *computed;
+    }
+    Outcome outcome{std::filesystem::path(name).filename().string(), hash, "", "", *environment, *picture, *found};
+    const auto json = write_all(w, outcome);
+    if (!json) return print_error(json.error());
+    print_warnings(environment->report->warnings, w.common, name);
+    if (found->report.texel_deg > w.options.largest_diameter_deg)
+        print_warnings({fmt::format("texels {:.2g} degrees wide are too coarse to hold a light: none was looked for",
+                                    found->report.texel_deg)},
+                       w.common, name);
+    if (w.common.json)
+        fmt::print("{}\n", json->dump(2, ' ', false, Json::error_handler_t::replace));
+    else if (!w.common.quiet)
+        print_summary(w, outcome);
+    return exit_done;
+}
+
+}  // namespace
+
+int run_lights(const std::vector<std::string>& words) {
+    LightsWords w;
+    Arguments arguments(
+        "lights",
+        "Takes the sun and other small bright sources out of an environment: directional lights as JSON and glTF "
+        "(KHR_lights_punctual), and the environment without them. No light is lost or counted twice.",
+        {"domelight lights studio.hdr -o lights", "domelight lights studio.hdr -o sun --max-lights 1 --format exr",
+         "domelight lights -o sky --lux-per-unit 179 --json"});
+    declare(arguments, w);
+    if (const auto code = begin_command(arguments, words, w.common)) return *code;
+    w.options.max_lights = w.max_lights.value_or(w.options.max_lights);
+    w.options.threads = w.common.threads.value_or(0);
+    if (auto ok = check(w); !ok) return print_error(ok.error(), exit_usage);
+    return run(w);
+}
+
+}  // namespace domelight::cli

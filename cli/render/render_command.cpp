@@ -1,0 +1,226 @@
+#include "domelight/bake/bake.h"
+
+#include "cli/commands.h"
+#include "cli/console/environment_options.h"
+#include "cli/console/interruption.h"
+#include "preview/tonemap.h"
+#include "cli/render/render_outputs.h"
+#include "cli/render/render_study_command.h"
+#include "cli/render/render_turntable.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+namespace domelight::cli {
+namespace {
+
+void declare(Arguments& a, RenderWords& w) {
+    a.positional("SCENE", w.scenes,
+                 "a model (.glb, .gltf, .obj, .ply), or one that is built in: " + join(built_in_scene_names(), ", "));
+    a.group("The picture");
+    a.texts("-o,--output", "FILE", w.outputs,
+            "where to write it, several allowed: .exr (all layers), .hdr, .png (tone mapped)");
+    a.integer("--width", "N", w.width, "pixels (512)");
+    a.integer("--height", "N", w.height, "pixels (by the camera's own shape; 512 where it has none)");
+    a.text("--camera", "N|NAME", w.camera, "which of the scene's cameras, 1 is the first (1)");
+    a.numbers("--camera-position", "x,y,z", w.camera_position,
+              "the eye (the scene's camera, or one that shows all of it)");
+    a.numbers("--camera-target", "x,y,z", w.camera_target, "what it looks at (0,0,0)");
+    a.number("--fov-deg", "DEGREES", w.fov_deg, "vertical field of view with --camera-position (35)");
+    a.choice("--background", w.background, {"environment", "blurred", "colour", "color", "transparent"},
+             "where no surface is (environment)");
+    a.text("--background-color,--background-colour", "#rrggbb|R,G,B", w.background_color,
+           "shown as it is, sRGB or linear (#ffffff)");
+    a.number("--background-roughness", "R", w.background_roughness, "how blurred, 0 to 1 (0.35)");
+    a.flag("--shadow-catcher", w.shadow_catcher, "an invisible ground under the scene that shows its shadow");
+    std::vector<std::string> tonemaps;
+    for (const TonemapName& t : tonemap_names()) tonemaps.emplace_back(t.name);
+    a.choice("--tonemap", w.tonemap, tonemaps, "of a .png (agx)");
+    a.number("--ev", "STOPS", w.ev, "exposure of a .png (from the log-average luminance of what the surfaces show)");
+    a.group("Going round");
+    a.integer("--frames", "N", w.frames,
+              "numbered pictures of one turn, and an animation (.webp) beside the .png ones");
+    a.choice("--turn", w.turn, {"camera", "environment"}, "what goes round (camera)");
+    a.number("--fps", "N", w.fps, "frames a second of the animation (30)");
+    a.flag("--resume", w.resume, "keep the frames that exist, draw the others");
+    a.group("The light");
+    a.texts("--env", "ENV", w.environment_files, "the environment (the built-in sky)");
+    add_environment_options(a, w.environment);
+    a.group("How it is computed");
+    a.choice("--shading", w.shading, {"reference", "split-sum", "stretched", "phong", "mirror", "refract"},
+             "reference = path tracing; the others as a real-time engine draws them from baked maps (reference)");
+    a.choice("--strategy", w.strategy, {"mis", "env", "brdf"}, "reference: where light directions come from (mis)");
+    a.integer("--spp", "N", w.spp, "samples of each pixel (64)");
+    a.number("--noise", "X", w.noise,
+             "reference: more samples where a pixel's standard error of L/(1+L) is above this");
+    a.number("--time", "SECONDS", w.time, "reference: as many samples as fit into this time");
+    a.integer("--bounces", "N", w.bounces, "reference: of indirect light; 0 is direct light with shadows (4)");
+    a.choice("--occlusion", w.occlusion, {"on", "off"},
+             "off: no shadows, no indirect light, no occlusion maps, as a shader without them (on)");
+    a.flag("--multiple-scattering", w.multiple_scattering, "gives back what single scattering loses on rough surfaces");
+    a.text("--maps", "DIR", w.maps, "split-sum, stretched, phong: what `domelight bake` wrote (baked in memory)");
+    a.choice("--irradiance", w.irradiance, {"cube", "sh"},
+             "split-sum, stretched, phong: the irradiance cube, or nine harmonics (cube)");
+    a.choice("--lookup", w.lookup, {"environment", "cube", "latlong", "sphere-map", "dual-paraboloid"},
+             "mirror, refract: the texture that is read, made from the environment (none: the environment itself)");
+    a.integer("--lookup-size", "N", w.lookup_size, "its size: of a face, its height, or of each disc (512)");
+    a.choice("--brdf", w.brdf, {"scene", "phong"},
+             "phong: modified Phong lobes of matching width instead of GGX, the truth for --shading phong (scene)");
+    a.flag("--bent-lookup", w.bent_lookup, "split-sum: the lookup leans towards the normal on rough surfaces");
+    a.integer("--seed", "N", w.seed, "another randomisation (0)");
+    a.number("--save-every", "SECONDS", w.save_every,
+             "reference: write the picture so far every so often, and when interrupted");
+    a.flag("--study", w.study,
+           "instead of a picture: which sampling suits which light and surface, noise by samples, split-sum's error; "
+           "-o DIR or study.png");
+    add_common_options(a, w.common);
+}
+
+void print_result(const RenderWords& w, const Scene& scene, const RenderResult& r, const RenderOptions& o, double ev) {
+    if (w.common.json) {
+        nlohmann::ordered_json json{
+            {"version", version()},      {"files", w.outputs},   {"width", o.width},
+            {"height", o.height},        {"shading", w.shading}, {"triangles", scene.triangle_count()},
+            {"samples", r.sample_count}, {"seconds", r.seconds}, {"ev", ev}};
+        if (w.reference()) json["noise"] = r.noise, json["rays"] = r.rays;
+        json["warnings"] = scene.warnings;
+        fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    } else if (!w.common.quiet) {
+        fmt::print("{}: {} x {}, {} triangles, {} samples a pixel at most, {:.2f} s", join(w.outputs, ", "), o.width,
+                   o.height, scene.triangle_count(), r.sample_count, r.seconds);
+        if (w.reference())
+            fmt::print(", noise {:.4f} of L/(1+L), {:.2f} million rays a second", r.noise,
+                       double(r.rays) / r.seconds * 1e-6);
+        fmt::print("\n");
+    }
+}
+
+/// One picture, with --save-every also on the way.
+int run_picture(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler, const LightMaps* maps,
+                RenderOptions options) {
+    using Clock = std::chrono::steady_clock;
+    Interruption interruption;
+    auto saved = Clock::now();
+    int saved_samples = 0;
+    std::optional<Error> failure;
+    Result<FinishedPicture> picture = Error{"", "", ""};
+    {
+        ProgressBar bar(w.scene_name(), w.common);
+        options.progress = [&](std::string_view stage, double done) {
+            bar.update(stage, done);
+            return !Interruption::wanted() && !failure;
+        };
+        options.status = [&](const RenderStatus& s) {
+            bar.detail(fmt::format("{:.0f} samples, noise {:.4f}", s.samples, s.noise));
+        };
+        if (w.save_every > 0) {
+            options.checkpoint_wanted = [&] {
+                return std::chrono::duration<double>(Clock::now() - saved).count() >= w.save_every;
+            };
+            options.checkpoint = [&](const RenderResult& so_far) {
+                if (failure) return;
+                RenderOptions quiet = options;
+                quiet.progress = {};
+                const auto finished = finish(w, scene, sampler, quiet, so_far, w.ev);
+                if (auto ok = finished ? write_pictures(w.outputs, *finished, scene.scene(), w) : finished.error(); !ok)
+                    failure = ok.error();
+                saved = Clock::now();
+                saved_samples = so_far.sample_count;
+            };
+        }
+        picture = draw_finished(w, scene, sampler, maps, options, w.ev);
+    }
+    if (failure) return print_error(*failure);
+    if (!picture && Interruption::wanted())
+        return interruption.end(saved_samples > 0 ? fmt::format("{} holds the picture of {} samples a pixel",
+                                                                join(w.outputs, ", "), saved_samples)
+                                                  : fmt::format("nothing was written to {}", join(w.outputs, ", ")));
+    if (!picture) return print_error(picture.error());
+    if (auto ok = write_pictures(w.outputs, *picture, scene.scene(), w); !ok) return print_error(ok.error());
+    print_result(w, scene.scene(), picture->result, options, picture->ev);
+    return exit_done;
+}
+
+}  // namespace
+
+/// For all but "reference".
+ShadingModel shading_model(const RenderWords& w) {
+    for (const ShadingModel m :
+         {ShadingModel::stretched, ShadingModel::phong, ShadingModel::mirror, ShadingModel::refract})
+        if (shading_model_name(m) == w.shading) return m;
+    return ShadingModel::split_sum;
+}
+
+Result<RenderResult> draw(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler,
+                          const LightMaps* maps, const RenderOptions& o) {
+    if (w.reference()) return render_reference(scene, sampler, o);
+    ShadingOptions shading;
+    shading.model = shading_model(w);
+    for (const MapLookup l : {MapLookup::environment, MapLookup::cube, MapLookup::latlong, MapLookup::sphere_map,
+                              MapLookup::dual_paraboloid})
+        if (map_lookup_name(l) == w.lookup) shading.lookup = l;
+    shading.lookup_size = w.lookup_size.value_or(shading.lookup_size);
+    shading.sh_irradiance = w.irradiance == "sh";
+    shading.bent_lookup = w.bent_lookup;
+    shading.multiple_scattering = w.multiple_scattering;
+    shading.occlusion = o.occlusion;
+    return render_shaded(scene, *maps, sampler, shading, o);
+}
+
+int run_render(const std::vector<std::string>& words) {
+    RenderWords w;
+    Arguments arguments(
+        "render",
+        "Renders a scene under an environment: the truth by path tracing, or what a real-time engine would draw.",
+        {"domelight render spheres -o spheres.png --width 256 --height 128 --spp 4",
+         "domelight render helmet.glb --env sunset.hdr -o truth.exr,truth.png --spp 256",
+         "domelight render ball --env sunset.hdr --shading split-sum -o engine.png",
+         "domelight render helmet.glb --background transparent --shadow-catcher -o cut-out.png",
+         "domelight render ball --frames 60 --spp 32 -o ball.png",
+         "domelight render --study --env sunset.hdr -o study"});
+    declare(arguments, w);
+    if (const auto code = begin_command(arguments, words, w.common)) return *code;
+    if (auto ok = check_words(w, arguments); !ok) return print_error(ok.error(), exit_usage);
+
+    SceneOptions scene_options;
+    scene_options.threads = w.threads();
+    const std::string name = w.scene_name();
+    const auto built_in = built_in_scene_names();
+    std::optional<Scene> scene;
+    if (!name.empty()) {
+        auto loaded = std::ranges::count(built_in, name) ? built_in_scene(name) : load_scene(name, scene_options);
+        if (!loaded) return print_error(loaded.error());
+        scene = std::move(*loaded);
+        if (w.brdf == "phong")
+            for (Material& m : scene->materials) m.phong = true;
+        print_warnings(scene->warnings, w.common, name);
+        print_warnings(w.reference() ? not_rendered(*scene) : not_rendered(*scene, shading_model(w)), w.common, name);
+    }
+    w.environment.threads = w.threads();
+    const auto open = [&] { return open_environment_or_sky(w.environment_files, w.environment); };
+    if (w.study) {
+        auto environment = open();
+        return environment ? run_study(w, std::move(scene), *environment) : print_error(environment.error());
+    }
+    auto options = render_options(w, *scene);
+    if (!options) return print_error(options.error());
+    auto environment = open();
+    if (!environment) return print_error(environment.error());
+
+    auto traced = RayScene::build(std::move(*scene));
+    if (!traced) return print_error(traced.error().at(name));
+    auto sampler =
+        EnvironmentSampler::build(*environment, reference_sampler_options(options->strategy, options->threads));
+    if (!sampler) return print_error(sampler.error());
+    const auto maps = maps_for(w, *sampler);
+    if (!maps) return print_error(maps.error());
+    const LightMaps* bound = *maps ? &**maps : nullptr;
+    options->background_maps = bound;
+    return w.frames ? run_turntable(w, *traced, *sampler, bound, *options)
+                    : run_picture(w, *traced, *sampler, bound, *options);
+}
+
+}  // namespace domelight::cli

@@ -1,0 +1,215 @@
+#include "cli/render/render_options.h"
+
+#include "preview/tonemap.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+namespace domelight::cli {
+namespace {
+
+Result<void> within(const char* option, double value, double low, double high) {
+    if (value >= low && value <= high) return {};
+    return Error{fmt::format("{:g} is not from {:g} to {:g}", value, low, high), option, ""};
+}
+
+Result<void> check_numbers(const RenderWords& w) {
+    for (const auto& [option, value] : {std::pair{"--width", w.width}, {"--height", w.height}})
+        if (auto ok = within(option, value.value_or(512), 1, 16384); !ok) return ok;
+    const struct {
+        const char* option;
+        double value, low, high;
+    } ranges[] = {{"--spp", double(w.spp.value_or(64)), 1, 1 << 20},
+                  {"--bounces", double(w.bounces.value_or(4)), 0, 1000},
+                  {"--lookup-size", double(w.lookup_size.value_or(512)), 1, 8192},
+                  {"--fov-deg", w.fov_deg, 0.1, 170},
+                  {"--noise", w.noise, 0, 1},
+                  {"--time", w.time, 0, 1e6},
+                  {"--ev", std::isnan(w.ev) ? 0 : w.ev, -100, 100},
+                  {"--background-roughness", w.background_roughness, 0, 1},
+                  {"--save-every", w.save_every, 0, 1e6},
+                  {"--frames", double(w.frames.value_or(60)), 2, 9999},
+                  {"--fps", w.fps, 1, 1000}};
+    for (const auto& r : ranges)
+        if (auto ok = within(r.option, r.value, r.low, r.high); !ok) return ok;
+    for (const auto& [option, value] :
+         {std::pair{"--camera-position", &w.camera_position}, {"--camera-target", &w.camera_target}}) {
+        if (!value->empty() && value->size() != 3) return Error{"wants three numbers", option, "x,y,z"};
+        for (const double v : *value)
+            if (!std::isfinite(v)) return Error{"wants three finite numbers", option, "x,y,z"};
+    }
+    return {};
+}
+
+Result<void> check_outputs(RenderWords& w) {
+    std::vector<std::string> outputs;
+    for (const std::string& o : w.outputs)
+        for (const std::string& part : split(o, ',')) outputs.push_back(part);
+    w.outputs = std::move(outputs);
+    if (w.outputs.empty()) return Error{"is missing", "--output", "Say where the picture goes: -o picture.png."};
+    if (w.study) {
+        const std::string extension = std::filesystem::path(w.outputs[0]).extension().string();
+        if (w.outputs.size() > 1 || (extension != "" && extension != ".png"))
+            return Error{fmt::format("\"{}\" is neither a folder nor a .png", join(w.outputs, ",")), "--output",
+                         "A study goes into a folder, or onto one sheet: -o DIR or -o study.png."};
+        return {};
+    }
+    for (const std::string& o : w.outputs)
+        if (!ends_in(o, ".exr") && !ends_in(o, ".hdr") && !ends_in(o, ".png"))
+            return Error{fmt::format("\"{}\" ends in none of the formats", o), "--output",
+                         "Accepted: .exr, .hdr, .png."};
+    return {};
+}
+
+/// Which options need which others.
+Result<void> check_company(const RenderWords& w, const Arguments& a) {
+    const auto needs = [&](const char* option, bool fine, const char* what) -> Result<void> {
+        if (!a.given(option) || fine) return {};
+        return Error{std::string("goes with ") + what + " only", option, ""};
+    };
+    const bool blurred = w.backdrop == Background::blurred, colour = w.backdrop == Background::colour;
+    const struct {
+        const char* option;
+        bool fine;
+        const char* what;
+    } rules[] = {{"--background-roughness", blurred, "--background blurred"},
+                 {"--camera-target", !w.camera_position.empty(), "--camera-position"},
+                 {"--fps", w.frames.has_value(), "--frames"},
+                 {"--turn", w.frames.has_value(), "--frames"},
+                 {"--resume", w.frames.has_value(), "--frames"},
+                 {"--save-every", w.reference() && !w.frames && !w.study, "a single picture of --shading reference"}};
+    // (Its first spelling is not what Arguments::given looks for.)
+    if (!w.background_color.empty() && !colour)
+        return Error{"goes with --background colour only", "--background-color", ""};
+    for (const auto& rule : rules)
+        if (auto ok = needs(rule.option, rule.fine, rule.what); !ok) return ok;
+    if (!w.camera.empty() && !w.camera_position.empty())
+        return Error{"is one camera, --camera-position another", "--camera", "Leave one of them out."};
+    if (w.turn == "environment" && !w.maps.empty())
+        return Error{"turns the light, and the maps of --maps would stay as they are", "--turn",
+                     "Leave --maps out: each frame then bakes its own."};
+    if (w.study)
+        for (const char* option : {"--frames", "--shadow-catcher", "--background", "--shading", "--strategy", "--maps"})
+            if (a.given(option)) return Error{"has no meaning with --study, which draws them all", option, ""};
+    return {};
+}
+
+}  // namespace
+
+bool ends_in(const std::string& file, const std::string& extension) {
+    return std::filesystem::path(file).extension().string() == extension;
+}
+
+Result<Vec3f> parse_colour(const std::string& text) {
+    const Error wrong{fmt::format("\"{}\" is no colour", text), "", "Accepted: #rrggbb (sRGB), or R,G,B (linear)."};
+    if (text.starts_with("#")) {
+        unsigned value = 0;
+        const char* const end = text.data() + text.size();
+        const auto [stop, code] = std::from_chars(text.data() + 1, end, value, 16);
+        if (text.size() != 7 || code != std::errc() || stop != end) return wrong;
+        const auto channel = [&](int shift) { return srgb_decode(float(value >> shift & 255) / 255); };
+        return Vec3f{channel(16), channel(8), channel(0)};
+    }
+    const auto words = split(text, ',');
+    double v[3] = {};
+    if (words.size() != 3) return wrong;
+    for (int i = 0; i < 3; ++i) {
+        const auto number = parse_number(words[std::size_t(i)]);
+        if (!number || !(*number >= 0 && *number <= 1e6)) return wrong;
+        v[i] = *number;
+    }
+    return Vec3f(Vec3d{v[0], v[1], v[2]});
+}
+
+Result<void> check_words(RenderWords& w, const Arguments& a) {
+    if (w.scenes.size() > 1 || (w.scenes.empty() && !w.study))
+        return Error{w.scenes.empty() ? "is missing" : "is given twice", "SCENE",
+                     fmt::format("One model, or a built-in scene: {}.", join(built_in_scene_names(), ", "))};
+    if (auto ok = check_outputs(w); !ok) return ok;
+    if (auto ok = check_numbers(w); !ok) return ok;
+    const std::string background = !w.background.empty()        ? w.background
+                                   : w.background_color.empty() ? "environment"
+                                                                : "colour";
+    w.backdrop = background == "environment"   ? Background::environment
+                 : background == "blurred"     ? Background::blurred
+                 : background == "transparent" ? Background::transparent
+                                               : Background::colour;
+    w.background = w.backdrop == Background::colour ? "colour" : background;
+    if (w.backdrop == Background::colour) {
+        const auto colour = parse_colour(w.background_color.empty() ? "#ffffff" : w.background_color);
+        if (!colour) return colour.error().at("--background-color");
+        w.backdrop_colour = *colour;
+    }
+    return check_company(w, a);
+}
+
+std::string camera_list(const Scene& scene) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+        const std::string& name = scene.cameras[i].name;
+        names.push_back(name.empty() ? std::to_string(i + 1) : fmt::format("{} \"{}\"", i + 1, name));
+    }
+    return join(names, ", ");
+}
+
+namespace {
+
+/// By number from 1 on, or by name.
+Result<const Camera*> find_camera(const std::string& word, const Scene& scene) {
+    for (const Camera& c : scene.cameras)
+        if (c.name == word) return &c;
+    const auto number = parse_integer(word);
+    if (number && *number >= 1 && *number <= int(scene.cameras.size())) return &scene.cameras[std::size_t(*number - 1)];
+    return Error{fmt::format("the scene has no camera \"{}\"", word), "--camera",
+                 scene.cameras.empty() ? "It has none at all: give --camera-position."
+                                       : fmt::format("It has {}.", camera_list(scene))};
+}
+
+}  // namespace
+
+Result<RenderOptions> render_options(const RenderWords& w, const Scene& scene) {
+    RenderOptions o;
+    const Camera* own = scene.cameras.empty() ? nullptr : &scene.cameras.front();
+    if (!w.camera.empty()) {
+        const auto found = find_camera(w.camera, scene);
+        if (!found) return found.error();
+        own = *found;
+    }
+    if (!w.camera_position.empty()) own = nullptr;
+    const float aspect = own && own->aspect > 0 ? own->aspect : 1;
+    if (w.width || !w.height) {
+        o.width = w.width.value_or(512);
+        o.height = w.height.value_or(std::clamp(int(std::lround(float(o.width) / aspect)), 1, 16384));
+    } else {
+        o.height = *w.height;
+        o.width = std::clamp(int(std::lround(float(o.height) * aspect)), 1, 16384);
+    }
+    const auto vector = [](const std::vector<double>& v) {
+        return v.empty() ? Vec3f{} : Vec3f(Vec3d{v[0], v[1], v[2]});
+    };
+    o.camera = own ? *own
+               : w.camera_position.empty()
+                   ? default_camera(scene, float(o.width) / float(o.height))
+                   : look_at(vector(w.camera_position), vector(w.camera_target), float(w.fov_deg * k_pi / 180));
+    o.strategy = w.strategy == "env"    ? LightStrategy::environment
+                 : w.strategy == "brdf" ? LightStrategy::brdf
+                                        : LightStrategy::mis;
+    o.samples = w.spp.value_or(64);
+    o.noise = w.noise;
+    o.seconds = w.time;
+    o.bounces = w.bounces.value_or(4);
+    o.occlusion = w.occlusion == "on";
+    o.multiple_scattering = w.multiple_scattering;
+    o.background = w.backdrop;
+    o.background_colour = w.backdrop_colour;
+    o.background_roughness = float(w.background_roughness);
+    o.seed = std::uint64_t(w.seed.value_or(0));
+    o.threads = w.threads();
+    return o;
+}
+
+}  // namespace domelight::cli

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "domelight/io/environment/open_environment.h"
+#include "domelight/render/render.h"
+
+#include "cli/console/arguments.h"
+#include "cli/console/console.h"
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace domelight::cli {
+
+/// The command line of `render`.
+struct RenderWords {
+    CommonOptions common;
+    std::vector<std::string> scenes, environment_files, outputs;
+    EnvironmentOptions environment;
+    std::string shading = "reference", strategy = "mis", occlusion = "on", background, maps, tonemap = "agx",
+                irradiance = "cube", lookup = "environment", brdf = "scene";
+    std::optional<int> width, height, spp, bounces, seed, lookup_size;
+    std::vector<double> camera_position, camera_target;
+    std::string camera;
+    double fov_deg = 35, noise = 0, time = 0, save_every = 0;
+    double ev = std::numeric_limits<double>::quiet_NaN();
+    bool multiple_scattering = false, bent_lookup = false;
+
+    std::string background_color;
+    double background_roughness = 0.35;
+    bool shadow_catcher = false;
+
+    std::optional<int> frames;
+    double fps = 30;
+    std::string turn = "camera";
+    bool resume = false;
+
+    bool study = false;
+
+    // What check_words makes of them.
+    Background backdrop = Background::environment;
+    Vec3f backdrop_colour;  ///< linear
+
+    int threads() const { return common.threads.value_or(0); }
+    bool reference() const { return shading == "reference"; }
+    std::string scene_name() const { return scenes.empty() ? "" : scenes.front(); }
+};
+
+/// Whether the file's name ends in this (".png").
+bool ends_in(const std::string& file, const std::string& extension);
+
+/// Options that are wrong, or do not go together. Splits outputs at commas, and settles the background.
+Result<void> check_words(RenderWords& words, const Arguments& arguments);
+
+/// The camera that was asked for, and how many pixels: the scene's camera says how high a picture of its width is.
+/// Errors: a camera that is not there.
+Result<RenderOptions> render_options(const RenderWords& words, const Scene& scene);
+
+/// "1 \"front\", 2" for a message.
+std::string camera_list(const Scene& scene);
+
+/// "#rrggbb" (sRGB) or "R,G,B" (linear) as linear radiance.
+Result<Vec3f> parse_colour(const std::string& text);
+
+}  // namespace domelight::cli

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "domelight/render/render.h"
+
+#include "cli/render/render_job.h"
+
+#include <string>
+#include <vector>
+
+namespace domelight::cli {
+
+/// Stops that bring the log-average luminance of what surfaces show to 0.18 (Reinhard et al. 2002); of the whole
+/// picture where it shows none. What is darker than a thousandth of the mean counts as that. `background_shows`: behind
+/// the surfaces, in their pixels' radiance.
+double automatic_ev(const RenderResult& picture, bool background_shows);
+
+/// The picture as a display shows it: 3 channels, 4 with --background transparent.
+Image<std::uint8_t> display_picture(const RenderResult& picture, const RenderWords& words, double ev);
+
+/// Writes it as the file's ending says: .png (tone mapped), .hdr, .exr (all layers).
+Result<void> write_picture(const std::string& file, const FinishedPicture& picture, const Scene& scene,
+                           const RenderWords& words);
+/// To all of them; the error names the file.
+Result<void> write_pictures(const std::vector<std::string>& files, const FinishedPicture& picture, const Scene& scene,
+                            const RenderWords& words);
+
+}  // namespace domelight::cli

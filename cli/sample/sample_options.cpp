@@ -1,0 +1,196 @@
+#include "cli/sample/sample_options.h"
+
+#include "cli/console/environment_options.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+namespace domelight::cli {
+namespace {
+
+constexpr DistributionMethod k_methods[] = {DistributionMethod::linear,   DistributionMethod::walk,
+                                            DistributionMethod::binary,   DistributionMethod::guided,
+                                            DistributionMethod::alias,    DistributionMethod::hierarchical,
+                                            DistributionMethod::bilinear, DistributionMethod::bilinear_plain};
+
+std::string extension_of(const std::string& file) {
+    return std::filesystem::path(file).extension().string();
+}
+
+Result<void> within(const char* option, double value, double low, double high) {
+    if (value >= low && value <= high) return {};
+    return Error{fmt::format("{:g} is not from {:g} to {:.12g}", value, low, high), option, ""};
+}
+
+Result<void> ends_in(const char* option, const std::string& file, const std::vector<std::string>& accepted) {
+    if (file.empty()) return {};
+    const std::string extension = extension_of(file);
+    if (std::find(accepted.begin(), accepted.end(), extension) != accepted.end()) return {};
+    return Error{fmt::format("\"{}\" ends in none of the formats", file), option,
+                 "Accepted: " + join(accepted, ", ") + "."};
+}
+
+Result<Vec3d> direction(const char* option, const std::vector<double>& v) {
+    if (v.size() != 3) return Error{fmt::format("has {} numbers instead of three", v.size()), option, "As in 0,1,0."};
+    const Vec3d d{v[0], v[1], v[2]};
+    const double l = length(d);
+    if (!std::isfinite(l) || !(l > 1e-12)) return Error{"is not a direction", option, "It needs a length: 0,1,0."};
+    return d / l;
+}
+
+Result<void> check_surface(const Arguments& arguments, SampleWords& w) {
+    if (!w.estimate) {
+        for (const char* option :
+             {"--plot", "--strategy", "--normal", "--view", "--brdf", "--roughness", "--exponent", "--metal-f0"})
+            if (arguments.given(option)) return Error{"has no meaning without --estimate", option, ""};
+        return {};
+    }
+    if (w.compensate)
+        return Error{"is not needed with --estimate", "--compensate",
+                     "The table has MIS with and without it; alone a compensated sampler would miss light."};
+    const struct {
+        const char *option, *brdf, *other;
+    } belongs[] = {{"--roughness", "ggx", "charlie"}, {"--exponent", "phong", ""}, {"--metal-f0", "ggx", ""}};
+    for (const auto& b : belongs)
+        if (arguments.given(b.option) && w.brdf != b.brdf && w.brdf != b.other)
+            return Error{fmt::format("is none of {}'s", w.brdf), b.option,
+                         fmt::format("It belongs to --brdf {}{}{}.", b.brdf, *b.other ? " and " : "", b.other)};
+    if (auto ok = within("--roughness", w.roughness, 0, 1); !ok) return ok;
+    if (auto ok = within("--exponent", w.exponent, 0, 1e5); !ok) return ok;
+    if (w.metal_f0.size() != 1 && w.metal_f0.size() != 3)
+        return Error{fmt::format("has {} numbers instead of one or three", w.metal_f0.size()), "--metal-f0", ""};
+    for (const double f0 : w.metal_f0)
+        if (auto ok = within("--metal-f0", f0, 0, 1); !ok) return ok;
+    auto normal = direction("--normal", w.normal);
+    if (!normal) return normal.error();
+    w.normal_world = *normal;
+    w.view_world = *normal;
+    if (!w.view.empty()) {
+        auto view = direction("--view", w.view);
+        if (!view) return view.error();
+        w.view_world = *view;
+    }
+    if (!(dot(w.normal_world, w.view_world) > 0))
+        return Error{"lies below the surface", "--view", "Its angle with --normal must be less than 90 degrees."};
+    return {};
+}
+
+Result<void> check_explain(const Arguments& arguments, const SampleWords& w) {
+    if (!arguments.given("--explain")) {
+        if (!w.explain_picture.empty()) return Error{"has no meaning without --explain", "--explain-picture", ""};
+        return {};
+    }
+    if (w.explain.size() != 2) return Error{"needs two numbers", "--explain", "As in 0.25,0.5."};
+    for (const double u : w.explain)
+        if (!(u >= 0 && u < 1)) return Error{fmt::format("{:g} is not in [0, 1)", u), "--explain", ""};
+    if (w.method == "alias" || w.method == "hierarchical")
+        return Error{fmt::format("shows rows and columns being found, which {} does not do", w.method), "--explain",
+                     "Accepted with --method linear, walk, binary, guided, bilinear, bilinear-plain."};
+    if (w.uniform_share > 0) return Error{"does not go with --uniform-share", "--explain", ""};
+    return {};
+}
+
+}  // namespace
+
+const std::vector<std::string> k_strategy_words{"riemann",     "uniform",     "cosine",    "brdf",
+                                                "environment", "mis-balance", "mis-power", "mis-balance-compensated",
+                                                "product"};
+
+std::string method_word(DistributionMethod method) {
+    std::string name = method_name(method);
+    std::replace(name.begin(), name.end(), '_', '-');
+    return name;
+}
+
+std::string SampleWords::environment_name() const {
+    return inputs.empty() ? "built-in sky" : inputs[0];
+}
+
+void declare_sample_options(Arguments& a, SampleWords& w) {
+    a.positional("ENV", w.inputs, "one image, or the six faces of a cube; without one the built-in sky");
+    a.group("What to draw");
+    a.integer("-n,--count", "N", w.count, "how many samples (1024); with --estimate the most a strategy gets (4096)");
+    a.text("-o,--output", "FILE", w.output,
+           "where the samples go, .csv or .json; without it, and without anything else to do, CSV on stdout");
+    std::vector<std::string> methods;
+    for (const DistributionMethod m : k_methods) methods.push_back(method_word(m));
+    a.choice("--method", w.method, methods,
+             "how (bilinear): the first six draw texels, the last two from the bilinear interpolation of them");
+    a.choice(
+        "--weight", w.weight, {"radiant-power", "grayscale"},
+        "in proportion to what (radiant-power): luminance times sin theta, or the textbook's grayscale without it");
+    a.flag("--compensate", w.compensate, "subtract the mean (MIS compensation): only for use beside BRDF sampling");
+    a.number("--uniform-share", "SHARE", w.uniform_share,
+             "draw this part of the samples evenly over the sphere, 0 to 1 (0)");
+    a.choice("--sequence", w.sequence, {"random", "stratified", "hammersley", "halton", "sobol", "r2"},
+             "the points of the unit square (sobol; with --estimate random, for which its standard errors hold)");
+    a.text("--seed", "N", w.seed, "another number, another randomisation; 0: the textbook's plain points (1)");
+    a.group("Pictures and tables");
+    a.text("--picture", "FILE", w.picture, "a PNG of the environment, as it is stored, with the samples on it");
+    a.text("--heat", "FILE", w.heat, "a PNG of the density as a heat map");
+    a.choice("--heat-measure", w.heat_measure, {"solid-angle", "uv"},
+             "the density per steradian or over the image (solid-angle)");
+    a.integer("--picture-width", "PIXELS", w.picture_width, "width of the environment in these, 256 to 8192 (1024)");
+    a.text("--tables", "DIR", w.tables,
+           "the cumulative functions as textures for shaders: rows.* and columns.*, RG float");
+    a.choice("--tables-format", w.tables_format, {"ktx2", "exr"}, "their format (ktx2)");
+    a.group("How good each strategy is");
+    a.flag("--estimate", w.estimate, "estimate the light that a surface reflects by every strategy, and compare them");
+    a.choices("--strategy", w.strategies, k_strategy_words, "compare only these with environment (all)");
+    a.text("--plot", "FILE", w.plot, "a PNG of each strategy's error over the number of samples, with slopes");
+    a.numbers("--normal", "X,Y,Z", w.normal, "the surface's normal (0,1,0)");
+    a.numbers("--view", "X,Y,Z", w.view, "towards the viewer (the normal)");
+    a.choice("--brdf", w.brdf, {"lambert", "phong", "ggx", "charlie"}, "the surface (lambert)");
+    a.number("--roughness", "R", w.roughness, "of ggx and charlie, 0 to 1 (0.3)");
+    a.number("--exponent", "N", w.exponent, "of phong (32)");
+    a.numbers("--metal-f0", "F0", w.metal_f0, "of ggx, reflectance at normal incidence: one number or R,G,B (1)");
+    a.group("How it works");
+    a.numbers("--explain", "U,V", w.explain,
+              "show how this point of the unit square becomes a direction: row, column, density");
+    a.text("--explain-picture", "FILE", w.explain_picture, "the same as a PNG");
+    add_environment_options(a, w.environment);
+    add_common_options(a, w.common);
+}
+
+Result<void> check_sample_options(const Arguments& arguments, SampleWords& w) {
+    if (w.inputs.size() > 1 && !are_cube_faces(w.inputs) && w.environment.projection != "cube-faces")
+        return Error{"more than one input, and not the six faces of a cube", "--projection",
+                     "Sample one environment at a time."};
+    const int most = w.estimate ? 1 << 24 : 100'000'000;
+    if (auto ok = within("--count", w.count.value_or(1), 1, most); !ok) return ok;
+    if (auto ok = ends_in("--output", w.output, {".csv", ".json"}); !ok) return ok;
+    if (auto ok = ends_in("--picture", w.picture, {".png"}); !ok) return ok;
+    if (auto ok = ends_in("--heat", w.heat, {".png"}); !ok) return ok;
+    if (auto ok = ends_in("--plot", w.plot, {".png"}); !ok) return ok;
+    if (auto ok = ends_in("--explain-picture", w.explain_picture, {".png"}); !ok) return ok;
+    if (auto ok = within("--picture-width", w.picture_width.value_or(1024), 256, 8192); !ok) return ok;
+    if (auto ok = within("--uniform-share", w.uniform_share, 0, 1); !ok) return ok;
+    if (arguments.given("--heat-measure") && w.heat.empty())
+        return Error{"has no meaning without --heat", "--heat-measure", ""};
+    if (arguments.given("--tables-format") && w.tables.empty())
+        return Error{"has no meaning without --tables", "--tables-format", ""};
+    if (!w.picture.empty() && w.count.value_or(1024) > 1'000'000 && !w.estimate)
+        return Error{"at most a million samples can be told apart", "--picture", "Ask for fewer with -n."};
+    const char* const end = w.seed.data() + w.seed.size();
+    if (const auto [stop, code] = std::from_chars(w.seed.data(), end, w.seed_number);
+        code != std::errc() || stop != end || w.seed.empty())
+        return Error{fmt::format("\"{}\" is not a whole number from 0 to 18446744073709551615", w.seed), "--seed", ""};
+    if (auto ok = check_explain(arguments, w); !ok) return ok;
+    if (auto ok = check_surface(arguments, w); !ok) return ok;
+
+    if (w.estimate && !arguments.given("--sequence")) w.sequence = "random";
+    w.points = sequence_from_name(w.sequence).value_or(Sequence::sobol);
+    for (const DistributionMethod m : k_methods)
+        if (method_word(m) == w.method) w.sampler.method = m;
+    w.sampler.weight = w.weight == "grayscale" ? LightWeight::grayscale : LightWeight::radiant_power;
+    w.sampler.compensate = w.compensate;
+    w.sampler.uniform_share = w.uniform_share;
+    w.sampler.threads = w.environment.threads = w.threads();
+    return {};
+}
+
+}  // namespace domelight::cli

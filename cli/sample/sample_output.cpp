@@ -1,0 +1,140 @@
+#include "cli/sample/sample_output.h"
+
+#include "domelight/io/file/atomic_file.h"
+#include "domelight/bake/bake.h"
+#include "domelight/io/write_image.h"
+#include "domelight/texture/texture.h"
+
+#include "bake/staging.h"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <functional>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+namespace domelight::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Where pieces of text go: false when they cannot.
+using Sink = std::function<bool(const std::string&)>;
+
+// {} of a float is the shortest text that reads back as the same float.
+void add_csv(std::string& out, const LightSample& s) {
+    fmt::format_to(std::back_inserter(out), "{},{},{},{},{},{},{},{},{}\n", s.u, s.v, s.direction.x, s.direction.y,
+                   s.direction.z, s.radiance.x, s.radiance.y, s.radiance.z, s.pdf_solid_angle);
+}
+void add_json(std::string& out, const LightSample& s) {
+    fmt::format_to(std::back_inserter(out),
+                   "    {{\"u\": {}, \"v\": {}, \"direction\": [{}, {}, {}], \"radiance\": [{}, {}, {}], "
+                   "\"pdf_solid_angle\": {}}}",
+                   s.u, s.v, s.direction.x, s.direction.y, s.direction.z, s.radiance.x, s.radiance.y, s.radiance.z,
+                   s.pdf_solid_angle);
+}
+
+std::string json_head(const SampleWords& w, const EnvironmentSampler& sampler, int count) {
+    const Json head{{"version", version()},
+                    {"environment", w.environment_name()},
+                    {"width", sampler.image().width},
+                    {"height", sampler.image().height},
+                    {"method", w.method},
+                    {"weight", w.weight},
+                    {"compensate", w.compensate},
+                    {"uniform_share", w.uniform_share},
+                    {"sequence", w.sequence},
+                    {"seed", w.seed_number},
+                    {"count", count}};
+    std::string text = head.dump(2, ' ', false, Json::error_handler_t::replace);
+    text.erase(text.rfind("\n}"));
+    return text + ",\n  \"samples\": [\n";
+}
+
+/// False when the sink refused or the work was cancelled.
+bool put_samples(const SampleWords& w, const EnvironmentSampler& sampler, bool json, const Sink& sink,
+                 const Progress& progress) {
+    const int count = w.count.value_or(1024);
+    constexpr int block = 4096;
+    std::string text = json ? json_head(w, sampler, count) : "u,v,x,y,z,r,g,b,pdf_solid_angle\n";
+    for (int i = 0; i < count; ++i) {
+        const LightSample s =
+            sampler.sample(unit_point(w.points, w.seed_number, std::uint32_t(i), std::uint32_t(count)));
+        if (json) {
+            add_json(text, s);
+            text += i + 1 < count ? ",\n" : "\n  ]\n}\n";
+        } else {
+            add_csv(text, s);
+        }
+        if ((i + 1) % block && i + 1 < count) continue;
+        if (!sink(text) || (progress && !progress("draw", double(i + 1) / count))) return false;
+        text.clear();
+    }
+    return true;
+}
+
+}  // namespace
+
+Result<void> write_samples(const SampleWords& w, const EnvironmentSampler& sampler, const Progress& progress) {
+    if (w.output.empty()) {
+        const Sink sink = [](const std::string& text) {
+            return std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+        };
+        if (!put_samples(w, sampler, w.common.json, sink, progress))
+            return Error{"results cannot be written", "stdout", ""};
+        return {};
+    }
+    const bool json = w.output.ends_with(".json");
+    return write_file_atomically(w.output, [&](const std::filesystem::path& path) -> Result<void> {
+        std::FILE* file = std::fopen(path.c_str(), "wb");
+        bool fine = file != nullptr;
+        int code = errno;
+        if (file) {
+            fine = put_samples(
+                w, sampler, json,
+                [&](const std::string& text) { return std::fwrite(text.data(), 1, text.size(), file) == text.size(); },
+                progress);
+            code = errno;
+            if (std::fclose(file) != 0 && fine) {
+                fine = false;
+                code = errno;
+            }
+        }
+        if (!fine) return Error{"cannot write it: " + std::generic_category().message(code), "", ""};
+        return {};
+    });
+}
+
+Result<std::vector<std::string>> write_tables(const SampleWords& w, const EnvironmentSampler& sampler) {
+    const SamplingTextures textures = sampling_textures(sampler);
+    auto staging = Staging::open(w.tables);
+    if (!staging) return staging.error();
+    const std::map<std::string, std::string> notes{
+        {"domelight.quantity", "cumulative_share, pdf_uv"},
+        {"domelight.weight", w.weight},
+        {"domelight.compensation", fmt::format("{:.9g}", sampler.compensation())},
+        {"domelight.source", w.environment_name()}};
+    const auto write = [&](const std::string& name, ImageView<const float> table) -> Result<void> {
+        if (w.tables_format == "exr") {
+            ExrWriteOptions options;
+            options.half = false;
+            options.attributes = notes;
+            options.threads = w.threads();
+            return write_exr(staging->stage(name), table, options);
+        }
+        Texture texture = encode_table(table, Encoding::rg32f);
+        texture.metadata.insert(notes.begin(), notes.end());
+        return write_ktx2(staging->stage(name), texture);
+    };
+    const std::vector<std::string> names{"rows." + w.tables_format, "columns." + w.tables_format};
+    if (auto ok = write(names[0], textures.rows.view()); !ok) return ok.error().at(w.tables);
+    if (auto ok = write(names[1], textures.columns.view()); !ok) return ok.error().at(w.tables);
+    if (auto ok = staging->commit(names[1]); !ok) return ok.error();
+    return names;
+}
+
+}  // namespace domelight::cli

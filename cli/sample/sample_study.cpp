@@ -1,0 +1,261 @@
+#include "cli/sample/sample_study.h"
+
+#include "domelight/image/colour.h"
+#include "domelight/base/parallel.h"
+#include "domelight/base/random.h"
+#include "domelight/filtering/reference.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <functional>
+#include <mutex>
+
+namespace domelight::cli {
+namespace {
+
+double thread_seconds() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+Surface surface_of(const SampleWords& w) {
+    const float alpha = float(w.roughness * w.roughness);
+    const Vec3f f0 = w.metal_f0.size() == 3 ? Vec3f(Vec3d{w.metal_f0[0], w.metal_f0[1], w.metal_f0[2]})
+                                            : Vec3f{1, 1, 1} * float(w.metal_f0[0]);
+    if (w.brdf == "phong") return make_surface(w.normal_world, w.view_world, PhongBrdf{float(w.exponent), {1, 1, 1}});
+    if (w.brdf == "ggx") return make_surface(w.normal_world, w.view_world, GgxBrdf{alpha, f0, {1, 1, 1}});
+    if (w.brdf == "charlie") return make_surface(w.normal_world, w.view_world, CharlieBrdf{alpha, {1, 1, 1}});
+    return make_surface(w.normal_world, w.view_world, LambertBrdf{});
+}
+
+/// Mean and its standard error over independent runs.
+struct Runs {
+    Vec3d mean, error;
+};
+Runs repeat(int runs, int threads, const std::function<Vec3d(int run)>& one) {
+    std::vector<Vec3d> values(runs);
+    parallel_for(runs, threads, [&](int i) { values[i] = one(i); });
+    Runs out;
+    for (const Vec3d& v : values) out.mean = out.mean + v / double(runs);
+    for (const Vec3d& v : values) {
+        const Vec3d d = v - out.mean;
+        out.error = out.error + Vec3d{d.x * d.x, d.y * d.y, d.z * d.z} / (double(runs) * (runs - 1));
+    }
+    out.error = {std::sqrt(out.error.x), std::sqrt(out.error.y), std::sqrt(out.error.z)};
+    return out;
+}
+
+/// One line of the table: which strategy on which sampler.
+struct Contender {
+    std::string name;
+    Strategy strategy;
+    const EnvironmentSampler* sampler;
+    /// Density per steradian, local L; for strategies that have one.
+    std::function<double(const Vec3f& L, const Vec3f& world)> density;
+};
+
+class Runner {
+  public:
+    Runner(const SampleWords& w, const EnvironmentSampler& plain, const EnvironmentSampler& compensated)
+        : words_(w), plain_(plain), compensated_(compensated), surface_(surface_of(w)), frame_(surface_.normal) {}
+
+    void find_reference(Study& study) const;
+    std::vector<Contender> contenders() const;
+    bool run(const Contender& contender, Study& study, const std::function<bool(double)>& told) const;
+
+  private:
+    Estimate estimate(const Contender& c, int samples, int candidates, int run) const {
+        EstimateOptions o;
+        o.samples = samples;
+        o.candidates = candidates;
+        o.sequence = words_.points;
+        // Run 0 is what a program with this seed gets.
+        o.seed = run == 0 ? words_.seed_number : derive_key(words_.seed_number, std::uint64_t(run));
+        return estimate_reflection(surface_, *c.sampler, c.strategy, o);
+    }
+    std::optional<double> variance(const Contender& c, const Study& study) const;
+
+    const SampleWords& words_;
+    const EnvironmentSampler &plain_, &compensated_;
+    Surface surface_;
+    Frame<double> frame_;
+};
+
+void Runner::find_reference(Study& study) const {
+    if (words_.brdf == "lambert" && plain_.distribution().continuous()) {
+        const Vec3d direction = plain_.world_to_source() * surface_.normal;
+        study.reference =
+            convolve_exactly(plain_.image(), ZonalKernel::cosine(), std::span(&direction, 1), words_.threads())[0];
+        study.reference_method = "exact: the cosine integrated over the bilinear environment";
+        return;
+    }
+    constexpr int runs = 16, samples = 1 << 17;
+    const Runs r = repeat(runs, words_.threads(), [&](int i) {
+        EstimateOptions o{samples, Sequence::sobol, derive_key(0x5265666572656e63, std::uint64_t(i)), 8};
+        return estimate_reflection(surface_, compensated_, Strategy::mis_balance, o).radiance;
+    });
+    study.reference = r.mean;
+    study.reference_error = r.error;
+    study.reference_method = fmt::format("MIS with compensation, {} Sobol runs of {} samples", runs, samples);
+}
+
+std::vector<Contender> Runner::contenders() const {
+    const auto constant = [](double p) { return [p](const Vec3f&, const Vec3f&) { return p; }; };
+    const Vec3f V(frame_.to_local(surface_.view));
+    std::vector<Contender> all{
+        {"riemann", Strategy::riemann, &plain_, {}},
+        {"uniform", Strategy::uniform, &plain_, constant(0.5 / k_pi)},
+        {"cosine", Strategy::cosine, &plain_, [](const Vec3f& L, const Vec3f&) { return L.z / k_pi; }},
+        {"brdf", Strategy::brdf, &plain_,
+         [this, V](const Vec3f& L, const Vec3f&) { return double(surface_.pdf_solid_angle(V, L)); }},
+        {"environment", Strategy::environment, &plain_,
+         [this](const Vec3f&, const Vec3f& d) { return double(plain_.pdf_solid_angle(d)); }},
+        {"mis-balance", Strategy::mis_balance, &plain_, {}},
+        {"mis-power", Strategy::mis_power, &plain_, {}},
+        {"mis-balance-compensated", Strategy::mis_balance, &compensated_, {}},
+        {"product", Strategy::product, &plain_, {}}};
+    // Environment sampling is the yardstick of the efficiencies.
+    const auto& wanted = words_.strategies;
+    std::erase_if(all, [&](const Contender& c) {
+        return !wanted.empty() && c.name != "environment" &&
+               std::find(wanted.begin(), wanted.end(), c.name) == wanted.end();
+    });
+    return all;
+}
+
+/// Variance of one sample over the squared mean, of luminance.
+std::optional<double> Runner::variance(const Contender& c, const Study& study) const {
+    if (!c.density || words_.points != Sequence::random) return std::nullopt;
+    // A surface whose BRDF is f times f L cos / p reflects the second moment.
+    Surface squared = surface_;
+    squared.evaluate = [&](const Vec3f& V, const Vec3f& L) {
+        const Vec3f f = surface_.evaluate(V, L), d(frame_.to_world(Vec3d(L))), radiance = plain_.radiance(d);
+        const double p = c.density(L, d), value = luminance(Vec3d{double(f.x) * radiance.x, double(f.y) * radiance.y,
+                                                                  double(f.z) * radiance.z}) *
+                                                  L.z;
+        return value > 0 ? f * float(value / p) : Vec3f{};
+    };
+    const Runs r = repeat(16, words_.threads(), [&](int i) {
+        EstimateOptions o{1 << 14, Sequence::sobol, derive_key(0x566172, std::uint64_t(i)), 8};
+        return estimate_reflection(squared, compensated_, Strategy::mis_balance, o).radiance;
+    });
+    const double mean = luminance(study.reference), relative = luminance(r.mean) / (mean * mean) - 1;
+    return relative > 1e-6 ? relative : 0;
+}
+
+double slope_of(const std::vector<std::array<double, 2>>& curve) {
+    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (const auto& [x, y] : curve) {
+        if (!(y > 0)) continue;
+        const double lx = std::log(x), ly = std::log(y);
+        n += 1, sx += lx, sy += ly, sxx += lx * lx, sxy += lx * ly;
+    }
+    return n >= 2 ? (n * sxy - sx * sy) / (n * sxx - sx * sx) : NAN;
+}
+
+/// The numbers of samples looked at: up to `most` in factors of 4 (2 where it is small).
+std::vector<int> steps(int most) {
+    std::vector<int> n;
+    const int factor = most >= 256 ? 4 : 2, least = most >= 256 ? 16 : 2;
+    for (int k = most; k >= std::min(least, most); k /= factor) {
+        n.push_back(k);
+        if (k < factor) break;
+    }
+    std::reverse(n.begin(), n.end());
+    return n;
+}
+
+bool Runner::run(const Contender& c, Study& study, const std::function<bool(double)>& told) const {
+    StrategyResult result;
+    result.name = c.name;
+    const double mean = luminance(study.reference);
+    const std::vector<int> counts = steps(study.samples);
+    double done = 0, all = 0;
+    for (const int n : counts) all += std::min(4 * n, study.samples);
+    for (const int n : counts) {
+        // Rare bright hits decide the error of few samples, so more runs are needed there; these cost little.
+        const int runs = c.strategy == Strategy::riemann ? 1 : study.runs * std::min(4, study.samples / n);
+        std::vector<double> squares(runs), seconds(runs);
+        std::vector<Estimate> first(1);
+        parallel_for(runs, words_.threads(), [&](int i) {
+            const double start = thread_seconds();
+            const Estimate e = estimate(c, n, study.candidates, i);
+            seconds[i] = thread_seconds() - start;
+            const double relative = luminance(e.radiance - study.reference) / mean;
+            squares[i] = relative * relative;
+            if (i == 0) first[0] = e;
+        });
+        double sum = 0, time = 0;
+        for (int i = 0; i < runs; ++i) sum += squares[i], time += seconds[i];
+        result.estimate = first[0];
+        result.error = std::sqrt(sum / runs);
+        result.cpu_seconds = time / runs;
+        result.curve.push_back({double(first[0].samples), result.error});
+        if (!told((done += std::min(4 * n, study.samples)) / all)) return false;
+    }
+    result.slope = slope_of(result.curve);
+    result.variance = variance(c, study);
+    study.strategies.push_back(std::move(result));
+    return true;
+}
+
+/// Efficiencies, and how far each strategy is from 1 %.
+void conclude(Study& study, Sequence points) {
+    const StrategyResult& yardstick = *study.find("environment");
+    const auto squared_error = [&](const StrategyResult& r) {
+        const double expected = r.expected_error() * r.expected_error();
+        // The product form averages the environment's candidates, and what the runs missed of these both have missed.
+        if (r.name != "product" || !yardstick.missed()) return expected;
+        const double scale = yardstick.expected_error() / yardstick.error;
+        return expected * scale * scale;
+    };
+    const double unit = squared_error(yardstick) * yardstick.cpu_seconds;
+    for (StrategyResult& r : study.strategies) {
+        const double squared = squared_error(r);
+        r.efficiency = squared > 0 ? unit / (squared * r.cpu_seconds) : INFINITY;
+        const bool random = points == Sequence::random && r.name != "riemann";
+        const double power = random ? 2 : r.slope < -0.25 ? -1 / r.slope : INFINITY;
+        const double factor = std::sqrt(squared) / 0.01;
+        r.for_one_percent = factor <= 1 && !std::isfinite(power) ? r.estimate.samples
+                            : squared > 0 ? std::max(1.0, std::ceil(r.estimate.samples * std::pow(factor, power)))
+                                          : 1;
+    }
+}
+
+}  // namespace
+
+const StrategyResult* Study::find(const std::string& name) const {
+    const auto found =
+        std::find_if(strategies.begin(), strategies.end(), [&](const StrategyResult& r) { return r.name == name; });
+    return found == strategies.end() ? nullptr : &*found;
+}
+
+Result<Study> study_strategies(const SampleWords& w, const EnvironmentSampler& sampler, const Progress& progress) {
+    EnvironmentSamplerOptions options = sampler.options();
+    options.compensate = true;
+    auto compensated = EnvironmentSampler::build(sampler.image(), options, sampler.world_to_source());
+    if (!compensated) return compensated.error();
+    const Runner runner(w, sampler, *compensated);
+    Study study;
+    study.samples = w.count.value_or(4096);
+    study.runs = std::clamp((1 << 19) / study.samples, 8, 64);
+    const auto tell = [&](double done) { return !progress || progress("estimate", done); };
+    const Error cancelled{"cancelled", "", ""};
+    if (!tell(0)) return cancelled;
+    runner.find_reference(study);
+    if (!(luminance(study.reference) > 0))
+        return Error{"no light reaches the viewer from this surface", w.environment_name(), "Turn it: --normal x,y,z."};
+    const auto contenders = runner.contenders();
+    for (std::size_t i = 0; i < contenders.size(); ++i) {
+        const auto told = [&](double done) { return tell((double(i) + done) / double(contenders.size())); };
+        if (!runner.run(contenders[i], study, told)) return cancelled;
+    }
+    conclude(study, w.points);
+    return study;
+}
+
+}  // namespace domelight::cli

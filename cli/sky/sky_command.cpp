@@ -1,0 +1,148 @@
+#include "domelight/bake/bake.h"
+#include "domelight/io/write_image.h"
+#include "domelight/environment/sky/sky.h"
+
+#include "cli/commands.h"
+#include "cli/console/console.h"
+#include "cli/console/eight_bit.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace domelight::cli {
+namespace {
+
+struct SkyWords {
+    CommonOptions common;
+    std::string output, encoding = "half";
+    std::optional<int> height;
+    SkyOptions sky;
+    bool axes = false, no_sun_disc = false;
+};
+
+void declare(Arguments& a, SkyWords& w) {
+    a.group("The picture");
+    a.text("-o,--output", "FILE", w.output, "where to write it: .hdr, .exr, or .png (8 bits, not HDR)");
+    a.integer("--height", "N", w.height, "rows of the lat-long image, which is twice as wide (512)");
+    a.choice("--exr", w.encoding, {"half", "float"}, "channels of an .exr; half clips the sun at 65504 (half)");
+    a.flag("--axes", w.axes, "the labelled six-axis environment instead of a sky: it shows every orientation mistake");
+    a.group("The sky");
+    a.number("--sun-elevation-deg", "DEGREES", w.sky.sun_elevation_deg,
+             "height of the sun over the horizon, -18 to 90 (30)");
+    a.number("--sun-azimuth-deg", "DEGREES", w.sky.sun_azimuth_deg, "from +X towards +Z (30)");
+    a.number("--turbidity", "T", w.sky.turbidity, "1 (pure air) to 10 (haze) (3)");
+    a.number("--ground-albedo", "A", w.sky.ground_albedo, "0 to 1 (0.2)");
+    a.flag("--no-sun-disc", w.no_sun_disc, "the sky without the sun's disc");
+    add_common_options(a, w.common);
+}
+
+Result<void> check(const SkyWords& w) {
+    const auto within = [](const char* option, double value, double low, double high) -> Result<void> {
+        if (value >= low && value <= high) return {};
+        return Error{fmt::format("{:g} is not from {:g} to {:g}", value, low, high), option, ""};
+    };
+    if (w.output.empty()) return Error{"is missing", "--output", "Say where the picture goes: -o sky.hdr."};
+    const std::string extension = std::filesystem::path(w.output).extension().string();
+    if (extension != ".hdr" && extension != ".exr" && extension != ".png")
+        return Error{fmt::format("\"{}\" ends in none of the formats", w.output), "--output",
+                     "Accepted: .hdr, .exr, .png."};
+    if (auto ok = within("--height", w.height.value_or(512), 1, 32768); !ok) return ok;
+    if (auto ok = within("--sun-elevation-deg", w.sky.sun_elevation_deg, -18, 90); !ok) return ok;
+    if (auto ok = within("--sun-azimuth-deg", w.sky.sun_azimuth_deg, -3600, 3600); !ok) return ok;
+    if (auto ok = within("--turbidity", w.sky.turbidity, 1, 10); !ok) return ok;
+    return within("--ground-albedo", w.sky.ground_albedo, 0, 1);
+}
+
+/// Rows on their way to a writer, with the progress told and the range noted.
+class WatchedRows : public RowSource {
+  public:
+    WatchedRows(RowSource& rows, Progress progress) : rows_(rows), progress_(std::move(progress)) {}
+    int width() const override { return rows_.width(); }
+    int height() const override { return rows_.height(); }
+    Result<void> read(ImageView<float> rows) override {
+        auto ok = rows_.read(rows);
+        for (int y = 0; ok && y < rows.height; ++y)
+            largest_ = std::max(largest_, *std::max_element(rows.row(y), rows.row(y) + rows.width * rows.channels));
+        done_ += rows.height;
+        if (progress_) progress_("sky", double(done_) / height());
+        return ok;
+    }
+    float largest() const { return largest_; }
+
+  private:
+    RowSource& rows_;
+    Progress progress_;
+    int done_ = 0;
+    float largest_ = 0;
+};
+
+Result<void> write(const SkyWords& w, WatchedRows& rows) {
+    const std::string extension = std::filesystem::path(w.output).extension().string();
+    if (extension == ".hdr") return write_hdr(w.output, rows);
+    if (extension == ".png") return write_8bit(w.output, rows);
+    ExrWriteOptions exr;
+    exr.half = w.encoding == "half";
+    return write_exr(w.output, rows, exr);
+}
+
+void print_result(const SkyWords& w, int height, const WatchedRows& rows) {
+    if (w.common.json) {
+        nlohmann::ordered_json json{{"version", version()},
+                                    {"file", w.output},
+                                    {"width", 2 * height},
+                                    {"height", height},
+                                    {"largest", rows.largest()}};
+        if (!w.axes)
+            json["sky"] = {{"sun_elevation_deg", w.sky.sun_elevation_deg},
+                           {"sun_azimuth_deg", w.sky.sun_azimuth_deg},
+                           {"turbidity", w.sky.turbidity},
+                           {"ground_albedo", w.sky.ground_albedo},
+                           {"sun_disc", w.sky.sun_disc}};
+        fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    } else if (!w.common.quiet) {
+        fmt::print("{}: {} x {}, values up to {:.6g}\n", w.output, 2 * height, height, rows.largest());
+    }
+}
+
+}  // namespace
+
+int run_sky(const std::vector<std::string>& words) {
+    SkyWords w;
+    Arguments arguments(
+        "sky",
+        "Writes a physically based clear or hazy sky with a sun of true size and radiance, as a lat-long environment.",
+        {"domelight sky -o sky.hdr", "domelight sky -o evening.exr --sun-elevation-deg 4 --turbidity 5 --height 256",
+         "domelight sky --axes -o axes.png"});
+    declare(arguments, w);
+    if (const auto code = begin_command(arguments, words, w.common)) return *code;
+    if (auto ok = check(w); !ok) return print_error(ok.error(), exit_usage);
+    w.sky.height = w.height.value_or(512);
+    w.sky.sun_disc = !w.no_sun_disc;
+    w.sky.threads = w.common.threads.value_or(0);
+
+    ImageF axes;
+    std::unique_ptr<RowSource> source;
+    if (w.axes) {
+        axes = make_axes_environment(w.sky.height);
+        source = std::make_unique<ImageRowSource>(axes.view());
+    } else {
+        source = make_sky(w.sky);
+    }
+    ProgressBar bar(w.output, w.common);
+    WatchedRows rows(*source, bar.callback());
+    if (auto ok = write(w, rows); !ok) return print_error(ok.error().at(w.output));
+    const std::string extension = std::filesystem::path(w.output).extension().string();
+    if (extension == ".png" && !w.axes)
+        print_warnings({w.output + ": 8 bits clip the sky at 1; write .hdr or .exr for light"}, w.common);
+    if (extension == ".exr" && w.encoding == "half" && rows.largest() > 65504)
+        print_warnings({fmt::format("{}: half floats clip the sun ({:.4g}) at 65504; --exr float keeps it", w.output,
+                                    rows.largest())},
+                       w.common);
+    print_result(w, w.sky.height, rows);
+    return exit_done;
+}
+
+}  // namespace domelight::cli

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace domelight {
+
+/// What a reader found and mended. Complete once all rows have been read.
+struct RepairReport {
+    std::int64_t not_a_number =
+        0;  ///< texels with a NaN channel: set to the mean of their finite neighbours on the row, else 0
+    std::int64_t infinite = 0;     ///< texels with an infinite channel: set to the largest finite value of the format
+    std::int64_t negative = 0;     ///< texels with a negative channel: the channel set to 0
+    double negative_radiance = 0;  ///< most negative value met
+    std::vector<std::string> warnings;  ///< "PNG is not HDR: values above 1 are clipped", ...
+    std::int64_t repaired() const { return not_a_number + infinite + negative; }
+};
+
+}  // namespace domelight

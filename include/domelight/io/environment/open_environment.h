@@ -1,0 +1,36 @@
+#pragma once
+
+#include "domelight/environment/environment.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace domelight {
+
+/// How to understand an environment's file where it does not say so itself.
+struct EnvironmentOptions {
+    /// auto | latlong | cube-cross | cube-strip | cube-faces, or any other of projections.h, with its convention:
+    /// "angular/centre=+Z", "mirror-ball/fov=20". Those are turned into a lat-long image on opening.
+    std::string projection = "auto";
+    /// Lat-long convention: default, usd, mitsuba, openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]", or pbrt
+    /// (the equal-area octahedral square); empty: what the file says, else default.
+    std::string latlong = "";
+    /// PNG, JPEG and DDS of eight bits a channel: auto (= srgb) | srgb | gamma22 | linear; DDS also rgbm | rgbd | rgbp
+    std::string decode = "auto";
+    double rotate_y_deg = 0;  ///< turns the light about +Y: +X moves towards +Z
+    std::string up = "+Y";    ///< the world axis (of the file's author) that the image's top shows: +Y, +Z, ...
+    double exposure = 0;      ///< stops: radiance is multiplied by 2^exposure
+    std::int64_t max_bytes = std::int64_t(1) << 30;  ///< refuses images whose decoding would need more memory than this
+    int threads = 0;                                 ///< for decoding; 0: all
+    bool keep_projection = false;                    ///< leaves other projections as they are, in Environment::picture
+};
+
+/// Opens an environment. `files` is one image, the six faces of a cube in any order (recognised by name), or the
+/// front and the back of a dual paraboloid.
+/// Errors: no such file, unknown or broken format, wrong shape, over `max_bytes`; each names the file.
+Result<Environment> open_environment(const std::vector<std::filesystem::path>& files,
+                                     const EnvironmentOptions& options = {});
+
+}  // namespace domelight

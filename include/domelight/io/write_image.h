@@ -1,0 +1,58 @@
+#pragma once
+
+#include "domelight/image/image.h"
+#include "domelight/base/result.h"
+#include "domelight/image/row_source.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+
+namespace domelight {
+
+/// Writers of images. Each output appears whole or not at all; an existing file is replaced only by a complete one.
+
+/// Radiance HDR: RGBE, new run-length encoding (flat where the width does not allow it), mantissas rounded to the
+/// nearest. The source form writes row by row. Negative values and NaN become 0.
+Result<void> write_hdr(const std::filesystem::path& file, ImageView<const float> rgb, int threads = 0);
+Result<void> write_hdr(const std::filesystem::path& file, RowSource& rows, int threads = 0);
+
+struct ExrWriteOptions {
+    bool half = true;                 ///< half or float channels
+    std::string compression = "zip";  ///< none | rle | zips | zip | piz | pxr24 | b44 | b44a | dwaa | dwab
+    /// The envmap attribute: "", "latlong" (the pixels must then be in OpenEXR's own lat-long convention) or "cube"
+    /// (pixels: a size x 6 size strip of faces in OpenGL's orientation, which are turned into OpenEXR's).
+    std::string envmap = {};
+    std::map<std::string, std::string> attributes = {};  ///< further attributes of type string
+    int threads = 0;                                     ///< for compression; 0: all
+};
+/// OpenEXR scanline image, RGB (or as many as 4 channels), linear Rec. 709. A channel's values beyond half's range are
+/// clipped to 65504.
+Result<void> write_exr(const std::filesystem::path& file, ImageView<const float> pixels,
+                       const ExrWriteOptions& options = {});
+Result<void> write_exr(const std::filesystem::path& file, RowSource& rows, const ExrWriteOptions& options = {});
+
+/// OpenEXR tiled image with levels (MIPMAP_LEVELS, sizes rounded down). `levels`: the finest first, each half as large
+/// as the one before in both directions; the smaller ones that the format demands down to 1 x 1 are made from the last
+/// one by averaging. With envmap "cube" each level is a strip of faces that halves. Errors: other sizes.
+Result<void> write_exr_levels(const std::filesystem::path& file, std::span<const ImageView<const float>> levels,
+                              const ExrWriteOptions& options = {});
+
+/// A layer of an image of several.
+struct ExrLayer {
+    std::string name;  ///< before the channels' names: "direct" gives direct.R; empty for the picture itself
+    ImageView<const float> pixels;  ///< 1 to 4 channels: Y (or `channel`), or R G B A
+    std::string channel = {};       ///< the name of a single one
+};
+/// OpenEXR scanline image of 32-bit floats with several layers of the same size. `options`: attributes.
+Result<void> write_exr_layers(const std::filesystem::path& file, std::span<const ExrLayer> layers,
+                              const ExrWriteOptions& options = {});
+
+/// 8-bit PNG, 1, 3 or 4 channels, sRGB.
+Result<void> write_png(const std::filesystem::path& file, ImageView<const std::uint8_t> pixels,
+                       int compression_level = 3);
+
+}  // namespace domelight

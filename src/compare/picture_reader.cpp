@@ -1,0 +1,180 @@
+#include "compare/picture_reader.h"
+
+#include "domelight/base/parallel.h"
+#include "domelight/texture/texture.h"
+
+#include "io/environment/cube_texture_reader.h"
+#include "io/exr/exr_layers.h"
+#include "io/image_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace domelight {
+namespace {
+
+Result<Picture> read_texture_picture(const std::filesystem::path& file, const std::string& container, int level) {
+    const Result<Texture> texture = read_texture(file);
+    if (!texture) return texture.error().at(file.string());
+    if (level < 0 || level >= int(texture->levels.size()))
+        return Error{fmt::format("no level {}: the texture has {}", level, texture->levels.size()), file.string(), ""};
+    Picture picture;
+    picture.format = container;
+    picture.cube = texture->faces == 6;
+    const int width = texture->level_width(level), height = texture->level_height(level);
+    picture.rgb = ImageF(width, height * texture->faces, 3);
+    for (int f = 0; f < texture->faces; ++f) {
+        const ImageF face = decode_texture(*texture, level, f);
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                std::copy_n(face.at(x, y), std::min(face.channels(), 3), picture.rgb.at(x, f * height + y));
+    }
+    return picture;
+}
+
+/// The picture itself, by the reader that environments use too (luminance and chroma, other primaries).
+Result<Picture> read_plain(std::shared_ptr<const FileBytes> bytes, const ReaderOptions& options) {
+    auto opened = open_image_reader(std::move(bytes), options);
+    if (!opened) return opened.error();
+    ImageReader& reader = **opened;
+    const ImageFacts& facts = reader.facts();
+    if (std::int64_t(facts.width) * facts.height * 12 > options.max_bytes)
+        return Error{fmt::format("{} x {} pixels need more memory than the limit of {} bytes", facts.width,
+                                 facts.height, options.max_bytes),
+                     "", ""};
+    Picture picture;
+    picture.rgb = ImageF(facts.width, facts.height, 3);
+    constexpr int k_rows = 64;
+    for (int y = 0; y < facts.height; y += k_rows)
+        if (auto read = reader.read(picture.rgb.view().rows(y, std::min(k_rows, facts.height - y))); !read)
+            return read.error();
+    if (facts.to_rec709)
+        for (int y = 0; y < facts.height; ++y)
+            for (int x = 0; x < facts.width; ++x) {
+                float* p = picture.rgb.at(x, y);
+                const Vec3d v = *facts.to_rec709 * Vec3d{p[0], p[1], p[2]};
+                p[0] = float(v.x), p[1] = float(v.y), p[2] = float(v.z);
+            }
+    picture.format = facts.format;
+    picture.high_dynamic_range = facts.format != "PNG" && facts.format != "JPEG";
+    if (picture.high_dynamic_range) picture.warnings = facts.warnings;  // of the others they tell of environments
+    return picture;
+}
+
+Result<void> read_variance(ExrLayers& layers, const PictureOptions& options, Picture& picture) {
+    for (const char* name : {"variance", "Variance"}) {
+        const auto channels = layers.colour_of(name);
+        if (!channels) continue;
+        auto variance = layers.read(*channels);
+        if (!variance) return variance.error();
+        std::string samples;
+        for (const char* s : {"samples", "samples.Y", "sample-count", "samples.samples"})
+            if (samples.empty() && layers.has(s)) samples = s;
+        if (options.variance == "sample" && samples.empty())
+            return Error{"a variance of samples needs a channel \"samples\"", "", ""};
+        if (options.variance == "sample") {
+            const auto counts = layers.read(std::vector<std::string>{samples});
+            if (!counts) return counts.error();
+            for (std::size_t i = 0; i < counts->pixels().size(); ++i)
+                for (int c = 0; c < 3; ++c) variance->pixels()[3 * i + c] /= std::max(counts->pixels()[i], 1.0f);
+        }
+        for (float& v : variance->pixels())
+            if (!(v >= 0 && std::isfinite(v))) v = 0;
+        picture.variance = std::move(*variance);
+        return {};
+    }
+    return {};
+}
+
+Result<void> read_objects(ExrLayers& layers, Picture& picture) {
+    for (const char* name : {"object", "object.id", "object.Y", "objectId", "id"}) {
+        if (!layers.has(name)) continue;
+        auto ids = layers.read(std::vector<std::string>{name});
+        if (!ids) return ids.error();
+        picture.objects = std::move(*ids);
+        std::istringstream lines(layers.attribute("objects").value_or(""));
+        for (std::string line; std::getline(lines, line) && picture.object_names.size() < 100000;)
+            picture.object_names.push_back(printable(line, 60));
+        return {};
+    }
+    return {};
+}
+
+Result<Picture> read_exr_picture(std::shared_ptr<const FileBytes> bytes, const PictureOptions& options,
+                                 const ReaderOptions& reader) {
+    auto layers = open_exr_layers(bytes, reader);
+    Picture picture;
+    if (options.layer.empty()) {
+        auto plain = read_plain(bytes, reader);
+        if (!plain) return plain;
+        picture = std::move(*plain);
+        if (!layers) return picture;
+    } else {
+        if (!layers) return layers.error();
+        const auto channels = (*layers)->colour_of(options.layer);
+        if (!channels) return channels.error();
+        auto pixels = (*layers)->read(*channels);
+        if (!pixels) return pixels.error();
+        picture.rgb = std::move(*pixels);
+        picture.format = "OpenEXR";
+    }
+    // The variance is the picture's, not a layer's. Sizes differ where an environment's data window is the picture.
+    const bool same = (*layers)->width() == picture.rgb.width() && (*layers)->height() == picture.rgb.height();
+    if (same && options.layer.empty())
+        if (auto ok = read_variance(**layers, options, picture); !ok) return ok.error();
+    if (same)
+        if (auto ok = read_objects(**layers, picture); !ok) return ok.error();
+    return picture;
+}
+
+bool is_exr(const FileBytes& bytes) {
+    const auto all = bytes.bytes();
+    return all.size() >= 4 && all[0] == 0x76 && all[1] == 0x2f && all[2] == 0x31 && all[3] == 0x01;
+}
+
+}  // namespace
+
+Result<Picture> read_picture(const std::filesystem::path& file, const PictureOptions& options) {
+    auto bytes = FileBytes::open(file, options.max_bytes);
+    if (!bytes) return bytes.error().at(file.string());
+    const std::string container = texture_container((*bytes)->bytes());
+    if (!container.empty()) return read_texture_picture(file, container, options.level);
+    ReaderOptions reader;
+    reader.max_bytes = options.max_bytes;
+    reader.threads = options.threads;
+    if (!is_exr(**bytes) && !options.layer.empty())
+        return Error{"only OpenEXR files have layers", file.string(), "Leave out --layer."};
+    auto picture = is_exr(**bytes) ? read_exr_picture(*bytes, options, reader) : read_plain(*bytes, reader);
+    if (!picture) return picture.error().at(file.string());
+    return picture;
+}
+
+Result<ImageF> read_number_image(const std::filesystem::path& file, const std::string& name) {
+    auto bytes = FileBytes::open(file, std::int64_t(1) << 30);
+    if (!bytes) return bytes.error().at(file.string());
+    ReaderOptions options;
+    options.decode = "linear";
+    if (is_exr(**bytes)) {
+        auto layers = open_exr_layers(*bytes, options);
+        if (!layers) return layers.error().at(file.string());
+        std::string channel = name;
+        for (const char* usual : {"object", "Y", "R", "A"})
+            if (channel.empty() && (*layers)->has(usual)) channel = usual;
+        if (channel.empty()) channel = (*layers)->channels()[0];
+        auto image = (*layers)->read(std::vector<std::string>{channel});
+        if (!image) return image.error().at(file.string());
+        return image;
+    }
+    const auto picture = read_plain(*bytes, options);
+    if (!picture) return picture.error().at(file.string());
+    ImageF image(picture->rgb.width(), picture->rgb.height(), 1);
+    for (std::size_t i = 0; i < image.pixels().size(); ++i)
+        image.pixels()[i] =
+            picture->high_dynamic_range ? picture->rgb.pixels()[3 * i] : std::round(picture->rgb.pixels()[3 * i] * 255);
+    return image;
+}
+
+}  // namespace domelight

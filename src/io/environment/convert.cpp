@@ -1,0 +1,185 @@
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/convert.h"
+
+#include "domelight/filtering/resample/area_resample.h"
+#include "domelight/base/parallel.h"
+
+#include "filtering/resample/area_resample_aligned.h"
+#include "filtering/resample/area_resample_latlong.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace domelight {
+
+namespace {
+
+/// Between latlong_direction's frame (x at the centre, z to the right) and a picture's (z at the centre, x to the
+/// right); its own inverse.
+constexpr Mat3 k_swap{{Vec3d{0, 0, 1}, Vec3d{0, 1, 0}, Vec3d{1, 0, 0}}};
+
+/// Rows on their way, with their power and how far they are noted.
+class MeasuredRows {
+  public:
+    MeasuredRows(RowSource& rows, const Progress& progress) : rows_(rows), progress_(progress) {}
+    Result<void> read(ImageView<float> block, int threads) {
+        if (const auto read = rows_.read(block); !read) return read;
+        std::vector<Vec3d> sums(std::size_t(block.height));
+        parallel_for(block.height, threads, [&](int y) {
+            // Four sums each, which the compiler keeps apart; four floats are added before.
+            double sum[12] = {};
+            const float* p = block.row(y);
+            const int n = 3 * block.width;
+            int i = 0;
+            for (; i + 48 <= n; i += 48)
+                for (int k = 0; k < 12; ++k) sum[k] += (p[i + k] + p[i + 12 + k]) + (p[i + 24 + k] + p[i + 36 + k]);
+            for (int k = 0; i < n; ++i, k = (k + 1) % 3) sum[k] += p[i];
+            sums[std::size_t(y)] = Vec3d{sum[0] + sum[3] + sum[6] + sum[9], sum[1] + sum[4] + sum[7] + sum[10],
+                                         sum[2] + sum[5] + sum[8] + sum[11]} *
+                                   latlong_solid_angle(next_ + y, rows_.width(), rows_.height());
+        });
+        for (const Vec3d& sum : sums) power_ = power_ + sum;
+        next_ += block.height;
+        if (progress_ && !progress_("convert", double(next_) / rows_.height())) return Error{"cancelled", "", ""};
+        return {};
+    }
+    const Vec3d& power() const { return power_; }
+
+  private:
+    RowSource& rows_;
+    const Progress& progress_;
+    Vec3d power_;
+    int next_ = 0;
+};
+
+/// Few enough to stay in a core's cache until they are used; more where several cores share them.
+int block_rows(int threads) {
+    return resolve_threads(threads) <= 2 ? 16 : 64;
+}
+
+Result<ImageF> stream(RowSource& rows, AreaResampler& resampler, const ConvertOptions& options, Vec3d& power) {
+    MeasuredRows measured(rows, options.progress);
+    ImageF block(rows.width(), std::min(block_rows(options.threads), rows.height()), 3);
+    for (int y = 0; y < rows.height(); y += block.height()) {
+        const ImageView<float> view = block.view().rows(0, std::min(block.height(), rows.height() - y));
+        if (const auto read = measured.read(view, options.threads); !read) return read.error();
+        resampler.add_rows(view);
+    }
+    power = measured.power();
+    return resampler.finish();
+}
+
+/// The whole columns by which a lat-long image of `width` moves under the matrix, if it is such a turn about its axis.
+std::optional<int> column_shift(const Mat3& m, int width) {
+    if (std::abs(m.row[1].y - 1) > 1e-12 || std::abs(m.row[0].x - m.row[2].z) > 1e-12) return std::nullopt;
+    const double columns = std::atan2(m.row[2].x, m.row[0].x) / (2 * k_pi) * width;
+    if (std::abs(columns - std::round(columns)) > 1e-6) return std::nullopt;
+    return int(std::round(columns));
+}
+
+Result<ImageF> shift_columns(RowSource& rows, int shift, const ConvertOptions& options, Vec3d& power) {
+    const int w = rows.width(), h = rows.height(), first = (shift % w + w) % w;
+    ImageF out(w, h, 3);
+    MeasuredRows measured(rows, options.progress);
+    const int block = block_rows(options.threads);
+    for (int y = 0; y < h; y += block) {
+        const ImageView<float> view = out.view().rows(y, std::min(block, h - y));
+        if (const auto read = measured.read(view, options.threads); !read) return read.error();
+        for (int r = 0; r < view.height; ++r) std::rotate(view.row(r), view.row(r) + 3 * first, view.row(r) + 3 * w);
+    }
+    power = measured.power();
+    return out;
+}
+
+bool permutes_axes(const Mat3& m) {
+    for (const Vec3d& r : m.row)
+        for (const double e : {r.x, r.y, r.z})
+            if (std::abs(e - std::round(e)) > 1e-12) return false;
+    return true;
+}
+
+/// Straight from the rows where that goes: the image, or nothing.
+Result<std::optional<ImageF>> by_rows(Environment& environment, const Projection& target, const Mat3& picture_to_source,
+                                      const ConvertOptions& o, Conversion& result) {
+    RowSource& rows = *environment.latlong;
+    if (target.grid() != SampleGrid::centres) return std::optional<ImageF>();
+    std::unique_ptr<AreaResampler> resampler;
+    if (target.name() == "cube" && !o.sharp && area::align(picture_to_source)) {
+        resampler = area_resample_to_cube(rows.width(), rows.height(), o.height, picture_to_source, o.threads);
+    } else if (target.name() == "latlong" && o.width == 2 * o.height) {
+        const Mat3 m = picture_to_source * k_swap;  // both in latlong_direction's frame
+        if (const auto shift = column_shift(m, rows.width());
+            shift && o.width == rows.width() && o.height == rows.height()) {
+            auto image = shift_columns(rows, *shift, o, result.power_before);
+            if (!image) return image.error();
+            result.method = "copy";
+            return std::optional<ImageF>(*std::move(image));
+        }
+        if (const auto aligned = area::align(m); !o.sharp && aligned && area::keeps_polar_axis(*aligned))
+            resampler = area_resample_to_latlong(rows.width(), rows.height(), o.height, m, o.threads);
+    }
+    if (!resampler) return std::optional<ImageF>();
+    auto image = stream(rows, *resampler, o, result.power_before);
+    if (!image) return image.error();
+    result.method = "exact";
+    return std::optional<ImageF>(*std::move(image));
+}
+
+}  // namespace
+
+Result<Conversion> convert(Environment& environment, const Projection& target, const ConvertOptions& o) {
+    Conversion result{{target, {}}, {}, {}, "conservative"};
+    const Mat3 world_to_source = environment.world_to_source * o.turn.transposed();
+    if (environment.latlong) {
+        auto image = by_rows(environment, target, world_to_source * target.world_to_picture().transposed(), o, result);
+        if (!image) return image.error();
+        if (*image) {
+            result.image.pixels = **std::move(image);
+            result.power_after = radiant_power(result.image, o.threads);
+            return result;
+        }
+    }
+    ProjectedImage source{*projection_from_name("cube"), {}};
+    if (environment.latlong) {
+        auto image = read_latlong(*environment.latlong);
+        if (!image) return image.error();
+        source = {projection_from_name("latlong")->turned(world_to_source), *std::move(image)};
+    } else if (environment.picture) {
+        source = {environment.picture->projection.turned(world_to_source), std::move(environment.picture->pixels)};
+        environment.picture.reset();
+    } else {
+        const Mat3 m = world_to_source * target.world_to_picture().transposed();
+        if (target.name() == "cube" && target.grid() == SampleGrid::centres && o.height == environment.cube.size() &&
+            permutes_axes(m)) {
+            ImageF strip(o.width, 6 * o.width, 3);
+            const Cubemap moved = area_resample_cube(environment.cube, o.width, m, o.threads);
+            std::copy(moved.pixels().begin(), moved.pixels().end(), strip.pixels().begin());
+            result.image.pixels = std::move(strip);
+            result.method = "copy";
+            result.power_before =
+                radiant_power({*projection_from_name("cube"), ImageF(result.image.pixels)}, o.threads);
+            result.power_after = result.power_before;
+            return result;
+        }
+        const ImageView<const float> strip = std::as_const(environment.cube).strip();
+        ImageF pixels(strip.width, strip.height, 3);
+        std::copy_n(strip.data, pixels.pixels().size(), pixels.pixels().begin());
+        source = {projection_from_name("cube")->turned(world_to_source), std::move(pixels)};
+    }
+    result.power_before = radiant_power(source, o.threads);
+    result.image = reproject(source, target, o.width, o.height, o.threads, o.progress);
+    result.power_after = radiant_power(result.image, o.threads);
+    return result;
+}
+
+int matched_height(const Environment& environment, const Projection& target) {
+    const ProjectionShape& shape = target.shape();
+    double latlong = environment.height;
+    if (environment.latlong) latlong = environment.latlong->height();
+    if (!environment.cube.empty()) latlong = 2.0 * environment.cube.size();
+    if (environment.picture)
+        latlong = environment.picture->projection.shape().latlong_height(environment.picture->height());
+    return std::max(1, int(std::round(latlong * 1000 / shape.latlong_height(1000))));
+}
+
+}  // namespace domelight

@@ -1,0 +1,81 @@
+#include "io/environment/cube_texture_reader.h"
+
+#include "domelight/texture/texture.h"
+
+#include "image/mirror_cube.h"
+#include "image/repair.h"
+#include "scene/gltf/gltf_image_light.h"
+#include "texture/container/texture_reading.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace domelight {
+
+std::string texture_container(std::span<const std::uint8_t> bytes) {
+    using namespace std::string_view_literals;
+    const std::string_view start(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 16));
+    if (start.starts_with("\xabKTX 20\xbb\r\n\x1a\n"sv)) return "KTX2";
+    if (start.starts_with("\xabKTX 11\xbb\r\n\x1a\n"sv)) return "KTX";
+    if (start.starts_with("DDS "sv)) return "DDS";
+    if (start.starts_with("\x86\x16\x87\x96\xf6\xd6\x96\x36"sv)) return "Babylon .env";
+    return "";
+}
+
+Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_t max_bytes, float scale,
+                                  RepairReport& report, const std::string& decode) {
+    const Result<TextureInfo> info = read_texture_info(file);
+    if (!info) return info.error().at(file.string());
+    if (info->faces != 6 || info->width != info->height || info->layers > 1)
+        return Error{"texture is not a cube", file.string(), "An environment must be a cube or a lat-long image."};
+    if (!info->decodable) return Error{"texels of format " + info->format + " cannot be decoded", file.string(), ""};
+    // Decoded faces, beside the texture as it is.
+    const std::int64_t size = info->width;
+    if (size < 1 || size > 65536 || 2 * 6 * size * size * 12 > max_bytes)
+        return Error{
+            fmt::format("a cube of {} x {} faces needs more memory than the limit of {} bytes", size, size, max_bytes),
+            file.string(), ""};
+    const Result<Texture> texture = read_texture(file, decode);
+    if (!texture) return texture.error().at(file.string());
+    if (encoding_channels(texture->encoding) != 3)
+        return Error{"texture has two channels, not a colour", file.string(), ""};
+
+    Cubemap cube(texture->width);
+    const RepairOptions repair{.scale = scale, .wraps = false};
+    for (int f = 0; f < 6; ++f) {
+        const ImageF face = decode_texture(*texture, 0, f);
+        for (int y = 0; y < cube.size(); ++y) {
+            float* row = cube.face(f).row(y);
+            for (int x = 0; x < cube.size(); ++x) std::copy_n(face.at(x, y), 3, row + 3 * x);
+            repair_row({row, std::size_t(cube.size()) * 3}, repair, report);
+        }
+    }
+    if (info->container.starts_with("Babylon")) {
+        mirror_cube_x(cube);
+        return cube;
+    }
+    report.warnings.push_back("the faces are taken to be in OpenGL's orientation; some tools write them mirrored");
+    if (info->eight_bits && texture->encoding == Encoding::rgba16f)
+        report.warnings.push_back("eight bits a channel are not HDR unless they are RGBM or its like: --decode rgbm");
+    return cube;
+}
+
+Result<GltfEnvironment> read_gltf_environment(const std::filesystem::path& file, std::int64_t max_bytes, float scale,
+                                              RepairReport& report) {
+    const auto bytes = FileBytes::open(file, max_bytes);
+    if (!bytes) return bytes.error();
+    auto light = read_gltf_image_light(*bytes, file.parent_path(), max_bytes, 1);
+    if (!light) return light.error().at(file.string());
+    GltfEnvironment environment{std::move(light->levels.front()), light->rotation};
+    const RepairOptions repair{.scale = scale * float(light->intensity), .wraps = false};
+    for (int f = 0; f < 6; ++f)
+        for (int y = 0; y < environment.cube.size(); ++y)
+            repair_row({environment.cube.face(f).row(y), std::size_t(environment.cube.size()) * 3}, repair, report);
+    if (light->low_dynamic_range)
+        report.warnings.push_back("the light's pictures are not HDR: values above 1 are clipped");
+    return environment;
+}
+
+}  // namespace domelight

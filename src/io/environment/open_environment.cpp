@@ -1,0 +1,405 @@
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
+
+#include "io/environment/cube_input.h"
+#include "io/environment/cube_texture_reader.h"
+#include "scene/gltf/gltf_document.h"
+#include "scene/gltf/gltf_image_light.h"
+#include "io/image_reader.h"
+#include "io/hdr/radiance_reader.h"
+#include "projection/latlong_convention.h"
+#include "projection/latlong_regrid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace domelight {
+
+namespace {
+
+/// Turns directions about +Y, exactly at quarter turns.
+Mat3 rotation_y_deg(double angle_deg) {
+    const double turn = std::remainder(angle_deg, 360.0);
+    const double quarters = turn / 90;
+    if (quarters != std::round(quarters)) return rotation_y(turn * k_pi / 180);
+    constexpr int cosines[4] = {1, 0, -1, 0};
+    const int k = (int(quarters) + 4) % 4;
+    const double c = cosines[k], s = cosines[(k + 3) % 4];
+    return {{Vec3d{c, 0, -s}, Vec3d{0, 1, 0}, Vec3d{s, 0, c}}};
+}
+
+/// Directions of a world whose axis `up` the image's top shows, to the frame where that is +Y: by the shortest turn
+/// (for -Y, half a turn about X).
+Mat3 up_to_y(const Vec3d& up) {
+    if (up == Vec3d{0, 1, 0}) return {};
+    if (up == Vec3d{0, -1, 0}) return {{Vec3d{1, 0, 0}, Vec3d{0, -1, 0}, Vec3d{0, 0, -1}}};
+    // The axis a = up x Y stays, up goes to Y, a x up goes to a x Y.
+    const Vec3d y{0, 1, 0}, a = cross(up, y), b = cross(a, up), image = cross(a, y);
+    const auto row = [&](double Vec3d::* i) { return a * (a.*i) + up * (y.*i) + b * (image.*i); };
+    return {{row(&Vec3d::x), row(&Vec3d::y), row(&Vec3d::z)}};
+}
+
+/// What the options ask for, checked.
+struct Request {
+    EnvironmentOptions options;
+    Mat3 turn;  ///< world to the file's frame, apart from its lat-long convention
+    float scale = 1;
+    std::optional<Projection> other;  ///< neither lat-long nor a cube
+};
+
+/// A projection that pictures are read in by name only.
+Result<Projection> other_projection(const std::string& text) {
+    std::string accepted = "Accepted: auto, latlong, cube-cross, cube-strip, cube-faces";
+    for (const ProjectionInfo& info : projections())
+        if (std::string(info.name) != "latlong" && std::string(info.name) != "cube")
+            accepted += std::string(", ") + info.name;
+    const Result<Projection> projection = projection_from_name(text);
+    if (!projection && projection.error().what.starts_with("unknown projection"))
+        return Error{projection.error().what, "", accepted + "."};
+    if (!projection) return projection.error();
+    if (projection->name() == "latlong")
+        return Error{"a lat-long convention is given apart", "", "Pass --projection latlong --latlong CONVENTION."};
+    if (projection->name() == "cube") return Error{"unknown projection \"" + text + "\"", "", accepted + "."};
+    return *projection;
+}
+
+Result<Request> check_options(const EnvironmentOptions& options) {
+    Request request{options, {}, 1, {}};
+    const auto one_of = [](const std::string& value, std::initializer_list<const char*> accepted) {
+        return std::find(accepted.begin(), accepted.end(), value) != accepted.end();
+    };
+    if (request.options.latlong == "pbrt") {
+        if (options.projection != "auto" && options.projection != "latlong")
+            return Error{"pbrt's square is no " + options.projection, "--latlong", ""};
+        request.options.latlong.clear();
+        request.options.projection = "pbrt";
+    }
+    if (!one_of(request.options.projection, {"auto", "latlong", "cube-cross", "cube-strip", "cube-faces"})) {
+        auto other = other_projection(request.options.projection);
+        if (!other) return other.error().at("--projection");
+        request.other = *std::move(other);
+    }
+    if (!one_of(options.decode, {"auto", "srgb", "gamma22", "linear", "rgbm", "rgbd", "rgbp"}))
+        return Error{"unknown decoding \"" + options.decode + "\"", "--decode",
+                     "Accepted: auto, srgb, gamma22, linear; for DDS also rgbm, rgbd, rgbp."};
+    if (!std::isfinite(options.rotate_y_deg)) return Error{"angle is not a number", "--rotate-y-deg", ""};
+    if (!(std::abs(options.exposure) <= 64))
+        return Error{"exposure must lie between -64 and 64 stops", "--exposure", ""};
+    const Result<Vec3d> up = signed_axis(options.up);
+    if (!up) return up.error().at("--up");
+    if (!request.options.latlong.empty())
+        if (const auto convention = latlong_convention(request.options.latlong); !convention)
+            return convention.error().at("--latlong");
+    // Light turned by R arrives from d if it came from R^T d before.
+    request.turn = up_to_y(*up) * rotation_y_deg(options.rotate_y_deg).transposed();
+    request.scale = float(std::exp2(options.exposure));
+    return request;
+}
+
+/// Twice as wide as high; one texel more or less is a rounding of someone's resize.
+bool has_latlong_shape(int width, int height) {
+    return std::abs(std::int64_t(width) - 2 * std::int64_t(height)) <= 1;
+}
+
+/// The layout to read a picture in, or none for lat-long. `projection` is one of the accepted names.
+Result<std::optional<CubeLayout>> choose_layout(const ImageFacts& facts, const std::string& projection) {
+    const std::string is = fmt::format("image is {} x {}", facts.width, facts.height);
+    std::optional<CubeLayout> layout = cube_layout_of_shape(facts.width, facts.height);
+    const bool strip = layout == CubeLayout::horizontal_strip || layout == CubeLayout::vertical_strip;
+    if (layout == CubeLayout::vertical_strip && facts.envmap == ImageFacts::Envmap::cube)
+        layout = CubeLayout::openexr_strip;
+    if (projection == "cube-cross" && (!layout || strip))
+        return Error{is + ", but a cube cross must be 4:3 (horizontal) or 3:4 (vertical)", "", ""};
+    if (projection == "cube-strip" && !strip)
+        return Error{is + ", but a strip of cube faces must be 6:1 or 1:6", "", ""};
+    if (projection == "cube-faces") return Error{"six files are needed for the faces of a cube", "", ""};
+    if (projection == "latlong" || (projection == "auto" && !layout)) {
+        if (!has_latlong_shape(facts.width, facts.height))
+            return Error{is + ", but a lat-long map must be twice as wide as high", "",
+                         facts.width == facts.height
+                             ? "If this is one face of a cube, give all six; if it is a mirror ball or another "
+                               "round or octahedral map, say which: --projection sphere-map, "
+                               "mirror-ball/fov=DEGREES, angular, octahedral, ..."
+                             : "If this is a cube cross, pass --projection cube-cross."};
+        return std::optional<CubeLayout>();
+    }
+    return layout;
+}
+
+/// What concerns the file as a whole.
+Environment begin_environment(const std::filesystem::path& file, const ImageFacts& facts) {
+    Environment environment;
+    environment.file = file;
+    environment.format = facts.format;
+    environment.width = facts.width;
+    environment.height = facts.height;
+    environment.report = std::make_shared<RepairReport>();
+    return environment;
+}
+
+ReaderOptions reader_options(const EnvironmentOptions& options) {
+    return {options.decode, options.max_bytes, options.threads};
+}
+
+Result<std::unique_ptr<ImageReader>> open_file(const std::filesystem::path& file, const EnvironmentOptions& options) {
+    auto bytes = FileBytes::open(file, options.max_bytes);
+    if (!bytes) return bytes.error();
+    auto image = open_image_reader(std::move(*bytes), reader_options(options));
+    if (!image) return image.error().at(file.string());
+    return image;
+}
+
+std::unique_ptr<RowSource> radiance_of(const Environment& environment, const std::filesystem::path& file,
+                                       std::unique_ptr<ImageReader> image, const Request& request, bool wraps) {
+    return std::make_unique<RadianceReader>(file, std::move(image), request.scale, wraps, request.options.threads,
+                                            environment.report);
+}
+
+Result<Environment> open_latlong(Environment environment, std::unique_ptr<ImageReader> image, const Request& request) {
+    std::string name = request.options.latlong;
+    if (name.empty()) name = image->facts().envmap == ImageFacts::Envmap::latlong ? "openexr" : "default";
+    const Result<LatlongConvention> convention = latlong_convention(name);
+    if (!convention) return convention.error();
+    environment.projection = "latlong";
+    environment.world_to_source = convention->world_to_default() * request.turn;
+    environment.latlong =
+        regrid_latlong(radiance_of(environment, environment.file, std::move(image), request, true), convention->grid);
+    return environment;
+}
+
+Result<void> check_cube_memory(std::int64_t size, std::int64_t max_bytes) {
+    const std::int64_t bytes = 6 * size * size * 3 * std::int64_t(sizeof(float));
+    if (bytes <= max_bytes) return {};
+    return Error{
+        fmt::format("a cube of {} x {} faces needs {} bytes, more than the limit of {}", size, size, bytes, max_bytes),
+        "", ""};
+}
+
+/// A cube has no lat-long convention, only the turn.
+Environment finish_cube(Environment environment, Cubemap cube, const Request& request) {
+    if (!request.options.latlong.empty())
+        environment.report->warnings.push_back("a lat-long convention means nothing for a cube: ignored");
+    environment.projection = "cube";
+    environment.world_to_source = request.turn;
+    environment.cube = std::move(cube);
+    return environment;
+}
+
+/// Rows of an image that goes with them.
+class OwnedRows : public RowSource {
+  public:
+    explicit OwnedRows(ImageF image) : image_(std::move(image)), rows_(image_) {}
+    int width() const override { return image_.width(); }
+    int height() const override { return image_.height(); }
+    Result<void> read(ImageView<float> rows) override { return rows_.read(rows); }
+
+  private:
+    ImageF image_;
+    ImageRowSource rows_;
+};
+
+/// The greatest height that a lat-long map made from another projection gets.
+constexpr int k_most_latlong_height = 8192;
+
+/// A picture in any projection: kept, or made lat-long without loss of resolution.
+Result<Environment> finish_other(Environment environment, ProjectedImage picture, const Request& request) {
+    const ProjectionShape& shape = picture.projection.shape();
+    environment.projection = picture.projection.name();
+    environment.world_to_source = request.turn;
+    if (!picture.projection.full())
+        environment.report->warnings.push_back(
+            fmt::format("the projection {} shows {:.0f} % of all directions: {}", environment.projection,
+                        25 * shape.coverage() / k_pi,
+                        shape.coverage() < 3 * k_pi ? "the rest is black" : "the rest repeats its rim"));
+    if (request.options.keep_projection) {
+        environment.picture = std::move(picture);
+        return environment;
+    }
+    const int height = std::clamp(shape.latlong_height(picture.height()), 1, k_most_latlong_height);
+    if (const std::int64_t bytes = std::int64_t(height) * height * 2 * 12; bytes > request.options.max_bytes)
+        return Error{
+            fmt::format("the lat-long map needs {} bytes, more than the limit of {}", bytes, request.options.max_bytes),
+            "", ""};
+    ProjectedImage latlong =
+        reproject(picture, *projection_from_name("latlong"), 2 * height, height, request.options.threads);
+    environment.latlong = std::make_unique<OwnedRows>(std::move(latlong.pixels));
+    return environment;
+}
+
+/// Reads one picture of a projection: its only chart, or the two halves of a dual paraboloid side by side.
+Result<ProjectedImage> read_other(RowSource& rows, const Projection& projection) {
+    const int charts = projection.charts(), width = rows.width() / charts, height = rows.height();
+    if (rows.width() != charts * height)
+        return Error{fmt::format("image is {} x {}, but {} must be {}", rows.width(), height, projection.name(),
+                                 charts == 2 ? "two squares side by side" : "square"),
+                     "", charts == 2 ? "Front and back may also be two files." : ""};
+    Result<ImageF> picture = read_latlong(rows);
+    if (!picture) return picture.error();
+    if (charts == 1) return ProjectedImage{projection, *std::move(picture)};
+    ImageF stacked(width, height * charts, 3);
+    for (int c = 0; c < charts; ++c)
+        for (int y = 0; y < height; ++y) std::copy_n(picture->at(c * width, y), 3 * width, stacked.row(c * height + y));
+    return ProjectedImage{projection, std::move(stacked)};
+}
+
+/// Front and back of a dual paraboloid.
+Result<Environment> open_halves(const std::vector<std::filesystem::path>& files, const Request& request) {
+    Environment environment;
+    ImageF stacked;
+    for (int c = 0; c < 2; ++c) {
+        const std::filesystem::path& file = files[std::size_t(c)];
+        auto image = open_file(file, request.options);
+        if (!image) return image.error();
+        const ImageFacts& facts = (*image)->facts();
+        if (facts.width != facts.height)
+            return Error{
+                fmt::format("image is {} x {}, but half a dual paraboloid must be square", facts.width, facts.height),
+                file.string(), ""};
+        if (c == 0) {
+            environment = begin_environment(file, facts);
+            stacked = ImageF(facts.width, 2 * facts.width, 3);
+        } else if (facts.width != stacked.width()) {
+            return Error{fmt::format("image is {} x {}, but {} is {} x {}", facts.width, facts.height,
+                                     files[0].filename().string(), stacked.width(), stacked.width()),
+                         file.string(), "Both halves must have one size."};
+        }
+        const int size = stacked.width();
+        if (const auto read = radiance_of(environment, file, std::move(*image), request, false)
+                                  ->read(stacked.view().rows(c * size, size));
+            !read)
+            return read.error();
+    }
+    return finish_other(std::move(environment), {*request.other, std::move(stacked)}, request);
+}
+
+/// KTX2, KTX and DDS hold cubes as the engines load them.
+Result<Environment> open_texture(const std::filesystem::path& file, const std::string& container,
+                                 const Request& request) {
+    if (const std::string& projection = request.options.projection; projection != "auto")
+        return Error{"a texture's projection is known: leave " + projection + " out", "--projection", ""};
+    Environment environment;
+    environment.file = file;
+    environment.format = container;
+    environment.report = std::make_shared<RepairReport>();
+    Result<Cubemap> cube =
+        read_cube_texture(file, request.options.max_bytes, request.scale, *environment.report, request.options.decode);
+    if (!cube) return cube.error();
+    environment.width = environment.height = cube->size();
+    return finish_cube(std::move(environment), std::move(*cube), request);
+}
+
+/// A matrix that turns directions as the unit quaternion x, y, z, w does.
+Mat3 turn_of(const std::array<float, 4>& q) {
+    const Affine turn = affine_of_trs({}, q, {1, 1, 1});
+    return Mat3{{Vec3d(turn.x), Vec3d(turn.y), Vec3d(turn.z)}}.transposed();
+}
+
+/// The light that a glTF file brings with it.
+Result<Environment> open_gltf_light(const std::filesystem::path& file, const Request& request) {
+    if (const std::string& projection = request.options.projection; projection != "auto")
+        return Error{"a glTF file's light is a cube: leave " + projection + " out", "--projection", ""};
+    Environment environment;
+    environment.file = file;
+    environment.format = "glTF EXT_lights_image_based";
+    environment.report = std::make_shared<RepairReport>();
+    auto light = read_gltf_environment(file, request.options.max_bytes, request.scale, *environment.report);
+    if (!light) return light.error();
+    environment.width = environment.height = light->cube.size();
+    Environment finished = finish_cube(std::move(environment), std::move(light->cube), request);
+    // Light turned by R arrives from d if it came from R^T d before.
+    finished.world_to_source = turn_of(light->rotation).transposed() * finished.world_to_source;
+    return finished;
+}
+
+Result<Environment> open_picture(const std::filesystem::path& file, const Request& request) {
+    auto bytes = FileBytes::open(file, request.options.max_bytes);
+    if (!bytes) return bytes.error();
+    if (const std::string container = texture_container((*bytes)->bytes()); !container.empty())
+        return open_texture(file, container, request);
+    if (may_be_gltf_image_light((*bytes)->bytes())) return open_gltf_light(file, request);
+    auto image = open_image_reader(std::move(*bytes), reader_options(request.options));
+    if (!image) return image.error();
+    const ImageFacts& facts = (*image)->facts();
+    if (request.other) {
+        Environment environment = begin_environment(file, facts);
+        const auto rows = radiance_of(environment, file, std::move(*image), request, false);
+        Result<ProjectedImage> picture = read_other(*rows, *request.other);
+        if (!picture) return picture.error();
+        return finish_other(std::move(environment), *std::move(picture), request);
+    }
+    const auto layout = choose_layout(facts, request.options.projection);
+    if (!layout) return layout.error();
+    Environment environment = begin_environment(file, facts);
+    if (!*layout) return open_latlong(std::move(environment), std::move(*image), request);
+
+    const bool strip = **layout != CubeLayout::horizontal_cross && **layout != CubeLayout::vertical_cross;
+    const int size = strip ? std::min(facts.width, facts.height) : std::max(facts.width, facts.height) / 4;
+    if (const auto fits = check_cube_memory(size, request.options.max_bytes); !fits) return fits.error();
+    const auto rows = radiance_of(environment, file, std::move(*image), request, false);
+    Result<Cubemap> cube = read_cube_picture(*rows, **layout);
+    if (!cube) return cube.error();
+    return finish_cube(std::move(environment), std::move(*cube), request);
+}
+
+Result<Environment> open_faces(const std::vector<std::filesystem::path>& files, const Request& request) {
+    if (const std::string& projection = request.options.projection; projection != "auto" && projection != "cube-faces")
+        return Error{"six files are the faces of a cube, not " + projection, "--projection", ""};
+    const auto faces = cube_faces_by_name(files);
+    if (!faces) return faces.error();
+    Environment environment;
+    Cubemap cube;
+    for (int f = 0; f < 6; ++f) {
+        const std::filesystem::path& file = (*faces)[std::size_t(f)];
+        auto image = open_file(file, request.options);
+        if (!image) return image.error();
+        const ImageFacts& facts = (*image)->facts();
+        if (facts.width != facts.height)
+            return Error{
+                fmt::format("image is {} x {}, but a face of a cube must be square", facts.width, facts.height),
+                file.string(), ""};
+        if (f == 0) {
+            if (const auto fits = check_cube_memory(facts.width, request.options.max_bytes); !fits) return fits.error();
+            environment = begin_environment(file, facts);
+            cube = Cubemap(facts.width);
+        } else if (facts.width != cube.size()) {
+            return Error{fmt::format("image is {} x {}, but {} is {} x {}", facts.width, facts.height,
+                                     (*faces)[0].filename().string(), cube.size(), cube.size()),
+                         file.string(), "The faces of a cube must have one size."};
+        }
+        if (const auto read = radiance_of(environment, file, std::move(*image), request, false)->read(cube.face(f));
+            !read)
+            return read.error();
+    }
+    // Six files of a kind say the same things.
+    std::vector<std::string>& warnings = environment.report->warnings;
+    std::sort(warnings.begin(), warnings.end());
+    warnings.erase(std::unique(warnings.begin(), warnings.end()), warnings.end());
+    return finish_cube(std::move(environment), std::move(cube), request);
+}
+
+}  // namespace
+
+Result<Environment> open_environment(const std::vector<std::filesystem::path>& files,
+                                     const EnvironmentOptions& options) {
+    const Result<Request> request = check_options(options);
+    if (!request) return request.error();
+    if (files.size() == 6) return open_faces(files, *request);
+    if (files.size() == 2 && request->other && request->other->charts() == 2) return open_halves(files, *request);
+    if (files.size() != 1)
+        return Error{fmt::format("{} files: an environment is one image or the six faces of a cube", files.size()), "",
+                     ""};
+    if (std::error_code ignored; std::filesystem::is_directory(files[0], ignored)) {
+        const auto faces = cube_faces_in_folder(files[0]);
+        if (faces.size() != 6)
+            return Error{fmt::format("is a folder with {} files named as faces of a cube, not 6", faces.size()),
+                         files[0].string(), ""};
+        return open_faces(faces, *request);
+    }
+    Result<Environment> environment = open_picture(files[0], *request);
+    if (!environment) return environment.error().at(files[0].string());
+    return environment;
+}
+
+}  // namespace domelight

@@ -1,0 +1,70 @@
+#include "texture/container/screen_texels.h"
+
+#include "texture/block/bc123.h"
+#include "texture/texel/half.h"
+#include "io/picture/screen_curve.h"
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+namespace domelight {
+
+namespace {
+
+using Rgba = std::array<std::uint8_t, 4>;
+
+/// Calls `use(x, y, texel)` for every texel of an image.
+template <typename Use>
+void for_texels(const ScreenTexels& texels, const std::uint8_t* stored, int width, int height, Use use) {
+    if (texels.kind == ScreenTexels::Kind::bytes) {
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x, stored += texels.bytes) {
+                Rgba texel;
+                for (std::size_t c = 0; c < 4; ++c) texel[c] = texels.channel[c] < 0 ? 255 : stored[texels.channel[c]];
+                use(x, y, texel);
+            }
+        return;
+    }
+    const bool bc1 = texels.kind == ScreenTexels::Kind::bc1;
+    for (int top = 0; top < height; top += 4)
+        for (int left = 0; left < width; left += 4, stored += bc1 ? 8 : 16) {
+            const Rgba8Block block = bc1                                      ? decode_bc1(stored)
+                                     : texels.kind == ScreenTexels::Kind::bc2 ? decode_bc2(stored)
+                                                                              : decode_bc3(stored);
+            for (int y = top; y < std::min(top + 4, height); ++y)
+                for (int x = left; x < std::min(left + 4, width); ++x)
+                    use(x, y, block[std::size_t((y - top) * 4 + x - left)]);
+        }
+}
+
+}  // namespace
+
+Result<Encoding> screen_encoding(const std::string& decode) {
+    if (decode == "auto" || decode == "srgb" || decode == "gamma22" || decode == "linear") return Encoding::rgba16f;
+    const auto encoding = encoding_from_name(decode);
+    if (encoding && (*encoding == Encoding::rgbm || *encoding == Encoding::rgbd || *encoding == Encoding::rgbp))
+        return *encoding;
+    return Error{"unknown decoding \"" + decode + "\"", "--decode",
+                 "Accepted: auto, srgb, gamma22, linear, rgbm, rgbd, rgbp."};
+}
+
+void decode_screen_texels(const ScreenTexels& texels, const std::string& decode, const std::uint8_t* stored, int width,
+                          int height, std::uint8_t* out) {
+    const auto encoding = screen_encoding(decode);
+    if (encoding && *encoding != Encoding::rgba16f) {
+        for_texels(texels, stored, width, height, [&](int x, int y, const Rgba& texel) {
+            std::memcpy(out + 4 * (std::size_t(y) * std::size_t(width) + std::size_t(x)), texel.data(), 4);
+        });
+        return;
+    }
+    std::vector<std::uint16_t> half;
+    for (const float v : screen_curve(decode, 256)) half.push_back(half_from_float(v));
+    for_texels(texels, stored, width, height, [&](int x, int y, const Rgba& texel) {
+        const std::uint16_t values[4] = {half[texel[0]], half[texel[1]], half[texel[2]],
+                                         half_from_float(float(texel[3]) / 255)};
+        std::memcpy(out + 8 * (std::size_t(y) * std::size_t(width) + std::size_t(x)), values, 8);
+    });
+}
+
+}  // namespace domelight
