@@ -57,8 +57,8 @@ def make(program, folder):
     run("sky", "--axes", "--height", "16", "-o", folder / "axes.png")
     for encoding in ("rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "bc6h", "rgbm"):
         bake(encoding, "--size", "8", "--levels", "2", "--encoding", encoding)
-    for target in ("babylon", "gltf", "playcanvas"):
-        run("bake", folder / "sky.hdr", "-o", folder / target, "--for", target, "--no-preview", "--no-hashes", *([] if target == "playcanvas" else ["--size", "8"]))
+    for engine in ("babylon", "gltf", "playcanvas"):
+        run("bake", folder / "sky.hdr", "-o", folder / engine, "--for", engine, "--no-preview", "--no-hashes", *([] if engine == "playcanvas" else ["--size", "8"]))
     for container in ("ktx1", "dds", "dds9", "exr", "exr-mip", "hdr"):
         bake(container, "--size", "8", "--levels", "2", "--format", container)
     for container in ("ktx1", "dds"):

@@ -21,6 +21,6 @@ test_packages=("${build_packages[@]}" doctest-dev libbenchmark-dev python3
 # ./test --fuzz: libFuzzer comes with clang.
 fuzz_packages=("${test_packages[@]}" clang-19 libclang-rt-19-dev)
 # tests/engines/browser: the browser that runs the engines, Node to drive it, and OpenEXR's own tools.
-consumer_packages=(chromium nodejs npm openexr)
+engine_packages=(chromium nodejs npm openexr)
 # bench/peers.py: the program that is measured beside ours.
 peer_packages=(libfilament-tools)

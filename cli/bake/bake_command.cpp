@@ -1,5 +1,5 @@
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/bake/bake.h"
+#include "domelight/io/environment/open_environment.h"
 
 #include "cli/bake/bake_report.h"
 #include "cli/commands.h"
@@ -17,7 +17,7 @@ namespace {
 /// The words of the command line before they become BakeOptions.
 struct BakeWords {
     CommonOptions common;
-    std::vector<std::string> environments, targets;
+    std::vector<std::string> environments, engines;
     std::string output, lobe, method = "exact", riemann_steps, layout, encoding, encoding_quality, format,
                               cube_picture = "cross";
     std::string sh_window = "none", brdf_g = "correlated", brdf_form;
@@ -27,16 +27,16 @@ struct BakeWords {
     EnvironmentOptions environment;
 };
 
-std::string target_list() {
+std::string engine_list() {
     std::string text = "whose convention to bake in; several allowed (generic):";
-    for (const Target& target : targets()) text += " " + target.name + " = " + target.consumer + ";";
+    for (const Engine& engine : engines()) text += " " + engine.name + " = " + engine.loads + ";";
     text.back() = '.';
     return text;
 }
 
-std::vector<std::string> target_names() {
+std::vector<std::string> engine_names() {
     std::vector<std::string> names;
-    for (const Target& target : targets()) names.push_back(target.name);
+    for (const Engine& engine : engines()) names.push_back(engine.name);
     return names;
 }
 
@@ -46,12 +46,12 @@ void declare(Arguments& a, BakeWords& w) {
         "environments; without one the built-in sky, eight stops down; six faces (px nx py ny pz nz) are one cube");
     a.group("What to bake");
     a.text("-o,--output", "DIR", w.output,
-           "folder for the results; several environments go to DIR/NAME, several targets to DIR/TARGET");
-    a.choices("--for", w.targets, target_names(), target_list());
+           "folder for the results; several environments go to DIR/NAME, several engines to DIR/ENGINE");
+    a.choices("--for", w.engines, engine_names(), engine_list());
     a.choice("--layout", w.layout, {"cube", "latlong"}, "cube maps, or lat-long maps with levels (cube)");
-    a.integer("--size", "N", w.size, "level 0: cube face size, or height of the lat-long map (the target's)");
-    a.integer("--levels", "N", w.levels, "number of levels, each half the size (the target's)");
-    a.numbers("--roughness", "r0,r1,...", w.roughness, "roughness of each level, 0 to 1 (the target's curve)");
+    a.integer("--size", "N", w.size, "level 0: cube face size, or height of the lat-long map (the engine's)");
+    a.integer("--levels", "N", w.levels, "number of levels, each half the size (the engine's)");
+    a.numbers("--roughness", "r0,r1,...", w.roughness, "roughness of each level, 0 to 1 (the engine's curve)");
     a.choice("--lobe", w.lobe, {"ggx", "charlie", "phong", "phong-plain"},
              "ggx; charlie (sheen); phong, the modified BRDF's (n + 2) cos^(n+1); phong-plain, (n + 1) cos^n (ggx)");
     a.numbers("--exponents", "n0,n1,...", w.exponents,
@@ -61,27 +61,27 @@ void declare(Arguments& a, BakeWords& w) {
     a.integer("--samples", "N", w.samples, "montecarlo: samples a texel (1024)");
     a.text("--riemann-steps", "KxJ", w.riemann_steps,
            "riemann: polar and azimuthal steps over the hemisphere (64x256)");
-    a.integer("--irradiance-size", "N", w.irradiance_size, "face size of the irradiance cube (the target's)");
+    a.integer("--irradiance-size", "N", w.irradiance_size, "face size of the irradiance cube (the engine's)");
     a.integer("--sh-bands", "N", w.sh_bands, "bands of spherical harmonics, 1 to 64 (3)");
     a.choice("--sh-window", w.sh_window, {"none", "hann", "lanczos"}, "window against their ringing (none)");
     a.choice("--brdf-g", w.brdf_g, {"correlated", "smith", "karis"}, "masking of the BRDF table (correlated)");
     a.choice("--brdf-form", w.brdf_form, {"none", "scale-bias", "multiscatter", "scale-bias-charlie"},
-             "its channels (the target's)");
+             "its channels (the engine's)");
     a.integer("--brdf-size", "N", w.brdf_size, "its width and height (128)");
     a.group("How to store it");
     a.choice("--encoding", w.encoding,
              {"rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "bc6h", "uastc-hdr", "astc4x4-hdr", "astc6x6-hdr", "rgbm",
               "rgbd", "rgbp"},
-             "texels of the maps (the target's)");
+             "texels of the maps (the engine's)");
     a.choice("--encoding-quality", w.encoding_quality, {"fast", "default", "high", "exhaustive"},
              "how hard bc6h, uastc-hdr and astc search for the best block; exhaustive takes minutes (default)");
     a.choice("--format", w.format, {"ktx2", "ktx1", "dds", "dds9", "exr", "exr-mip", "hdr"},
              "container of the maps; dds9 is DDS with the old header; exr and hdr hold one level a file, exr-mip all "
-             "of them with OpenEXR's envmap attribute (the target's)");
+             "of them with OpenEXR's envmap attribute (the engine's)");
     a.choice("--cube-picture", w.cube_picture, {"cross", "strip", "faces"},
              "a cube in exr and hdr: one picture or six (cross)");
     a.flag("--zstd", w.zstd, "compress ktx2 without loss");
-    a.flag("--no-zstd", w.no_zstd, "do not, even for a target that does");
+    a.flag("--no-zstd", w.no_zstd, "do not, even for an engine that does");
     a.flag("--brdf-float", w.brdf_float, "32-bit floats in the BRDF table");
     a.flag("--no-preview", w.no_preview, "no preview.png");
     a.flag("--no-hashes", w.no_hashes, "no SHA-256 in the manifest");
@@ -116,7 +116,7 @@ Result<BakeOptions> bake_options(const BakeWords& w) {
     static const std::map<std::string, BrdfG> maskings{
         {"correlated", BrdfG::correlated}, {"smith", BrdfG::smith}, {"karis", BrdfG::karis}};
     BakeOptions o;
-    if (!w.targets.empty()) o.targets = w.targets;
+    if (!w.engines.empty()) o.engines = w.engines;
     if (!w.layout.empty()) o.layout = w.layout == "cube" ? Layout::cube : Layout::latlong;
     o.size = w.size;
     o.levels = w.levels;

@@ -37,19 +37,19 @@ void print_summary(const BakeOutcome& outcome) {
         fmt::print("{}: up to date\n", outcome.folder.string());
         return;
     }
-    for (const TargetReport& target : outcome.report.targets) {
-        fmt::print("{}: {} for {}\n", target.folder.string(),
-                   outcome.environment.empty() ? "the built-in sky" : outcome.environment.front(), target.target);
-        for (const BakedMap& map : target.maps) print_map(map);
-        fmt::print("  {:<28} harmonics: {} bands; E is off by {} RMS, {} at most\n", target.sh.files.front().file,
-                   target.sh.bands, percent(target.sh.rms_error), percent(target.sh.max_error));
-        if (!target.brdf.file.file.empty())
-            fmt::print("  {:<28} BRDF table: {}^2, {}, {}\n", target.brdf.file.file, target.brdf.size,
-                       target.brdf.encoding, brdf_form_name(target.brdf.form));
-        if (target.preview) fmt::print("  {:<28} a picture of it all\n", target.preview->file);
+    for (const EngineReport& engine : outcome.report.engines) {
+        fmt::print("{}: {} for {}\n", engine.folder.string(),
+                   outcome.environment.empty() ? "the built-in sky" : outcome.environment.front(), engine.name);
+        for (const BakedMap& map : engine.maps) print_map(map);
+        fmt::print("  {:<28} harmonics: {} bands; E is off by {} RMS, {} at most\n", engine.sh.files.front().file,
+                   engine.sh.bands, percent(engine.sh.rms_error), percent(engine.sh.max_error));
+        if (!engine.brdf.file.file.empty())
+            fmt::print("  {:<28} BRDF table: {}^2, {}, {}\n", engine.brdf.file.file, engine.brdf.size,
+                       engine.brdf.encoding, brdf_form_name(engine.brdf.form));
+        if (engine.preview) fmt::print("  {:<28} a picture of it all\n", engine.preview->file);
         fmt::print("  {:<28} what everything is\n", "manifest.json");
-        for (const Target& t : targets())
-            if (t.name == target.target && !t.note.empty()) fmt::print("  note: {}\n", t.note);
+        for (const Engine& e : engines())
+            if (e.name == engine.name && !e.note.empty()) fmt::print("  note: {}\n", e.note);
     }
     fmt::print("{:.2f} s\n", outcome.seconds);
 }
@@ -70,11 +70,11 @@ void print_json(const std::vector<BakeOutcome>& outcomes) {
         bake["stages"] = Json::array();
         for (const StageTime& s : o.report.stages)
             bake["stages"].push_back({{"stage", s.stage}, {"seconds", s.seconds}, {"cpu_seconds", s.cpu_seconds}});
-        bake["targets"] = Json::array();
-        for (const TargetReport& t : o.report.targets)
-            bake["targets"].push_back({{"target", t.target},
-                                       {"folder", t.folder.string()},
-                                       {"manifest", Json::parse(t.manifest, nullptr, false)}});
+        bake["engines"] = Json::array();
+        for (const EngineReport& e : o.report.engines)
+            bake["engines"].push_back({{"engine", e.name},
+                                       {"folder", e.folder.string()},
+                                       {"manifest", Json::parse(e.manifest, nullptr, false)}});
         bakes.push_back(bake);
     }
     fmt::print("{}\n",

@@ -33,7 +33,7 @@ void print_summary(const BakeOutcome& outcome);
 /// {"version", "bakes": [{"environment": [..], "folder", "status": "baked" | "up to date" | "failed", "error",
 /// "seconds", "band_limit",
 ///  "negative_texels_set_to_0", "warnings": [..], "stages": [{"stage", "seconds", "cpu_seconds"}],
-///  "targets": [{"target", "folder", "manifest": {..}}]}]}
+///  "engines": [{"engine", "folder", "manifest": {..}}]}]}
 void print_json(const std::vector<BakeOutcome>& outcomes);
 
 }  // namespace domelight::cli

@@ -1,9 +1,9 @@
 #include "cli/compare/compare_bake.h"
 
-#include "domelight/image/row_source.h"
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/bake/bake.h"
 #include "domelight/compare/bake_audit.h"
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/texture/texture.h"
 
 #include "cli/console/environment_options.h"
@@ -86,14 +86,14 @@ Result<Bake> read_pictures(const std::vector<std::string>& words, int threads) {
 Result<Bake> read_bake(const BakeWords& w, int threads) {
     auto bake =
         w.bake.size() == 1 && is_texture_file(w.bake[0]) ? read_chain(w.bake[0]) : read_pictures(w.bake, threads);
-    if (!bake || w.target.empty()) return bake;
-    const auto target = find_target(w.target);
-    if (!target) return target.error();
-    if (!(*target)->roughness) return Error{w.target + " filters by itself: it has no roughness curve", "--for", ""};
+    if (!bake || w.engine.empty()) return bake;
+    const auto engine = find_engine(w.engine);
+    if (!engine) return engine.error();
+    if (!(*engine)->roughness) return Error{w.engine + " filters by itself: it has no roughness curve", "--for", ""};
     const int count = int(bake->levels.size());
     for (int l = 0; l < count; ++l)
-        bake->levels[std::size_t(l)].roughness = (*target)->roughness(l, count, bake->levels[0].cube.size());
-    bake->stated_by = w.target + "'s curve";
+        bake->levels[std::size_t(l)].roughness = (*engine)->roughness(l, count, bake->levels[0].cube.size());
+    bake->stated_by = w.engine + "'s curve";
     return bake;
 }
 
@@ -195,12 +195,12 @@ void print_text(const BakeWords& w, const Bake& bake, const BakeAudit& audit, co
 
 void add_bake_options(Arguments& a, BakeWords& w) {
     std::vector<std::string> names;
-    for (const Target& target : targets()) names.push_back(target.name);
+    for (const Engine& engine : engines()) names.push_back(engine.name);
     a.group("A bake against its source");
     a.texts("--bake", "FILE", w.bake,
             "a baked specular cube: KTX2, KTX or DDS with its levels, or one cube picture or folder of faces a level");
     a.texts("--env", "SRC", w.env, "the environment it was baked from");
-    a.choice("--for", w.target, names,
+    a.choice("--for", w.engine, names,
              "whose curve says which roughness a level should have (a Domelight file says it itself)");
     a.integer("--texels", "N", w.texels, "looked at in each level (6144)");
     add_environment_options(a, w.environment);

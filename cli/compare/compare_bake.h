@@ -13,7 +13,7 @@ namespace domelight::cli {
 
 struct BakeWords {
     std::vector<std::string> bake, env;
-    std::string target;
+    std::string engine;
     EnvironmentOptions environment;
     std::optional<int> texels;
 };

@@ -169,7 +169,7 @@ def draw_world():
 
 
 def draw_levels():
-    """Which roughness is seen when a level chain of linear roughness is read at each of two levels, and the curves of other consumers."""
+    """Which roughness is seen when a level chain of linear roughness is read at each of two levels, and the curves of other engines."""
     sheet = Sheet(900, 360)
     r = np.linspace(0, 1, 401)
     levels = 5

@@ -1,8 +1,8 @@
-#include "domelight/io/file/atomic_file.h"
 #include "domelight/bake/bake.h"
 
-#include "domelight/io/write_image.h"
 #include "domelight/base/parallel.h"
+#include "domelight/io/file/atomic_file.h"
+#include "domelight/io/write_image.h"
 
 #include "bake/filter_job.h"
 #include "bake/manifest.h"
@@ -62,16 +62,16 @@ std::string per_level(const std::vector<LevelPlan>& levels, Number number) {
 }
 
 /// In one line, for a file's metadata.
-std::string map_convention(const TargetPlan& plan, const BakedMap& map) {
-    const Target& target = *plan.target;
+std::string map_convention(const EnginePlan& plan, const BakedMap& map) {
+    const Engine& engine = *plan.engine;
     if (!map.projection.empty()) return projection_convention(map.projection);
-    if (map.layout == Layout::latlong) return projection_convention("latlong/" + target.latlong);
+    if (map.layout == Layout::latlong) return projection_convention("latlong/" + engine.latlong);
     return fmt::format("texture(cube, {}) is the light from world direction {}, +Y up",
-                       cube_mirror_direction(target.mirror), target.mirror == CubeMirror::none ? "d" : "(x, y, z)");
+                       cube_mirror_direction(engine.mirror), engine.mirror == CubeMirror::none ? "d" : "(x, y, z)");
 }
 
 /// What a texture file says about itself, whatever becomes of the manifest.
-std::map<std::string, std::string> map_metadata(const TargetPlan& plan, const BakedMap& map,
+std::map<std::string, std::string> map_metadata(const EnginePlan& plan, const BakedMap& map,
                                                 const std::vector<LevelPlan>& levels) {
     std::map<std::string, std::string> metadata{{"domelight.version", version()},
                                                 {"domelight.quantity", quantity_name(map.quantity)}};
@@ -102,14 +102,14 @@ std::vector<BakedLevel> baked_levels(const std::vector<LevelPlan>& plans) {
     return levels;
 }
 
-/// Bakes one target's folder, after the filtering.
-class TargetBake {
+/// Bakes one engine's folder, after the filtering.
+class EngineBake {
   public:
-    TargetBake(TargetReport& report, const TargetPlan& plan, const BakeOptions& options, const std::string& stem,
+    EngineBake(EngineReport& report, const EnginePlan& plan, const BakeOptions& options, const std::string& stem,
                Staging staging)
         : report_(report),
           plan_(plan),
-          target_(*plan.target),
+          engine_(*plan.engine),
           options_(options),
           stem_(stem),
           staging_(std::move(staging)),
@@ -155,31 +155,31 @@ class TargetBake {
 
   private:
     void write_light(FilterJob::Maps& maps) {
-        if (target_.environment_only) {
-            write_panorama(target_.specular_file, maps.specular.front().latlong);
+        if (engine_.environment_only) {
+            write_panorama(engine_.specular_file, maps.specular.front().latlong);
         } else {
-            write("specular", target_.specular_file, plan_.lobe, Quantity::radiance, plan_.specular, maps.specular,
+            write("specular", engine_.specular_file, plan_.lobe, Quantity::radiance, plan_.specular, maps.specular,
                   plan_.encoding, &maps.irradiance_over_pi);
         }
         if (!plan_.sheen.empty())
-            write("sheen", target_.sheen_file, Lobe::charlie, Quantity::radiance, plan_.sheen, maps.sheen,
+            write("sheen", engine_.sheen_file, Lobe::charlie, Quantity::radiance, plan_.sheen, maps.sheen,
                   plan_.encoding);
-        if (!target_.skybox_file.empty() && plan_.specular.front().spec.mirror)
-            write("skybox", target_.skybox_file, plan_.lobe, Quantity::radiance, {plan_.specular.front()},
+        if (!engine_.skybox_file.empty() && plan_.specular.front().spec.mirror)
+            write("skybox", engine_.skybox_file, plan_.lobe, Quantity::radiance, {plan_.specular.front()},
                   std::span(maps.specular).first(1), plan_.encoding);
-        if (!target_.irradiance_file.empty()) write_irradiance(maps.irradiance_over_pi);
-        if (!target_.panorama_file.empty()) write_panorama(target_.panorama_file, maps.panorama);
+        if (!engine_.irradiance_file.empty()) write_irradiance(maps.irradiance_over_pi);
+        if (!engine_.panorama_file.empty()) write_panorama(engine_.panorama_file, maps.panorama);
     }
 
     void write_irradiance(const FilteredMap& over_pi) {
         FilteredMap map = over_pi;
-        if (target_.irradiance_quantity == Quantity::irradiance)
+        if (engine_.irradiance_quantity == Quantity::irradiance)
             for (float& value : map.pixels()) value = float(value * k_pi);
         LevelPlan level;
         level.spec.size = plan_.irradiance_size;
-        const bool own_encoding = !options_.encoding && plan_.container == target_.container;
-        write("irradiance", target_.irradiance_file, Lobe::ggx, target_.irradiance_quantity, {level}, {&map, 1},
-              own_encoding ? target_.irradiance_encoding : plan_.encoding);
+        const bool own_encoding = !options_.encoding && plan_.container == engine_.container;
+        write("irradiance", engine_.irradiance_file, Lobe::ggx, engine_.irradiance_quantity, {level}, {&map, 1},
+              own_encoding ? engine_.irradiance_encoding : plan_.encoding);
     }
 
     void write(const char* role, const std::string& name, Lobe lobe, Quantity quantity,
@@ -192,29 +192,29 @@ class TargetBake {
         map.layout = plan_.layout;
         map.levels = baked_levels(levels);
         MapFormat format = map_format(name, encoding);
-        format.mirror = target_.mirror;
+        format.mirror = engine_.mirror;
         format.latlong_quarters = plan_.latlong_quarters;
         format.irradiance_over_pi = irradiance_over_pi;
         format.radiance_sh = report_.sh.radiance;
         format.metadata = map_metadata(plan_, map, levels);
-        if (target_.sh_metadata && map.role == "specular") format.metadata["sh"] = filament_sh_metadata(report_.sh);
+        if (engine_.sh_metadata && map.role == "specular") format.metadata["sh"] = filament_sh_metadata(report_.sh);
         write_map(map, maps, format, options_, staging_, background_);
     }
 
-    /// The environment as one image, in the target's projection.
+    /// The environment as one image, in the engine's projection.
     void write_panorama(const std::string& name, const ImageF& latlong) {
         BakedMap& map = report_.maps.emplace_back();
         map.role = "environment";
         map.layout = Layout::latlong;
-        map.projection = target_.panorama;
+        map.projection = engine_.panorama;
         const std::vector<LevelPlan> level{LevelPlan{LevelSpec{plan_.panorama_size, true, {}}}};
         map.levels = baked_levels(level);
-        auto projected = project_panorama(latlong, target_.panorama, plan_.panorama_size, options_.threads);
+        auto projected = project_panorama(latlong, engine_.panorama, plan_.panorama_size, options_.threads);
         if (!projected) return background_.done(projected.error());
         FilteredMap image;
         image.latlong = *std::move(projected);
-        MapFormat format = map_format(name, target_.environment_only ? plan_.encoding : Encoding::rgba16f);
-        if (!target_.environment_only) format.container = Container::exr;
+        MapFormat format = map_format(name, engine_.environment_only ? plan_.encoding : Encoding::rgba16f);
+        if (!engine_.environment_only) format.container = Container::exr;
         format.metadata = map_metadata(plan_, map, level);
         write_map(map, {&image, 1}, format, options_, staging_, background_);
     }
@@ -231,8 +231,8 @@ class TargetBake {
 
     void write_sh() {
         write_small(report_.sh.files, "sh.json", sh_json(report_.sh));
-        if (!target_.sh_text_file.empty())
-            write_small(report_.sh.files, target_.sh_text_file, filament_sh_text(report_.sh));
+        if (!engine_.sh_text_file.empty())
+            write_small(report_.sh.files, engine_.sh_text_file, filament_sh_text(report_.sh));
     }
 
     void write_small(std::vector<BakedFile>& files, const std::string& name, const std::string& text) {
@@ -258,7 +258,7 @@ class TargetBake {
         const Encoding encoding = options_.brdf_float ? (three ? Encoding::rgba32f : Encoding::rg32f)
                                                       : (three ? Encoding::rgba16f : Encoding::rg16f);
         brdf.encoding = encoding_name(encoding);
-        brdf.file.file = fmt::format("{}.ktx2", target_.brdf_file.empty() ? "brdf" : target_.brdf_file);
+        brdf.file.file = fmt::format("{}.ktx2", engine_.brdf_file.empty() ? "brdf" : engine_.brdf_file);
         Texture texture =
             encode_table(plan_.brdf_form == BrdfForm::multiscatter ? brdf_table_multiscatter(brdf_) : brdf_, encoding);
         texture.metadata = {
@@ -282,9 +282,9 @@ class TargetBake {
         return table.size == embedded.width() && table.g == BrdfG::correlated ? embedded : brdf_table(table);
     }
 
-    TargetReport& report_;
-    const TargetPlan& plan_;
-    const Target& target_;
+    EngineReport& report_;
+    const EnginePlan& plan_;
+    const Engine& engine_;
     const BakeOptions& options_;
     const std::string& stem_;
     Staging staging_;
@@ -318,16 +318,16 @@ std::string stem_of(const std::vector<std::filesystem::path>& files) {
     return files.empty() ? "sky" : files.front().stem().string();
 }
 
-Result<std::vector<TargetPlan>> plan_all(const BakeOptions& options) {
+Result<std::vector<EnginePlan>> plan_all(const BakeOptions& options) {
     if (auto ok = check_bake_options(options); !ok) return ok.error();
-    std::vector<TargetPlan> plans;
-    for (const std::string& name : options.targets) plans.push_back(*plan_target(**find_target(name), options));
+    std::vector<EnginePlan> plans;
+    for (const std::string& name : options.engines) plans.push_back(*plan_engine(**find_engine(name), options));
     return plans;
 }
 
-std::filesystem::path target_folder(const std::filesystem::path& folder, const BakeOptions& options,
-                                    const Target& target) {
-    return options.targets.size() > 1 ? folder / target.name : folder;
+std::filesystem::path engine_folder(const std::filesystem::path& folder, const BakeOptions& options,
+                                    const Engine& engine) {
+    return options.engines.size() > 1 ? folder / engine.name : folder;
 }
 
 void add_warnings(BakeReport& report, const Environment& environment, const BakeOptions& options) {
@@ -340,13 +340,13 @@ void add_warnings(BakeReport& report, const Environment& environment, const Bake
         report.warnings.push_back(
             fmt::format("--method {} works on lat-long images: the cube was resampled to one first",
                         bake_method_name(options.method)));
-    for (const TargetReport& target : report.targets)
-        for (const BakedMap& map : target.maps)
+    for (const EngineReport& engine : report.engines)
+        for (const BakedMap& map : engine.maps)
             for (const BakedLevel& level : map.levels)
                 if (level.encoding.clipped_texels)
                     report.warnings.push_back(fmt::format(
                         "{}: {} level {}: {} texels exceed what {} holds; {:.3g} % of the level's energy is lost",
-                        target.target, map.role, level.level, level.encoding.clipped_texels, map.encoding,
+                        engine.name, map.role, level.level, level.encoding.clipped_texels, map.encoding,
                         100 * level.encoding.clipped_energy));
 }
 
@@ -376,20 +376,20 @@ Result<BakeReport> bake(Environment& environment, const BakeOptions& options, co
     report.clamped = job.clamped();
     report.band_limit = job.band_limit();
 
-    report.targets.resize(plans->size());
-    std::vector<std::unique_ptr<TargetBake>> bakes;
-    for (std::size_t t = 0; t < plans->size(); ++t) {
-        const TargetPlan& plan = (*plans)[t];
-        report.targets[t].target = plan.target->name;
-        report.targets[t].folder = target_folder(folder, options, *plan.target);
-        auto staging = Staging::open(report.targets[t].folder);
+    report.engines.resize(plans->size());
+    std::vector<std::unique_ptr<EngineBake>> bakes;
+    for (std::size_t e = 0; e < plans->size(); ++e) {
+        const EnginePlan& plan = (*plans)[e];
+        report.engines[e].name = plan.engine->name;
+        report.engines[e].folder = engine_folder(folder, options, *plan.engine);
+        auto staging = Staging::open(report.engines[e].folder);
         if (!staging) return staging.error();
-        bakes.push_back(std::make_unique<TargetBake>(report.targets[t], plan, options, stem, *std::move(staging)));
-        FilterJob::Maps maps = job.take(t);
-        bakes[t]->start(maps, job.result(t), report.stages);
-        bakes[t]->draw(maps, source.file, report.stages);
-        job.give_back(t, std::move(maps));
-        if (auto ok = bakes[t]->finish_writing(report.stages); !ok) return ok.error();
+        bakes.push_back(std::make_unique<EngineBake>(report.engines[e], plan, options, stem, *std::move(staging)));
+        FilterJob::Maps maps = job.take(e);
+        bakes[e]->start(maps, job.result(e), report.stages);
+        bakes[e]->draw(maps, source.file, report.stages);
+        job.give_back(e, std::move(maps));
+        if (auto ok = bakes[e]->finish_writing(report.stages); !ok) return ok.error();
     }
     {
         const StageClock clock(report.stages, "hash");
@@ -397,8 +397,8 @@ Result<BakeReport> bake(Environment& environment, const BakeOptions& options, co
         if (!source_hash) return source_hash.error();
         source.sha256 = report.source_sha256 = files.empty() ? job.rows_sha256() : *source_hash;
     }
-    for (auto& target : bakes)
-        if (auto ok = target->commit(source, report); !ok) return ok.error();
+    for (auto& engine : bakes)
+        if (auto ok = engine->commit(source, report); !ok) return ok.error();
     add_warnings(report, environment, options);
     return report;
 }
@@ -407,12 +407,12 @@ bool bake_is_up_to_date(const std::vector<std::filesystem::path>& files, const B
                         const std::filesystem::path& folder) {
     const auto plans = plan_all(options);
     if (!plans) return false;
-    for (const TargetPlan& plan : *plans)
-        if (!std::filesystem::exists(target_folder(folder, options, *plan.target) / "manifest.json")) return false;
+    for (const EnginePlan& plan : *plans)
+        if (!std::filesystem::exists(engine_folder(folder, options, *plan.engine) / "manifest.json")) return false;
     const auto hash = sha256_files(files);
     if (!hash) return false;
-    for (const TargetPlan& plan : *plans)
-        if (!manifest_matches(target_folder(folder, options, *plan.target), plan, options, *hash)) return false;
+    for (const EnginePlan& plan : *plans)
+        if (!manifest_matches(engine_folder(folder, options, *plan.engine), plan, options, *hash)) return false;
     return true;
 }
 

@@ -1,7 +1,7 @@
 #include "bake/filter_job.h"
 
-#include "domelight/image/row_source.h"
 #include "domelight/filtering/resample/area_resample.h"
+#include "domelight/image/row_source.h"
 
 #include "bake/tap.h"
 #include "base/sha256.h"
@@ -59,22 +59,22 @@ std::size_t FilterJob::run_of(Layout layout) {
     return runs_.size() - 1;
 }
 
-FilterJob::FilterJob(const std::vector<TargetPlan>& plans) : targets_(plans.size()) {
-    for (std::size_t t = 0; t < plans.size(); ++t) {
-        const TargetPlan& plan = plans[t];
-        Indices& indices = targets_[t];
+FilterJob::FilterJob(const std::vector<EnginePlan>& plans) : engines_(plans.size()) {
+    for (std::size_t e = 0; e < plans.size(); ++e) {
+        const EnginePlan& plan = plans[e];
+        Indices& indices = engines_[e];
         if (plan.panorama_rows) indices.panorama = index_of(panorama_rows_, plan.panorama_rows);
-        indices.panorama_is_level = plan.target->environment_only;
+        indices.panorama_is_level = plan.engine->environment_only;
         if (indices.panorama_is_level) continue;
         indices.run = run_of(plan.layout);
         for (const LevelPlan& level : plan.specular) indices.specular.push_back(runs_[indices.run].add(level.spec));
         for (const LevelPlan& level : plan.sheen) indices.sheen.push_back(runs_[indices.run].add(level.spec));
     }
-    // Where a target only wants the environment, the irradiance serves the harmonics' error alone: its layout does not
+    // Where an engine only wants the environment, the irradiance serves the harmonics' error alone: its layout does not
     // matter.
     if (runs_.empty()) runs_.emplace_back();
-    for (std::size_t t = 0; t < plans.size(); ++t)
-        targets_[t].irradiance = index_of(runs_[targets_[t].run].irradiance_sizes, plans[t].irradiance_size);
+    for (std::size_t e = 0; e < plans.size(); ++e)
+        engines_[e].irradiance = index_of(runs_[engines_[e].run].irradiance_sizes, plans[e].irradiance_size);
 }
 
 FilterOptions FilterJob::Run::options(const Environment& environment, const BakeOptions& options) const {
@@ -183,8 +183,8 @@ void FilterJob::give_back(Run& run, const std::vector<std::size_t>& indices, std
     for (std::size_t i = 0; i < indices.size(); ++i) run.result.specular[indices[i]] = std::move(maps[i]);
 }
 
-FilterJob::Maps FilterJob::take(std::size_t target) {
-    const Indices& indices = targets_[target];
+FilterJob::Maps FilterJob::take(std::size_t engine) {
+    const Indices& indices = engines_[engine];
     Run& run = runs_[indices.run];
     Maps maps;
     maps.specular = take(run, indices.specular);
@@ -199,8 +199,8 @@ FilterJob::Maps FilterJob::take(std::size_t target) {
     return maps;
 }
 
-void FilterJob::give_back(std::size_t target, Maps maps) {
-    const Indices& indices = targets_[target];
+void FilterJob::give_back(std::size_t engine, Maps maps) {
+    const Indices& indices = engines_[engine];
     Run& run = runs_[indices.run];
     if (indices.panorama)
         panoramas_[*indices.panorama] =

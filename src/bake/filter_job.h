@@ -10,25 +10,25 @@
 
 namespace domelight {
 
-/// The maps of several targets as one filter run: what two targets share is computed once.
+/// The maps of several engines as one filter run: what two engines share is computed once.
 class FilterJob {
   public:
-    explicit FilterJob(const std::vector<TargetPlan>& plans);
+    explicit FilterJob(const std::vector<EnginePlan>& plans);
 
     /// Reads the environment once, to its last row, and computes everything.
     Result<void> run(Environment& environment, const BakeOptions& options);
 
-    /// A target's maps, handed out and taken back so that the next target finds them.
+    /// An engine's maps, handed out and taken back so that the next engine finds them.
     struct Maps {
         std::vector<FilteredMap> specular, sheen;
         FilteredMap irradiance_over_pi;
         ImageF panorama;  ///< the environment, lat-long in the default convention
     };
-    Maps take(std::size_t target);
-    void give_back(std::size_t target, Maps maps);
+    Maps take(std::size_t engine);
+    void give_back(std::size_t engine, Maps maps);
 
-    /// Of the run that made a target's maps.
-    const FilterResult& result(std::size_t target) const { return runs_[targets_[target].run].result; }
+    /// Of the run that made an engine's maps.
+    const FilterResult& result(std::size_t engine) const { return runs_[engines_[engine].run].result; }
     std::int64_t clamped() const;
     int band_limit() const;
     /// SHA-256 of the rows that were read, as float32: what stands for the source's hash where there is no file.
@@ -40,7 +40,7 @@ class FilterJob {
         std::vector<std::size_t> specular, sheen;
         std::size_t irradiance = 0;
         std::optional<std::size_t> panorama;
-        bool panorama_is_level = false;  ///< it is the only level, of a target that wants nothing else
+        bool panorama_is_level = false;  ///< it is the only level, of an engine that wants nothing else
     };
     /// All maps of one layout: one analysis of the environment.
     struct Run {
@@ -61,7 +61,7 @@ class FilterJob {
     static void give_back(Run& run, const std::vector<std::size_t>& indices, std::vector<FilteredMap> maps);
 
     std::vector<Run> runs_;
-    std::vector<Indices> targets_;
+    std::vector<Indices> engines_;
     std::vector<int> panorama_rows_;  ///< distinct heights
     std::vector<ImageF> panoramas_;
     std::string rows_sha256_;

@@ -62,11 +62,11 @@ Json environment_json(const EnvironmentOptions& e) {
 }
 
 /// Every option that has a say in the bytes, resolved: two bakes with equal options of equal sources are equal.
-Json options_json(const TargetPlan& plan, const BakeOptions& o) {
-    // The targets of one run share its analysis, whose band limit is the widest that any of their levels needs: the
+Json options_json(const EnginePlan& plan, const BakeOptions& o) {
+    // The engines of one run share its analysis, whose band limit is the widest that any of their levels needs: the
     // last digits of a map depend on its company.
-    Json json{{"for", plan.target->name},
-              {"targets", o.targets},
+    Json json{{"for", plan.engine->name},
+              {"engines", o.engines},
               {"layout", plan.layout == Layout::cube ? "cube" : "latlong"},
               {"size", plan.specular.front().spec.size},
               {"levels", plan.specular.size()},
@@ -168,13 +168,13 @@ Json brdf_json(const BrdfReport& brdf) {
     return json;
 }
 
-Json convention_json(const TargetPlan& plan) {
-    const Target& target = *plan.target;
-    if (target.environment_only) return latlong_text(target.panorama);
-    if (plan.layout == Layout::latlong) return latlong_text("latlong/" + target.latlong);
-    if (target.mirror == CubeMirror::none) return k_cube_convention;
-    return fmt::format("{}; mirrored for {}, which reads texture(cube, {})", k_cube_convention, target.name,
-                       cube_mirror_direction(target.mirror));
+Json convention_json(const EnginePlan& plan) {
+    const Engine& engine = *plan.engine;
+    if (engine.environment_only) return latlong_text(engine.panorama);
+    if (plan.layout == Layout::latlong) return latlong_text("latlong/" + engine.latlong);
+    if (engine.mirror == CubeMirror::none) return k_cube_convention;
+    return fmt::format("{}; mirrored for {}, which reads texture(cube, {})", k_cube_convention, engine.name,
+                       cube_mirror_direction(engine.mirror));
 }
 
 Json vectors_json(const std::vector<Vec3d>& vectors) {
@@ -199,7 +199,7 @@ bool files_match(const Json& json, const std::filesystem::path& folder, int dept
 
 }  // namespace
 
-std::string manifest_json(const TargetReport& report, const TargetPlan& plan, const BakeOptions& options,
+std::string manifest_json(const EngineReport& report, const EnginePlan& plan, const BakeOptions& options,
                           const SourceReport& source, const BakeReport& bake) {
     Json json{{"version", version()}};
     json["source"] = {{"file", source.file},
@@ -214,7 +214,7 @@ std::string manifest_json(const TargetReport& report, const TargetPlan& plan, co
                         {"infinite", source.repaired.infinite},
                         {"negative", source.repaired.negative},
                         {"most_negative", source.repaired.negative_radiance}}}};
-    json["target"] = {{"name", report.target}, {"consumer", plan.target->consumer}, {"note", plan.target->note}};
+    json["engine"] = {{"name", report.name}, {"loads", plan.engine->loads}, {"note", plan.engine->note}};
     json["convention"] = convention_json(plan);
     json["options"] = options_json(plan, options);
     for (const BakedMap& map : report.maps) json[map.role] = map_json(map);
@@ -247,7 +247,7 @@ std::string sh_json(const ShReport& sh) {
     return json_text(json);
 }
 
-bool manifest_matches(const std::filesystem::path& folder, const TargetPlan& plan, const BakeOptions& options,
+bool manifest_matches(const std::filesystem::path& folder, const EnginePlan& plan, const BakeOptions& options,
                       const std::string& source_sha256) {
     std::ifstream stream(folder / "manifest.json", std::ios::binary);
     const Json json = Json::parse(stream, nullptr, false);

@@ -19,8 +19,8 @@ struct SourceReport {
     RepairReport repaired;
 };
 
-/// manifest.json of one target: no times, nothing that depends on the machine.
-std::string manifest_json(const TargetReport& report, const TargetPlan& plan, const BakeOptions& options,
+/// manifest.json of one engine: no times, nothing that depends on the machine.
+std::string manifest_json(const EngineReport& report, const EnginePlan& plan, const BakeOptions& options,
                           const SourceReport& source, const BakeReport& bake);
 
 /// sh.json: radiance and irradiance coefficients with the convention spelled out, and their error.
@@ -28,7 +28,7 @@ std::string sh_json(const ShReport& sh);
 
 /// Whether `folder` has a manifest of this version, these options and this source, and every file that it names,
 /// unchanged.
-bool manifest_matches(const std::filesystem::path& folder, const TargetPlan& plan, const BakeOptions& options,
+bool manifest_matches(const std::filesystem::path& folder, const EnginePlan& plan, const BakeOptions& options,
                       const std::string& source_sha256);
 
 }  // namespace domelight

@@ -8,7 +8,7 @@
 
 namespace domelight {
 
-/// Moves texels so that texture(cube, M d) gives what texture(cube, d) gave, M being how a consumer's lookup differs.
+/// Moves texels so that texture(cube, M d) gives what texture(cube, d) gave, M being how an engine's lookup differs.
 /// Its own inverse.
 inline void mirror_cube(Cubemap& cube, CubeMirror mirror) {
     if (cube.empty()) return;

@@ -5,8 +5,8 @@
 
 #include "bake/engine_files.h"
 #include "bake/mirror.h"
-#include "texture/chain_encoder.h"
 #include "base/sha256.h"
+#include "texture/chain_encoder.h"
 #include "texture/container/texture_stream.h"
 
 #include <fmt/core.h>
@@ -185,7 +185,7 @@ void write_map(BakedMap& report, std::span<FilteredMap> levels, const MapFormat&
     } else {
         write_chain(report, levels, format, options, staging, background);
     }
-    for (FilteredMap& level : levels) {  // back, for the picture and the next target
+    for (FilteredMap& level : levels) {  // back, for the picture and the next engine
         mirror_cube(level.cube, format.mirror);
         turn_latlong(level.latlong, -format.latlong_quarters);
     }

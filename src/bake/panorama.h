@@ -1,8 +1,8 @@
 #pragma once
-// The environment as one image, for consumers that filter or sample it themselves.
+// The environment as one image, for engines that filter or sample it themselves.
 
-#include "domelight/image/image.h"
 #include "domelight/base/result.h"
+#include "domelight/image/image.h"
 
 #include <string>
 

@@ -1,8 +1,8 @@
 #include "bake/plan.h"
 
 #include "bake/panorama.h"
-#include "texture/container/scaled_bytes.h"
 #include "projection/latlong_convention.h"
+#include "texture/container/scaled_bytes.h"
 
 #include <fmt/core.h>
 
@@ -99,19 +99,19 @@ int most_texture_levels(int height) {
     return levels;
 }
 
-/// Containers that one target alone has: what goes into them is laid down there.
+/// Containers that one engine alone has: what goes into them is laid down there.
 bool own_container(Container container) {
     return container == Container::env || container == Container::gltf || container == Container::playcanvas_atlas;
 }
 
-/// Number of levels from the options, or from the target's smallest size. `chain`: they go into one texture.
-Result<int> level_count(const Target& target, const BakeOptions& o, int size, Layout layout, bool chain) {
+/// Number of levels from the options, or from the engine's smallest size. `chain`: they go into one texture.
+Result<int> level_count(const Engine& engine, const BakeOptions& o, int size, Layout layout, bool chain) {
     const std::size_t listed = std::max(o.roughness.size(), o.exponents.size());
     const char* list = o.exponents.empty() ? "--roughness" : "--exponents";
     if (listed && o.levels && std::size_t(*o.levels) != listed)
         return option_error("--levels", fmt::format("{} levels, but {} names {}", *o.levels, list, listed));
     const int most = layout == Layout::latlong && chain ? most_texture_levels(size) : most_levels(size);
-    const int levels = listed ? int(listed) : o.levels ? *o.levels : std::min(most, default_levels(target, size));
+    const int levels = listed ? int(listed) : o.levels ? *o.levels : std::min(most, default_levels(engine, size));
     if (levels < 1 || levels > most_levels(size))
         return option_error(listed ? list : "--levels", fmt::format("{} levels, but a map of size {} has from 1 to {}",
                                                                     levels, size, most_levels(size)));
@@ -123,12 +123,12 @@ Result<int> level_count(const Target& target, const BakeOptions& o, int size, La
     return levels;
 }
 
-Result<void> plan_encoding(TargetPlan& plan, const BakeOptions& o) {
-    const Target& target = *plan.target;
-    plan.container = o.format.value_or(target.container);
-    // A target's encoding belongs to its container: another container starts from half floats.
-    plan.encoding = o.encoding.value_or(plan.container == target.container ? target.encoding : Encoding::rgba16f);
-    plan.zstd = o.zstd.value_or(plan.container == Container::ktx2 && target.zstd);
+Result<void> plan_encoding(EnginePlan& plan, const BakeOptions& o) {
+    const Engine& engine = *plan.engine;
+    plan.container = o.format.value_or(engine.container);
+    // An engine's encoding belongs to its container: another container starts from half floats.
+    plan.encoding = o.encoding.value_or(plan.container == engine.container ? engine.encoding : Encoding::rgba16f);
+    plan.zstd = o.zstd.value_or(plan.container == Container::ktx2 && engine.zstd);
     if (plan.zstd && plan.container != Container::ktx2)
         return option_error("--zstd", container_name(plan.container) + " has no supercompression",
                             "Use --format ktx2.");
@@ -140,10 +140,10 @@ Result<void> plan_encoding(TargetPlan& plan, const BakeOptions& o) {
         !is_scaled_bytes(plan.encoding))
         return option_error("--encoding", encoding_name(plan.encoding) + " has no number in DDS headers of its time",
                             "dds9 holds rgba16f, rgba32f, and as bytes rgbm, rgbd and rgbp.");
-    if (own_container(plan.container) && plan.encoding != target.encoding)
+    if (own_container(plan.container) && plan.encoding != engine.encoding)
         return option_error(
             "--encoding",
-            fmt::format("{} holds {} only", container_name(plan.container), encoding_name(target.encoding)),
+            fmt::format("{} holds {} only", container_name(plan.container), encoding_name(engine.encoding)),
             "Leave --encoding out, or choose a --format.");
     if (plan.container == Container::dds && is_scaled_bytes(plan.encoding))
         return option_error("--encoding", "dds cannot say that its bytes are " + encoding_name(plan.encoding),
@@ -153,8 +153,8 @@ Result<void> plan_encoding(TargetPlan& plan, const BakeOptions& o) {
     return {};
 }
 
-Result<void> plan_environment_only(TargetPlan& plan, const BakeOptions& o) {
-    const std::string& name = plan.target->name;
+Result<void> plan_environment_only(EnginePlan& plan, const BakeOptions& o) {
+    const std::string& name = plan.engine->name;
     const auto refuse = [&](const char* option) {
         return option_error(option, "does not apply to --for " + name,
                             name + " loads one lat-long image and filters it itself.");
@@ -164,19 +164,19 @@ Result<void> plan_environment_only(TargetPlan& plan, const BakeOptions& o) {
     if (o.lobe) return refuse("--lobe");
     if (o.layout && *o.layout == Layout::cube) return refuse("--layout cube");
     plan.layout = Layout::latlong;
-    plan.panorama_size = o.size.value_or(2 * plan.target->size);
-    plan.panorama_rows = panorama_rows(plan.target->panorama, plan.panorama_size);
+    plan.panorama_size = o.size.value_or(2 * plan.engine->size);
+    plan.panorama_rows = panorama_rows(plan.engine->panorama, plan.panorama_size);
     plan.specular = {glossy_level(Lobe::ggx, plan.panorama_size, 0)};
     return {};
 }
 
-/// What a container of one target alone cannot do without.
-Result<void> check_own_container(const TargetPlan& plan, const BakeOptions& o) {
+/// What a container of one engine alone cannot do without.
+Result<void> check_own_container(const EnginePlan& plan, const BakeOptions& o) {
     if (!own_container(plan.container)) return {};
     const std::string name = container_name(plan.container);
-    if (o.layout && *o.layout != plan.target->layout)
+    if (o.layout && *o.layout != plan.engine->layout)
         return option_error("--layout", fmt::format("{} holds {} maps", name,
-                                                    plan.target->layout == Layout::cube ? "cube" : "lat-long"));
+                                                    plan.engine->layout == Layout::cube ? "cube" : "lat-long"));
     const int size = plan.specular.front().spec.size;
     const bool atlas = plan.container == Container::playcanvas_atlas;
     if (atlas ? size != 512 : !std::has_single_bit(unsigned(size)))
@@ -192,7 +192,7 @@ Result<void> check_own_container(const TargetPlan& plan, const BakeOptions& o) {
     return {};
 }
 
-/// Quarter turns from the default convention to the target's.
+/// Quarter turns from the default convention to the engine's.
 int quarters_of(const std::string& convention) {
     const Vec3d centre = latlong_convention(convention)->centre;
     return int(std::lround(std::atan2(centre.z, centre.x) * 2 / k_pi)) & 3;
@@ -200,42 +200,42 @@ int quarters_of(const std::string& convention) {
 
 }  // namespace
 
-Result<TargetPlan> plan_target(const Target& target, const BakeOptions& o) {
+Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& o) {
     if (auto ok = check_values(o); !ok) return ok.error();
-    TargetPlan plan;
-    plan.target = &target;
+    EnginePlan plan;
+    plan.engine = &engine;
     plan.lobe = o.lobe.value_or(Lobe::ggx);
-    plan.brdf_form = o.brdf_form.value_or(target.brdf_form);
-    plan.brdf_size = o.brdf_size.value_or(target.brdf_size);
+    plan.brdf_form = o.brdf_form.value_or(engine.brdf_form);
+    plan.brdf_size = o.brdf_size.value_or(engine.brdf_size);
     if (auto ok = plan_encoding(plan, o); !ok) return ok.error();
-    if (target.environment_only) {
+    if (engine.environment_only) {
         if (auto ok = plan_environment_only(plan, o); !ok) return ok.error();
     } else {
-        plan.layout = o.layout.value_or(target.layout);
+        plan.layout = o.layout.value_or(engine.layout);
         const int scale =
             plan.layout == Layout::latlong ? 2 : 1;  // a lat-long map is as fine as a cube when it is twice as high
-        const int size = o.size.value_or(scale * target.size);
-        const auto levels = level_count(target, o, size, plan.layout, is_chain(plan.container));
+        const int size = o.size.value_or(scale * engine.size);
+        const auto levels = level_count(engine, o, size, plan.layout, is_chain(plan.container));
         if (!levels) return levels.error();
         const auto exponents = o.exponents.empty() ? default_phong_exponents(*levels) : o.exponents;
         for (int l = 0; l < *levels; ++l) {
             const int level_size = size >> l;
-            const double roughness = o.roughness.empty() ? target.roughness(l, *levels, size / scale) : o.roughness[l];
+            const double roughness = o.roughness.empty() ? engine.roughness(l, *levels, size / scale) : o.roughness[l];
             plan.specular.push_back(is_phong(plan.lobe) ? phong_level(plan.lobe, level_size, exponents[l])
                                                         : glossy_level(plan.lobe, level_size, roughness));
-            if (!target.sheen_file.empty() && !o.lobe)
+            if (!engine.sheen_file.empty() && !o.lobe)
                 plan.sheen.push_back(glossy_level(Lobe::charlie, level_size, roughness));
         }
     }
     plan.irradiance_size =
-        o.irradiance_size.value_or(target.irradiance_size) * (plan.layout == Layout::latlong ? 2 : 1);
-    if (!target.panorama_file.empty()) {
+        o.irradiance_size.value_or(engine.irradiance_size) * (plan.layout == Layout::latlong ? 2 : 1);
+    if (!engine.panorama_file.empty()) {
         plan.panorama_size = 4 * plan.specular.front().spec.size / (plan.layout == Layout::latlong ? 2 : 1);
-        plan.panorama_rows = panorama_rows(target.panorama, plan.panorama_size);
+        plan.panorama_rows = panorama_rows(engine.panorama, plan.panorama_size);
     }
     if (const auto ok = check_own_container(plan, o); !ok) return ok.error();
-    plan.latlong_quarters = quarters_of(target.latlong);
-    if (plan.latlong_quarters % 2 && plan.layout == Layout::latlong && !target.environment_only)
+    plan.latlong_quarters = quarters_of(engine.latlong);
+    if (plan.latlong_quarters % 2 && plan.layout == Layout::latlong && !engine.environment_only)
         for (const LevelPlan& level : plan.specular)
             if (level.spec.size % 2)
                 return option_error("--size",
@@ -247,13 +247,13 @@ Result<TargetPlan> plan_target(const Target& target, const BakeOptions& o) {
 }
 
 Result<void> check_bake_options(const BakeOptions& options) {
-    if (options.targets.empty()) return option_error("--for", "no target");
-    for (const std::string& name : options.targets) {
-        const auto target = find_target(name);
-        if (!target) return target.error().at("--for");
-        if (std::count(options.targets.begin(), options.targets.end(), name) > 1)
+    if (options.engines.empty()) return option_error("--for", "no engine");
+    for (const std::string& name : options.engines) {
+        const auto engine = find_engine(name);
+        if (!engine) return engine.error().at("--for");
+        if (std::count(options.engines.begin(), options.engines.end(), name) > 1)
             return option_error("--for", name + " is given twice");
-        if (auto plan = plan_target(**target, options); !plan) return plan.error();
+        if (auto plan = plan_engine(**engine, options); !plan) return plan.error();
     }
     return {};
 }

@@ -12,9 +12,9 @@ struct LevelPlan {
     double roughness = 0, alpha = 0, exponent = 0;
 };
 
-/// A target with the options applied.
-struct TargetPlan {
-    const Target* target = nullptr;
+/// An engine with the options applied.
+struct EnginePlan {
+    const Engine* engine = nullptr;
     Layout layout = Layout::cube;
     Lobe lobe = Lobe::ggx;
     std::vector<LevelPlan> specular;
@@ -28,10 +28,10 @@ struct TargetPlan {
     /// Of the environment as one image (0: none): `panorama_size` is the height of that image, `panorama_rows` of the
     /// lat-long image in the default convention that it is made from.
     int panorama_size = 0, panorama_rows = 0;
-    int latlong_quarters = 0;  ///< how far the target's lat-long maps are turned: turn_latlong() of bake/mirror.h
+    int latlong_quarters = 0;  ///< how far the engine's lat-long maps are turned: turn_latlong() of bake/mirror.h
 };
 
-/// What to make for a target. Errors: options that contradict each other or the target; `where` is the option.
-Result<TargetPlan> plan_target(const Target& target, const BakeOptions& options);
+/// What to make for an engine. Errors: options that contradict each other or the engine; `where` is the option.
+Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& options);
 
 }  // namespace domelight

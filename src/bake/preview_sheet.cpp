@@ -9,18 +9,18 @@
 namespace domelight {
 namespace {
 
-std::string level_detail(const TargetPlan& plan, const LevelPlan& level) {
+std::string level_detail(const EnginePlan& plan, const LevelPlan& level) {
     if (plan.lobe == Lobe::ggx || plan.lobe == Lobe::charlie) return {};
     return std::isinf(level.exponent) ? "the environment" : fmt::format("exponent {:.4g}", level.exponent);
 }
 
 }  // namespace
 
-Image<std::uint8_t> draw_preview(const TargetPlan& plan, const FilterJob::Maps& maps, const TargetReport& report,
+Image<std::uint8_t> draw_preview(const EnginePlan& plan, const FilterJob::Maps& maps, const EngineReport& report,
                                  const std::string& title, const ImageF& brdf, int threads) {
     PreviewInput input;
     input.title = title;
-    input.subtitle = fmt::format("{} · {} · {}", lobe_name(plan.lobe), report.maps.front().encoding, plan.target->name);
+    input.subtitle = fmt::format("{} · {} · {}", lobe_name(plan.lobe), report.maps.front().encoding, plan.engine->name);
     for (std::size_t l = 0; l < maps.specular.size(); ++l) {
         const LevelPlan& level = plan.specular[l];
         input.specular.push_back({&maps.specular[l], level.roughness, level.alpha, level_detail(plan, level)});

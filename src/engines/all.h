@@ -1,29 +1,29 @@
 #pragma once
-// The targets, one a file.
+// The engines, one a file.
 
 #include "domelight/engines/engine.h"
 
 namespace domelight {
 
-Target generic_target();
-Target khronos_target();
-Target filament_target();
-Target babylon_target();
-Target bevy_target();
-Target three_target();
-Target three_latlong_target();
-Target playcanvas_target();
-Target gltf_target();
-Target godot_target();
-Target unity_target();
-Target unreal_target();
-Target blender_target();
-Target mitsuba_target();
-Target pbrt_target();
-Target usd_target();
-Target materialx_target();
+Engine generic_engine();
+Engine khronos_engine();
+Engine filament_engine();
+Engine babylon_engine();
+Engine bevy_engine();
+Engine three_engine();
+Engine three_latlong_engine();
+Engine playcanvas_engine();
+Engine gltf_engine();
+Engine godot_engine();
+Engine unity_engine();
+Engine unreal_engine();
+Engine blender_engine();
+Engine mitsuba_engine();
+Engine pbrt_engine();
+Engine usd_engine();
+Engine materialx_engine();
 
-/// For consumers that read level = (levels - 1) r (2 - r), Filament and three.js: r = 1 - sqrt(1 - level / (levels -
+/// For engines that read level = (levels - 1) r (2 - r), Filament and three.js: r = 1 - sqrt(1 - level / (levels -
 /// 1)).
 double quadratic_roughness(int level, int levels, int size);
 

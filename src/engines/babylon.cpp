@@ -16,22 +16,22 @@ double babylon_roughness(int level, int, int size) {
 
 /// Babylon.js: its own .env, RGBD pictures with every level down to 1^2 and a polynomial for diffuse light. Its world
 /// is left-handed by default: a glTF direction (x, y, z) is (-x, y, z) there, so the cube is mirrored in x.
-Target babylon_target() {
-    Target t;
-    t.name = "babylon";
-    t.consumer = "Babylon.js: .env, a cube of RGBD pictures and diffuse light as a polynomial (CubeTexture)";
-    t.note = "RGBD ends at 255: the manifest says what was clipped; --format dds keeps half floats";
-    t.size = 256;
-    t.smallest = 1;
-    t.roughness = babylon_roughness;
-    t.mirror = CubeMirror::x;
-    t.encoding = Encoding::rgbd;
-    t.container = Container::env;
-    t.specular_file = "{stem}";
-    t.irradiance_file = "";
-    t.brdf_file = "";
-    t.brdf_form = BrdfForm::none;
-    return t;
+Engine babylon_engine() {
+    Engine e;
+    e.name = "babylon";
+    e.loads = "Babylon.js: .env, a cube of RGBD pictures and diffuse light as a polynomial (CubeTexture)";
+    e.note = "RGBD ends at 255: the manifest says what was clipped; --format dds keeps half floats";
+    e.size = 256;
+    e.smallest = 1;
+    e.roughness = babylon_roughness;
+    e.mirror = CubeMirror::x;
+    e.encoding = Encoding::rgbd;
+    e.container = Container::env;
+    e.specular_file = "{stem}";
+    e.irradiance_file = "";
+    e.brdf_file = "";
+    e.brdf_form = BrdfForm::none;
+    return e;
 }
 
 }  // namespace domelight

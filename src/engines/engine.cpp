@@ -27,7 +27,7 @@ namespace {
 
 struct ContainerFacts {
     const char *name, *extension;
-    bool fits_any_target;
+    bool fits_any_engine;
 };
 
 /// In the order of the enumeration.
@@ -52,7 +52,7 @@ std::string container_extension(Container container) {
 Result<Container> container_from_name(const std::string& name) {
     std::string accepted;
     for (std::size_t i = 0; i < std::size(k_containers); ++i) {
-        if (!k_containers[i].fits_any_target) continue;
+        if (!k_containers[i].fits_any_engine) continue;
         if (k_containers[i].name == name) return Container(i);
         accepted += (accepted.empty() ? "" : ", ") + std::string(k_containers[i].name);
     }
@@ -101,9 +101,9 @@ double linear_roughness(int level, int levels, int) {
     return levels > 1 ? double(level) / (levels - 1) : 0;
 }
 
-int default_levels(const Target& target, int size) {
+int default_levels(const Engine& engine, int size) {
     int levels = 1;
-    while ((size >> levels) >= std::max(1, target.smallest)) ++levels;
+    while ((size >> levels) >= std::max(1, engine.smallest)) ++levels;
     return levels;
 }
 
@@ -117,23 +117,23 @@ double quadratic_roughness(int level, int levels, int) {
     return levels > 1 ? 1 - std::sqrt(1 - double(level) / (levels - 1)) : 0;
 }
 
-std::span<const Target> targets() {
-    static const std::array all{generic_target(),  khronos_target(), filament_target(),      babylon_target(),
-                                bevy_target(),     three_target(),   three_latlong_target(), playcanvas_target(),
-                                gltf_target(),     godot_target(),   unity_target(),         unreal_target(),
-                                blender_target(),  mitsuba_target(), pbrt_target(),          usd_target(),
-                                materialx_target()};
+std::span<const Engine> engines() {
+    static const std::array all{generic_engine(),  khronos_engine(), filament_engine(),      babylon_engine(),
+                                bevy_engine(),     three_engine(),   three_latlong_engine(), playcanvas_engine(),
+                                gltf_engine(),     godot_engine(),   unity_engine(),         unreal_engine(),
+                                blender_engine(),  mitsuba_engine(), pbrt_engine(),          usd_engine(),
+                                materialx_engine()};
     return all;
 }
 
-Result<const Target*> find_target(const std::string& name) {
+Result<const Engine*> find_engine(const std::string& name) {
     std::string names;
-    for (const Target& target : targets()) {
-        if (target.name == name) return &target;
+    for (const Engine& engine : engines()) {
+        if (engine.name == name) return &engine;
         if (!names.empty()) names += ", ";
-        names += target.name;
+        names += engine.name;
     }
-    return Error{fmt::format("\"{}\" is not a target; accepted are {}", name, names), "", ""};
+    return Error{fmt::format("\"{}\" is not an engine; accepted are {}", name, names), "", ""};
 }
 
 }  // namespace domelight

@@ -6,20 +6,20 @@
 
 namespace domelight {
 
-/// A consumer that filters or samples by itself: the environment alone, one half-float .exr.
-inline Target environment_target(std::string name, std::string consumer, std::string panorama) {
-    Target t;
-    t.name = std::move(name);
-    t.consumer = std::move(consumer);
-    t.roughness = linear_roughness;
-    t.container = Container::exr;
-    t.environment_only = true;
-    t.panorama = std::move(panorama);
-    t.specular_file = "{stem}";
-    t.irradiance_file = "";
-    t.brdf_file = "";
-    t.brdf_form = BrdfForm::none;
-    return t;
+/// An engine that filters or samples by itself: the environment alone, one half-float .exr.
+inline Engine environment_engine(std::string name, std::string loads, std::string panorama) {
+    Engine e;
+    e.name = std::move(name);
+    e.loads = std::move(loads);
+    e.roughness = linear_roughness;
+    e.container = Container::exr;
+    e.environment_only = true;
+    e.panorama = std::move(panorama);
+    e.specular_file = "{stem}";
+    e.irradiance_file = "";
+    e.brdf_file = "";
+    e.brdf_form = BrdfForm::none;
+    return e;
 }
 
 }  // namespace domelight

@@ -6,20 +6,20 @@ namespace domelight {
 /// = roughness (levels - 1); a Lambertian cube of E / pi; a table of (scale, bias, Charlie) with u = NdotV, v =
 /// roughness. File names as in its sample environments. It looks along the world direction itself, so its cubes are
 /// ours.
-Target khronos_target() {
-    Target t;
-    t.name = "khronos";
-    t.consumer = "the Khronos glTF viewer: KTX2 cubes for GGX, Charlie and Lambert (E / pi)";
-    t.size = 256;
-    t.smallest = 16;
-    t.roughness = linear_roughness;
-    t.specular_file = "ggx/specular";
-    t.sheen_file = "charlie/sheen";
-    t.irradiance_file = "lambertian/diffuse";
-    t.irradiance_size = 256;
-    t.irradiance_quantity = Quantity::irradiance_over_pi;
-    t.brdf_form = BrdfForm::scale_bias_charlie;
-    return t;
+Engine khronos_engine() {
+    Engine e;
+    e.name = "khronos";
+    e.loads = "the Khronos glTF viewer: KTX2 cubes for GGX, Charlie and Lambert (E / pi)";
+    e.size = 256;
+    e.smallest = 16;
+    e.roughness = linear_roughness;
+    e.specular_file = "ggx/specular";
+    e.sheen_file = "charlie/sheen";
+    e.irradiance_file = "lambertian/diffuse";
+    e.irradiance_size = 256;
+    e.irradiance_quantity = Quantity::irradiance_over_pi;
+    e.brdf_form = BrdfForm::scale_bias_charlie;
+    return e;
 }
 
 }  // namespace domelight

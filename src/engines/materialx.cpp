@@ -17,24 +17,24 @@ double materialx_roughness(int level, int levels, int) {
 
 /// MaterialX' generated shaders with prefiltered light (`$envRadiance`, `$envIrradiance`): a lat-long OpenEXR with its
 /// levels, and a lat-long image of E / pi. Centre -Z, right +X.
-Target materialx_target() {
-    Target t;
-    t.name = "materialx";
-    t.consumer = "MaterialX shader generation: lat-long EXR with levels, and lat-long E / pi";
-    t.note = "by its documents and published shaders, not run here";
-    t.size = 256;
-    t.smallest = 8;
-    t.roughness = materialx_roughness;
-    t.layout = Layout::latlong;
-    t.latlong = "materialx";
-    t.container = Container::exr_mip;
-    t.specular_file = "{stem}";
-    t.irradiance_file = "{stem}_irradiance";
-    t.irradiance_size = 64;
-    t.irradiance_quantity = Quantity::irradiance_over_pi;
-    t.brdf_file = "";
-    t.brdf_form = BrdfForm::none;
-    return t;
+Engine materialx_engine() {
+    Engine e;
+    e.name = "materialx";
+    e.loads = "MaterialX shader generation: lat-long EXR with levels, and lat-long E / pi";
+    e.note = "by its documents and published shaders, not run here";
+    e.size = 256;
+    e.smallest = 8;
+    e.roughness = materialx_roughness;
+    e.layout = Layout::latlong;
+    e.latlong = "materialx";
+    e.container = Container::exr_mip;
+    e.specular_file = "{stem}";
+    e.irradiance_file = "{stem}_irradiance";
+    e.irradiance_size = 64;
+    e.irradiance_quantity = Quantity::irradiance_over_pi;
+    e.brdf_file = "";
+    e.brdf_form = BrdfForm::none;
+    return e;
 }
 
 }  // namespace domelight

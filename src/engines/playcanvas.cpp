@@ -15,25 +15,25 @@ double playcanvas_roughness(int level, int, int) {
 
 /// PlayCanvas: envAtlas, one PNG of 512^2 in RGBP with lat-long maps for mirrors, six for rougher surfaces and one of
 /// E / pi (src/texture/container/playcanvas_atlas.h). It looks up u = 1/2 + atan2(-x, z) / 2 pi: centre +Z, right -X.
-Target playcanvas_target() {
-    Target t;
-    t.name = "playcanvas";
-    t.consumer = "PlayCanvas: envAtlas, a 512^2 RGBP PNG (scene.envAtlas)";
-    t.note = "level l holds roughness l / 5, which is what PlayCanvas reads there";
-    t.size = 256;
-    t.smallest = 8;
-    t.roughness = playcanvas_roughness;
-    t.layout = Layout::latlong;
-    t.latlong = "usd";
-    t.encoding = Encoding::rgbp;
-    t.container = Container::playcanvas_atlas;
-    t.specular_file = "{stem}-env-atlas";
-    t.irradiance_file = "";  // in the atlas
-    t.irradiance_size = 32;
-    t.irradiance_quantity = Quantity::irradiance_over_pi;
-    t.brdf_file = "";
-    t.brdf_form = BrdfForm::none;
-    return t;
+Engine playcanvas_engine() {
+    Engine e;
+    e.name = "playcanvas";
+    e.loads = "PlayCanvas: envAtlas, a 512^2 RGBP PNG (scene.envAtlas)";
+    e.note = "level l holds roughness l / 5, which is what PlayCanvas reads there";
+    e.size = 256;
+    e.smallest = 8;
+    e.roughness = playcanvas_roughness;
+    e.layout = Layout::latlong;
+    e.latlong = "usd";
+    e.encoding = Encoding::rgbp;
+    e.container = Container::playcanvas_atlas;
+    e.specular_file = "{stem}-env-atlas";
+    e.irradiance_file = "";  // in the atlas
+    e.irradiance_size = 32;
+    e.irradiance_quantity = Quantity::irradiance_over_pi;
+    e.brdf_file = "";
+    e.brdf_form = BrdfForm::none;
+    return e;
 }
 
 }  // namespace domelight

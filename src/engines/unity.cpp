@@ -18,23 +18,23 @@ double unity_roughness(int level, int levels, int) {
 /// for the importer (Texture Shape: Cube). Unity's world is left-handed with +Y up; its glTF importers turn (x, y, z)
 /// into (-x, y, z), so the cube is mirrored in x. Its lat-long pictures have +Z in the centre and +X on the right,
 /// which is -X in glTF's world.
-Target unity_target() {
-    Target t;
-    t.name = "unity";
-    t.consumer = "Unity: DDS cube with its seven levels, and a lat-long EXR for its own importer";
-    t.note = "by its documents and published shaders, not run here";
-    t.size = 256;
-    t.smallest = 4;  // 256^2 to 4^2: seven
-    t.roughness = unity_roughness;
-    t.mirror = CubeMirror::x;
-    t.container = Container::dds;
-    t.specular_file = "{stem}";
-    t.panorama_file = "{stem}_latlong";
-    t.panorama = "latlong/usd";
-    t.irradiance_file = "";  // it lights with harmonics: sh.json
-    t.brdf_file = "";
-    t.brdf_form = BrdfForm::none;
-    return t;
+Engine unity_engine() {
+    Engine e;
+    e.name = "unity";
+    e.loads = "Unity: DDS cube with its seven levels, and a lat-long EXR for its own importer";
+    e.note = "by its documents and published shaders, not run here";
+    e.size = 256;
+    e.smallest = 4;  // 256^2 to 4^2: seven
+    e.roughness = unity_roughness;
+    e.mirror = CubeMirror::x;
+    e.container = Container::dds;
+    e.specular_file = "{stem}";
+    e.panorama_file = "{stem}_latlong";
+    e.panorama = "latlong/usd";
+    e.irradiance_file = "";  // it lights with harmonics: sh.json
+    e.brdf_file = "";
+    e.brdf_form = BrdfForm::none;
+    return e;
 }
 
 }  // namespace domelight

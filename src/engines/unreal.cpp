@@ -19,23 +19,23 @@ double unreal_roughness(int level, int levels, int) {
 /// filters), and a DDS cube with the levels that its reflection captures use. Unreal's world is left-handed with +Z up:
 /// glTF's (x, y, z) is (x, z, y) there, and that is how the cube is looked up. Its importer reads a lat-long picture at
 /// u = 1/2 + atan2(X, -Y) / 2 pi, so glTF's -Z is in the centre and to the right of it lies +X.
-Target unreal_target() {
-    Target t;
-    t.name = "unreal";
-    t.consumer = "Unreal Engine: lat-long EXR for its own importer, and a DDS cube with its levels";
-    t.note = "by its documents and what is published of its importer, not run here";
-    t.size = 256;
-    t.smallest = 1;
-    t.roughness = unreal_roughness;
-    t.mirror = CubeMirror::swap_yz;
-    t.container = Container::dds;
-    t.specular_file = "{stem}";
-    t.panorama_file = "{stem}_latlong";
-    t.panorama = "latlong/materialx";
-    t.irradiance_file = "";
-    t.brdf_file = "";
-    t.brdf_form = BrdfForm::none;
-    return t;
+Engine unreal_engine() {
+    Engine e;
+    e.name = "unreal";
+    e.loads = "Unreal Engine: lat-long EXR for its own importer, and a DDS cube with its levels";
+    e.note = "by its documents and what is published of its importer, not run here";
+    e.size = 256;
+    e.smallest = 1;
+    e.roughness = unreal_roughness;
+    e.mirror = CubeMirror::swap_yz;
+    e.container = Container::dds;
+    e.specular_file = "{stem}";
+    e.panorama_file = "{stem}_latlong";
+    e.panorama = "latlong/materialx";
+    e.irradiance_file = "";
+    e.brdf_file = "";
+    e.brdf_form = BrdfForm::none;
+    return e;
 }
 
 }  // namespace domelight

@@ -1,6 +1,6 @@
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/bake/bake.h"
 
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/io/write_image.h"
 #include "domelight/projection/projection.h"
 
@@ -177,24 +177,24 @@ TEST_CASE("sh report: three bands hold the irradiance of linear light exactly, t
           std::string::npos);
 }
 
-TEST_CASE("bake: each target's cube shows every direction as its consumer looks it up") {
+TEST_CASE("bake: each engine's cube shows every direction as the engine looks it up") {
     const ImageF image = smooth_image(32);
     const test::TemporaryFolder folder;
     BakeOptions options = small_options();
     options.encoding = Encoding::rgba32f;
     options.format = Container::ktx2;
-    options.targets = {"generic", "babylon", "bevy"};
+    options.engines = {"generic", "babylon", "bevy"};
     Environment environment = environment_of(image);
     const auto report = bake(environment, options, folder.path());
     REQUIRE(report);
-    for (const TargetReport& target : report->targets) {
-        const auto texture = read_texture(target.folder / target.maps.front().file.file);
+    for (const EngineReport& engine : report->engines) {
+        const auto texture = read_texture(engine.folder / engine.maps.front().file.file);
         REQUIRE(texture);
         for (const Vec3d& d : {Vec3d{1, 0.1, 0.2}, Vec3d{-1, 0.3, 0.1}, Vec3d{0.2, 1, -0.4}, Vec3d{0.2, -1, -0.4},
                                Vec3d{0.3, 0.2, 1}, Vec3d{-0.3, 0.2, -1}}) {
             Vec3d read = d;
-            if (target.target == "babylon") read.x = -d.x;  // its world is left-handed
-            if (target.target == "bevy") read.z = -d.z;     // its shaders negate z
+            if (engine.name == "babylon") read.x = -d.x;  // its world is left-handed
+            if (engine.name == "bevy") read.z = -d.z;     // its shaders negate z
             const Vec3d expected = normalize(d) + Vec3d(2, 2, 2), value = lookup(*texture, read);
             // Half a texel of 16^2 is 0.06 radians.
             CHECK(length(value - expected) < 0.1);
@@ -207,7 +207,7 @@ TEST_CASE("bake: irradiance is E for generic and E / pi for khronos") {
     const test::TemporaryFolder folder;
     BakeOptions options = small_options();
     options.encoding = Encoding::rgba32f;
-    options.targets = {"generic", "khronos"};
+    options.engines = {"generic", "khronos"};
     Environment environment = environment_of(image);
     const auto report = bake(environment, options, folder.path());
     REQUIRE(report);

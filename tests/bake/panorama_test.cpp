@@ -1,8 +1,8 @@
 #include "bake/panorama.h"
 
+#include "domelight/bake/bake.h"
 #include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"
-#include "domelight/bake/bake.h"
 #include "domelight/projection/projections.h"
 #include "domelight/texture/texture.h"
 
@@ -67,7 +67,7 @@ TEST_CASE("projection_convention: says where the picture's centre, right and top
     CHECK(projection_convention("pbrt") == "equal-area-octahedral, centre +Y, right +X, up +Z");
 }
 
-TEST_CASE("bake: targets of both layouts share one reading, and each gets what it would alone") {
+TEST_CASE("bake: engines of both layouts share one reading, and each gets what it would alone") {
     const TemporaryFolder folder;
     const ImageF image = direction_image(32);
     BakeOptions options;
@@ -77,9 +77,9 @@ TEST_CASE("bake: targets of both layouts share one reading, and each gets what i
     options.brdf_size = 8;
     options.preview = false;
     options.threads = 2;
-    const auto run = [&](std::vector<std::string> targets, const char* name) {
+    const auto run = [&](std::vector<std::string> engines, const char* name) {
         Environment environment = environment_of(image);
-        options.targets = std::move(targets);
+        options.engines = std::move(engines);
         REQUIRE(bake(environment, options, folder / name));
     };
     run({"generic", "materialx"}, "both");
@@ -104,22 +104,22 @@ TEST_CASE("bake: targets of both layouts share one reading, and each gets what i
     }
 }
 
-TEST_CASE("bake: targets that take the environment alone get it in their own convention") {
-    const std::pair<const char*, const char*> targets[] = {
+TEST_CASE("bake: engines that take the environment alone get it in their own convention") {
+    const std::pair<const char*, const char*> engines[] = {
         {"three-latlong", "default"}, {"blender", "default"}, {"godot", "usd"}, {"usd", "usd"},
         {"mitsuba", "mitsuba"},       {"pbrt", "pbrt"}};
-    for (const auto& [target, convention] : targets) {
+    for (const auto& [engine, convention] : engines) {
         const TemporaryFolder folder;
         const ImageF image = direction_image(64);
         Environment environment = environment_of(image);
         BakeOptions options;
-        options.targets = {target};
+        options.engines = {engine};
         options.size = 32;
         options.irradiance_size = 8;
         options.preview = false;
         const auto report = bake(environment, options, folder.path());
         REQUIRE(report);
-        CHECK(report->targets[0].maps[0].role == "environment");
+        CHECK(report->engines[0].maps[0].role == "environment");
         EnvironmentOptions reading;
         reading.latlong = convention;
         auto opened = open_environment({folder / "sky.exr"}, reading);
@@ -136,11 +136,11 @@ TEST_CASE("bake: targets that take the environment alone get it in their own con
 
 TEST_CASE("bake: unity and unreal get a cube as they look it up, and a lat-long image for their importers") {
     const ImageF image = direction_image(64);
-    for (const char* target : {"unity", "unreal"}) {
+    for (const char* engine : {"unity", "unreal"}) {
         const TemporaryFolder folder;
         Environment environment = environment_of(image);
         BakeOptions options;
-        options.targets = {target};
+        options.engines = {engine};
         options.size = 32;
         options.irradiance_size = 8;
         options.preview = false;
@@ -149,7 +149,7 @@ TEST_CASE("bake: unity and unreal get a cube as they look it up, and a lat-long 
         REQUIRE(texture);
         const auto cubes = decode_cubes(*texture);
         REQUIRE(cubes);
-        const bool unity = std::string(target) == "unity";
+        const bool unity = std::string(engine) == "unity";
         CHECK(worst_direction(cubes->front(), [&](const Vec3d& d) {
                   return unity ? Vec3d{-d.x, d.y, d.z} : Vec3d{d.x, d.z, d.y};
               }) < 0.01);

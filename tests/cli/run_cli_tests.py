@@ -344,22 +344,22 @@ def test_charlie_states_its_least_roughness(folder):
     assert [l["roughness"] for l in specular["levels"]] == [least, 1] and not specular["levels"][0]["environment_itself"]
 
 
-def test_every_target_writes_what_it_says(folder):
+def test_every_engine_writes_what_it_says(folder):
     files = {
         "generic": {"specular.ktx2", "irradiance.ktx2", "brdf.ktx2"}, "khronos": {"ggx/specular.ktx2"}, "filament": {"studio_ibl.ktx"}, "bevy": {"studio_specular.ktx2"},
         "babylon": {"studio.env"}, "playcanvas": {"studio-env-atlas.png"}, "gltf": {"studio.gltf"}, "unity": {"studio.dds", "studio_latlong.exr"},
         "unreal": {"studio.dds", "studio_latlong.exr"}, "materialx": {"studio.exr", "studio_irradiance.exr"}, "godot": {"studio.exr"},
         "blender": {"studio.exr"}, "mitsuba": {"studio.exr"}, "pbrt": {"studio.exr"}, "usd": {"studio.exr"}}
-    for target, expected in files.items():
-        size = [] if target == "playcanvas" else ["--size", "32"]
-        irradiance = [] if target == "playcanvas" else ["--irradiance-size", "8"]
-        run("bake", "studio.hdr", "-o", target, "--for", target, *size, *irradiance, "--brdf-size", "8", "--no-preview", folder=folder)
-        assert set(files_of(folder / target)) >= expected | {"manifest.json", "sh.json"}, target
-        manifest = manifest_of(folder / target)
-        assert manifest["target"]["name"] == target and manifest["convention"]
+    for engine, expected in files.items():
+        size = [] if engine == "playcanvas" else ["--size", "32"]
+        irradiance = [] if engine == "playcanvas" else ["--irradiance-size", "8"]
+        run("bake", "studio.hdr", "-o", engine, "--for", engine, *size, *irradiance, "--brdf-size", "8", "--no-preview", folder=folder)
+        assert set(files_of(folder / engine)) >= expected | {"manifest.json", "sh.json"}, engine
+        manifest = manifest_of(folder / engine)
+        assert manifest["engine"]["name"] == engine and manifest["convention"]
         for role in ("specular", "environment"):
             for level in manifest.get(role, {}).get("levels", []):
-                assert 0 <= level["roughness"] <= 1 and 0 <= level["clipped_energy"] < 1, (target, level)
+                assert 0 <= level["roughness"] <= 1 and 0 <= level["clipped_energy"] < 1, (engine, level)
     # RGBD ends at 255, of which the sun takes no notice; half floats hold it.
     assert manifest_of(folder / "babylon")["specular"]["levels"][0]["clipped_texels"] > 0
     assert manifest_of(folder / "unity")["specular"]["levels"][0]["clipped_texels"] == 0
@@ -375,7 +375,7 @@ def test_every_target_writes_what_it_says(folder):
     assert "centre +Z, right -X" in manifest_of(folder / "usd")["convention"]
 
 
-def test_targets_share_a_reading_and_get_folders(folder):
+def test_engines_share_a_reading_and_get_folders(folder):
     run("bake", "studio.hdr", "-o", "all", *SMALL, *[w for t in ["generic", "khronos", "filament", "babylon", "bevy", "three", "three-latlong"] for w in ("--for", t)],
         folder=folder)
     files = set(files_of(folder / "all"))
@@ -383,13 +383,13 @@ def test_targets_share_a_reading_and_get_folders(folder):
                      "filament/studio_skybox.ktx", "filament/sh.txt", "babylon/studio.env", "bevy/studio_specular.ktx2", "bevy/studio_diffuse.ktx2",
                      "three/studio.pmrem.ktx2", "three-latlong/studio.exr", "generic/specular.ktx2"}, files
     # The same light as each baked on its own; only the last digits may depend on the company.
-    for target in ["khronos", "bevy", "three", "three-latlong"]:
-        run("bake", "studio.hdr", "-o", target, *SMALL, "--for", target, folder=folder)
-        alone, together = manifest_of(folder / target), manifest_of(folder / "all" / target)
-        assert set(files_of(folder / target)) == set(files_of(folder / "all" / target)), target
-        assert alone["options"]["targets"] == [target] and len(together["options"]["targets"]) == 7
-        sh_alone, sh_together = (json.loads((f / target / "sh.json").read_text())["radiance"] for f in (folder, folder / "all"))
-        assert all(abs(a - b) < 1e-5 * sh_alone[0][0] for v, w in zip(sh_alone, sh_together) for a, b in zip(v, w)), target
+    for engine in ["khronos", "bevy", "three", "three-latlong"]:
+        run("bake", "studio.hdr", "-o", engine, *SMALL, "--for", engine, folder=folder)
+        alone, together = manifest_of(folder / engine), manifest_of(folder / "all" / engine)
+        assert set(files_of(folder / engine)) == set(files_of(folder / "all" / engine)), engine
+        assert alone["options"]["engines"] == [engine] and len(together["options"]["engines"]) == 7
+        sh_alone, sh_together = (json.loads((f / engine / "sh.json").read_text())["radiance"] for f in (folder, folder / "all"))
+        assert all(abs(a - b) < 1e-5 * sh_alone[0][0] for v, w in zip(sh_alone, sh_together) for a, b in zip(v, w)), engine
     assert manifest_of(folder / "khronos")["irradiance"]["quantity"] == "irradiance_over_pi"
     lines = (folder / "all/filament/sh.txt").read_text().splitlines()
     assert len(lines) == 9 and lines[0].endswith("// L00, irradiance, pre-scaled base")
@@ -423,9 +423,9 @@ def test_plain_methods_agree_with_the_exact_one(folder):
 
 def test_same_bytes_on_any_number_of_threads(folder):
     expected = None
-    targets = [w for t in ["generic", "khronos", "filament", "babylon", "bevy", "three", "three-latlong"] for w in ("--for", t)]
+    engines = [w for t in ["generic", "khronos", "filament", "babylon", "bevy", "three", "three-latlong"] for w in ("--for", t)]
     for threads in [1, 2, 3, 8]:
-        run("bake", "studio.hdr", "-o", f"t{threads}", *targets, "--size", "32", "--irradiance-size", "8", "--threads", threads, folder=folder)
+        run("bake", "studio.hdr", "-o", f"t{threads}", *engines, "--size", "32", "--irradiance-size", "8", "--threads", threads, folder=folder)
         files = files_of(folder / f"t{threads}")
         expected = expected or files
         assert files == expected, [name for name in files if files[name] != expected.get(name)]
@@ -451,7 +451,7 @@ def test_json_is_one_document(folder):
     result = run("bake", "studio.hdr", "-o", "out", *SMALL, "--json", folder=folder)
     document = json.loads(result.stdout)
     bake = document["bakes"][0]
-    assert bake["status"] == "baked" and bake["targets"][0]["manifest"] == manifest_of(folder / "out")
+    assert bake["status"] == "baked" and bake["engines"][0]["manifest"] == manifest_of(folder / "out")
     assert {"filter", "encode", "write"} <= {stage["stage"] for stage in bake["stages"]}
     document = json.loads(run("bake", "missing.hdr", "-o", "out2", "--json", folder=folder, code=1).stdout)
     assert document["bakes"][0]["status"] == "failed" and "missing.hdr" in document["bakes"][0]["error"]

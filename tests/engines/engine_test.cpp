@@ -1,5 +1,6 @@
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/engines/engine.h"
+
+#include "domelight/io/environment/open_environment.h"
 
 #include "bake/plan.h"
 #include "test.h"
@@ -10,13 +11,13 @@ using namespace domelight;
 
 namespace {
 
-TargetPlan plan_of(const char* name, const BakeOptions& options = {}) {
-    const auto plan = plan_target(**find_target(name), options);
+EnginePlan plan_of(const char* name, const BakeOptions& options = {}) {
+    const auto plan = plan_engine(**find_engine(name), options);
     REQUIRE(plan);
     return *plan;
 }
 
-std::vector<int> sizes(const TargetPlan& plan) {
+std::vector<int> sizes(const EnginePlan& plan) {
     std::vector<int> out;
     for (const LevelPlan& level : plan.specular) out.push_back(level.spec.size);
     return out;
@@ -25,8 +26,8 @@ std::vector<int> sizes(const TargetPlan& plan) {
 }  // namespace
 
 TEST_CASE(
-    "target: generic is a cube of 512^2 down to 8^2 with roughness level / (levels - 1), half floats, irradiance E") {
-    const TargetPlan plan = plan_of("generic");
+    "engine: generic is a cube of 512^2 down to 8^2 with roughness level / (levels - 1), half floats, irradiance E") {
+    const EnginePlan plan = plan_of("generic");
     CHECK(sizes(plan) == std::vector{512, 256, 128, 64, 32, 16, 8});
     for (int l = 0; l < 7; ++l) {
         CHECK(plan.specular[l].roughness == doctest::Approx(l / 6.0));
@@ -35,23 +36,23 @@ TEST_CASE(
     }
     CHECK(plan.encoding == Encoding::rgba16f);
     CHECK(plan.container == Container::ktx2);
-    CHECK(plan.target->irradiance_quantity == Quantity::irradiance);
-    CHECK(plan.target->mirror == CubeMirror::none);
+    CHECK(plan.engine->irradiance_quantity == Quantity::irradiance);
+    CHECK(plan.engine->mirror == CubeMirror::none);
 }
 
-TEST_CASE("target: khronos is linear from 256^2 to 16^2 with Charlie beside GGX and E / pi") {
-    const TargetPlan plan = plan_of("khronos");
+TEST_CASE("engine: khronos is linear from 256^2 to 16^2 with Charlie beside GGX and E / pi") {
+    const EnginePlan plan = plan_of("khronos");
     CHECK(sizes(plan) == std::vector{256, 128, 64, 32, 16});
     CHECK(plan.specular[2].roughness == 0.5);
     REQUIRE(plan.sheen.size() == 5);
     CHECK(plan.sheen[4].spec.kernel.lobe == Lobe::charlie);
     CHECK(plan.sheen[0].roughness == k_charlie_least_roughness);
-    CHECK(plan.target->irradiance_quantity == Quantity::irradiance_over_pi);
+    CHECK(plan.engine->irradiance_quantity == Quantity::irradiance_over_pi);
     CHECK(plan.brdf_form == BrdfForm::scale_bias_charlie);
 }
 
-TEST_CASE("target: filament inverts its lookup level = (levels - 1) r (2 - r)") {
-    const TargetPlan plan = plan_of("filament");
+TEST_CASE("engine: filament inverts its lookup level = (levels - 1) r (2 - r)") {
+    const EnginePlan plan = plan_of("filament");
     CHECK(sizes(plan) == std::vector{256, 128, 64, 32, 16});
     for (int l = 0; l < 5; ++l) {
         const double r = plan.specular[l].roughness;
@@ -62,28 +63,28 @@ TEST_CASE("target: filament inverts its lookup level = (levels - 1) r (2 - r)") 
     CHECK(plan.container == Container::ktx1);
 }
 
-TEST_CASE("target: babylon inverts its lookup level = 0.8 log2(N alpha), every level down to 1^2") {
-    const TargetPlan plan = plan_of("babylon");
+TEST_CASE("engine: babylon inverts its lookup level = 0.8 log2(N alpha), every level down to 1^2") {
+    const EnginePlan plan = plan_of("babylon");
     CHECK(sizes(plan) == std::vector{256, 128, 64, 32, 16, 8, 4, 2, 1});
     CHECK(plan.specular[0].spec.mirror);
     for (int l = 1; l < 7; ++l) CHECK(0.8 * std::log2(256 * plan.specular[l].alpha) == doctest::Approx(l));
     CHECK(plan.specular[7].alpha == 1);
-    CHECK(plan.target->mirror == CubeMirror::x);
+    CHECK(plan.engine->mirror == CubeMirror::x);
 }
 
-TEST_CASE("target: bevy is linear from 512^2 in RGB9E5 with zstd, diffuse 32^2 of E / pi, z negated") {
-    const TargetPlan plan = plan_of("bevy");
+TEST_CASE("engine: bevy is linear from 512^2 in RGB9E5 with zstd, diffuse 32^2 of E / pi, z negated") {
+    const EnginePlan plan = plan_of("bevy");
     CHECK(plan.specular[0].spec.size == 512);
     CHECK(plan.specular[3].roughness == doctest::Approx(0.5));
     CHECK(plan.encoding == Encoding::rgb9e5);
     CHECK(plan.zstd);
     CHECK(plan.irradiance_size == 32);
-    CHECK(plan.target->irradiance_quantity == Quantity::irradiance_over_pi);
-    CHECK(plan.target->mirror == CubeMirror::z);
+    CHECK(plan.engine->irradiance_quantity == Quantity::irradiance_over_pi);
+    CHECK(plan.engine->mirror == CubeMirror::z);
 }
 
-TEST_CASE("target: three gets 512^2 to 8^2 in UASTC HDR with zstd, at its lookup level = 6 r (2 - r), x flipped") {
-    const TargetPlan plan = plan_of("three");
+TEST_CASE("engine: three gets 512^2 to 8^2 in UASTC HDR with zstd, at its lookup level = 6 r (2 - r), x flipped") {
+    const EnginePlan plan = plan_of("three");
     CHECK(sizes(plan) == std::vector{512, 256, 128, 64, 32, 16, 8});
     for (int l = 0; l < 7; ++l) {
         const double r = plan.specular[l].roughness;
@@ -93,31 +94,32 @@ TEST_CASE("target: three gets 512^2 to 8^2 in UASTC HDR with zstd, at its lookup
     CHECK(plan.encoding == Encoding::uastc_hdr);
     CHECK(plan.container == Container::ktx2);
     CHECK(plan.zstd);
-    CHECK(plan.target->mirror == CubeMirror::x);
-    CHECK(plan.target->specular_file == "{stem}.pmrem");
+    CHECK(plan.engine->mirror == CubeMirror::x);
+    CHECK(plan.engine->specular_file == "{stem}.pmrem");
     BakeOptions options;
     options.encoding = Encoding::rgba16f;
     CHECK(plan_of("three", options).encoding == Encoding::rgba16f);
 }
 
-TEST_CASE("target: three-latlong gets one lat-long image four times as wide as the cube it makes") {
-    const TargetPlan plan = plan_of("three-latlong");
+TEST_CASE("engine: three-latlong gets one lat-long image four times as wide as the cube it makes") {
+    const EnginePlan plan = plan_of("three-latlong");
     CHECK(plan.layout == Layout::latlong);
     CHECK(sizes(plan) == std::vector{1024});
     CHECK(plan.specular[0].spec.mirror);
     CHECK(plan.container == Container::exr);
 }
 
-TEST_CASE("target: an unknown name lists the known ones") {
-    const auto target = find_target("quake");
-    REQUIRE_FALSE(target);
-    CHECK(target.error().what.find("generic, khronos, filament, babylon, bevy, three, three-latlong, playcanvas, gltf, godot, "
-                                   "unity, unreal, blender, mitsuba, pbrt, usd, materialx") != std::string::npos);
-    for (const Target& t : targets()) CHECK(find_target(t.name));
+TEST_CASE("engine: an unknown name lists the known ones") {
+    const auto engine = find_engine("quake");
+    REQUIRE_FALSE(engine);
+    CHECK(engine.error().what.find(
+              "generic, khronos, filament, babylon, bevy, three, three-latlong, playcanvas, gltf, godot, "
+              "unity, unreal, blender, mitsuba, pbrt, usd, materialx") != std::string::npos);
+    for (const Engine& e : engines()) CHECK(find_engine(e.name));
 }
 
-TEST_CASE("target: babylon is a .env of RGBD") {
-    const TargetPlan plan = plan_of("babylon");
+TEST_CASE("engine: babylon is a .env of RGBD") {
+    const EnginePlan plan = plan_of("babylon");
     CHECK(plan.container == Container::env);
     CHECK(plan.encoding == Encoding::rgbd);
     BakeOptions options;
@@ -125,8 +127,8 @@ TEST_CASE("target: babylon is a .env of RGBD") {
     CHECK(plan_of("babylon", options).encoding == Encoding::rgba16f);
 }
 
-TEST_CASE("target: playcanvas is an atlas of lat-long maps whose level l shows roughness l / 5") {
-    const TargetPlan plan = plan_of("playcanvas");
+TEST_CASE("engine: playcanvas is an atlas of lat-long maps whose level l shows roughness l / 5") {
+    const EnginePlan plan = plan_of("playcanvas");
     CHECK(plan.layout == Layout::latlong);
     CHECK(plan.latlong_quarters == 1);
     CHECK(sizes(plan) == std::vector{512, 256, 128, 64, 32, 16, 8});
@@ -134,15 +136,15 @@ TEST_CASE("target: playcanvas is an atlas of lat-long maps whose level l shows r
     CHECK(plan.encoding == Encoding::rgbp);
 }
 
-TEST_CASE("target: gltf maps its levels evenly to roughness, down to 16^2") {
-    const TargetPlan plan = plan_of("gltf");
+TEST_CASE("engine: gltf maps its levels evenly to roughness, down to 16^2") {
+    const EnginePlan plan = plan_of("gltf");
     CHECK(sizes(plan) == std::vector{256, 128, 64, 32, 16});
     CHECK(plan.specular[1].roughness == 0.25);
-    CHECK(plan.target->mirror == CubeMirror::none);
+    CHECK(plan.engine->mirror == CubeMirror::none);
 }
 
-TEST_CASE("target: unity inverts its lookup level = 6 r (1.7 - 0.7 r) of seven levels") {
-    const TargetPlan plan = plan_of("unity");
+TEST_CASE("engine: unity inverts its lookup level = 6 r (1.7 - 0.7 r) of seven levels") {
+    const EnginePlan plan = plan_of("unity");
     CHECK(sizes(plan) == std::vector{256, 128, 64, 32, 16, 8, 4});
     for (int l = 0; l < 7; ++l) {
         const double r = plan.specular[l].roughness;
@@ -152,16 +154,16 @@ TEST_CASE("target: unity inverts its lookup level = 6 r (1.7 - 0.7 r) of seven l
     CHECK(plan.panorama_size == 1024);
 }
 
-TEST_CASE("target: unreal inverts its lookup level = last - 1 + 1.2 log2 r") {
-    const TargetPlan plan = plan_of("unreal");
+TEST_CASE("engine: unreal inverts its lookup level = last - 1 + 1.2 log2 r") {
+    const EnginePlan plan = plan_of("unreal");
     REQUIRE(plan.specular.size() == 9);
     CHECK(plan.specular[0].spec.mirror);
     for (int l = 1; l < 8; ++l) CHECK(7 + 1.2 * std::log2(plan.specular[l].roughness) == doctest::Approx(l));
     CHECK(plan.specular[8].roughness == 1);
 }
 
-TEST_CASE("target: materialx inverts its lookup, alpha < 1/4 ? sqrt(alpha) : alpha / 2 + 3/8") {
-    const TargetPlan plan = plan_of("materialx");
+TEST_CASE("engine: materialx inverts its lookup, alpha < 1/4 ? sqrt(alpha) : alpha / 2 + 3/8") {
+    const EnginePlan plan = plan_of("materialx");
     CHECK(plan.layout == Layout::latlong);
     CHECK(plan.latlong_quarters == 3);
     const int last = int(plan.specular.size()) - 1;
@@ -172,14 +174,14 @@ TEST_CASE("target: materialx inverts its lookup, alpha < 1/4 ? sqrt(alpha) : alp
     }
     CHECK(plan.specular[last].alpha == 1);
     CHECK(plan.container == Container::exr_mip);
-    CHECK(plan.target->irradiance_quantity == Quantity::irradiance_over_pi);
+    CHECK(plan.engine->irradiance_quantity == Quantity::irradiance_over_pi);
 }
 
-TEST_CASE("plan: options override the target, level by level") {
+TEST_CASE("plan: options override the engine, level by level") {
     BakeOptions options;
     options.size = 100;
     options.roughness = {0, 0.3, 1};
-    const TargetPlan plan = plan_of("generic", options);
+    const EnginePlan plan = plan_of("generic", options);
     CHECK(sizes(plan) == std::vector{100, 50, 25});
     CHECK(plan.specular[1].spec.kernel.width == doctest::Approx(0.09));
 
@@ -197,7 +199,7 @@ TEST_CASE("plan: options override the target, level by level") {
     options = {};
     options.lobe = Lobe::phong_brdf;
     options.exponents = {std::numeric_limits<double>::infinity(), 64, 0};
-    const TargetPlan phong = plan_of("generic", options);
+    const EnginePlan phong = plan_of("generic", options);
     CHECK(phong.specular[0].spec.mirror);
     CHECK(phong.specular[1].spec.kernel.width == 64);
     CHECK(phong.specular[2].exponent == 0);
@@ -222,28 +224,28 @@ TEST_CASE("plan: contradictions are errors that name the option") {
     CHECK(where([](BakeOptions& o) { o.exponents = {1}; }) == "--exponents");
     CHECK(where([](BakeOptions& o) { o.encoding = Encoding::rg16f; }) == "--encoding");
     CHECK(where([](BakeOptions& o) { o.zstd = true, o.format = Container::dds; }) == "--zstd");
-    CHECK(where([](BakeOptions& o) { o.targets = {"three-latlong"}, o.lobe = Lobe::charlie; }) == "--lobe");
-    CHECK(where([](BakeOptions& o) { o.targets = {}; }) == "--for");
-    CHECK(where([](BakeOptions& o) { o.targets = {"babylon"}, o.size = 100; }) == "--size");
-    CHECK(where([](BakeOptions& o) { o.targets = {"babylon"}, o.levels = 3; }) == "--levels");
-    CHECK(where([](BakeOptions& o) { o.targets = {"babylon"}, o.encoding = Encoding::rgb9e5; }) == "--encoding");
-    CHECK(where([](BakeOptions& o) { o.targets = {"babylon"}, o.layout = Layout::latlong; }) == "--layout");
-    CHECK(where([](BakeOptions& o) { o.targets = {"playcanvas"}, o.size = 256; }) == "--size");
-    CHECK(where([](BakeOptions& o) { o.targets = {"playcanvas"}, o.levels = 6; }) == "--levels");
-    CHECK(where([](BakeOptions& o) { o.targets = {"playcanvas"}, o.irradiance_size = 16; }) == "--irradiance-size");
-    CHECK(where([](BakeOptions& o) { o.targets = {"materialx"}, o.size = 9, o.levels = 1; }) == "--size");
+    CHECK(where([](BakeOptions& o) { o.engines = {"three-latlong"}, o.lobe = Lobe::charlie; }) == "--lobe");
+    CHECK(where([](BakeOptions& o) { o.engines = {}; }) == "--for");
+    CHECK(where([](BakeOptions& o) { o.engines = {"babylon"}, o.size = 100; }) == "--size");
+    CHECK(where([](BakeOptions& o) { o.engines = {"babylon"}, o.levels = 3; }) == "--levels");
+    CHECK(where([](BakeOptions& o) { o.engines = {"babylon"}, o.encoding = Encoding::rgb9e5; }) == "--encoding");
+    CHECK(where([](BakeOptions& o) { o.engines = {"babylon"}, o.layout = Layout::latlong; }) == "--layout");
+    CHECK(where([](BakeOptions& o) { o.engines = {"playcanvas"}, o.size = 256; }) == "--size");
+    CHECK(where([](BakeOptions& o) { o.engines = {"playcanvas"}, o.levels = 6; }) == "--levels");
+    CHECK(where([](BakeOptions& o) { o.engines = {"playcanvas"}, o.irradiance_size = 16; }) == "--irradiance-size");
+    CHECK(where([](BakeOptions& o) { o.engines = {"materialx"}, o.size = 9, o.levels = 1; }) == "--size");
     CHECK(where([](BakeOptions& o) { o.format = Container::exr_mip, o.encoding = Encoding::rgb9e5; }) == "--encoding");
     CHECK(where([](BakeOptions& o) { o.format = Container::dds9, o.encoding = Encoding::rgb9e5; }) == "--encoding");
     CHECK(where([](BakeOptions& o) { o.sh_bands = 65; }) == "--sh-bands");
     CHECK(where([](BakeOptions& o) { o.layout = Layout::latlong, o.size = 100, o.levels = 4; }) == "--size");
 }
 
-TEST_CASE("target: filament's cube lies as cmgen's does, from the same image with its convention") {
+TEST_CASE("engine: filament's cube lies as cmgen's does, from the same image with its convention") {
     DOMELIGHT_DATA_FILE(source, "reference/symmetrical_garden/symmetrical_garden_1k.hdr");
     DOMELIGHT_DATA_FILE(cmgen, "reference/symmetrical_garden/symmetrical_garden_ibl.ktx");
     const test::TemporaryFolder folder;
     BakeOptions options;
-    options.targets = {"filament"};
+    options.engines = {"filament"};
     options.environment.latlong = "usd";
     options.preview = false;
     auto environment = open_environment({source}, options.environment);

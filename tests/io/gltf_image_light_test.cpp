@@ -1,8 +1,8 @@
 #include "scene/gltf/gltf_image_light.h"
 
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/bake/bake.h"
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
+#include "domelight/io/environment/open_environment.h"
 
 #include "io/io_helpers.h"
 #include "oriented.h"
@@ -125,7 +125,7 @@ TEST_CASE("gltf_image_light: a bake shows every direction's light, also when it 
     const ImageF image = direction_image(64);
     Environment environment = environment_of(image);
     BakeOptions options;
-    options.targets = {"gltf"};
+    options.engines = {"gltf"};
     options.size = 32;
     options.preview = false;
     options.threads = 2;

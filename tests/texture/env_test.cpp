@@ -1,16 +1,16 @@
 #include "texture/container/env.h"
 
+#include "domelight/bake/bake.h"
 #include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/texture/container/babylon_env.h"
-#include "domelight/bake/bake.h"
 #include "domelight/texture/texture.h"
 
-#include "texture/texel/rgba8_ranges.h"
 #include "io/io_helpers.h"
 #include "io/picture/texture_image.h"
 #include "oriented.h"
 #include "test.h"
+#include "texture/texel/rgba8_ranges.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +56,7 @@ std::string error_of(const std::vector<std::uint8_t>& bytes) {
 
 BakeOptions babylon_options(int size) {
     BakeOptions options;
-    options.targets = {"babylon"};
+    options.engines = {"babylon"};
     options.size = size;
     options.preview = false;
     options.threads = 2;

@@ -2,12 +2,12 @@
 
 #include "domelight/bake/bake.h"
 
-#include "texture/texel/rgba8_ranges.h"
 #include "filtering/resample/resize_latlong.h"
 #include "io/io_helpers.h"
 #include "io/picture/png_memory.h"
 #include "oriented.h"
 #include "test.h"
+#include "texture/texel/rgba8_ranges.h"
 
 #include <cmath>
 #include <vector>
@@ -130,14 +130,14 @@ TEST_CASE("playcanvas_atlas: bake writes it, and a furnace stays constant in all
     std::fill(furnace.pixels().begin(), furnace.pixels().end(), 0.75f);
     Environment environment = environment_of(furnace);
     BakeOptions options;
-    options.targets = {"playcanvas"};
+    options.engines = {"playcanvas"};
     options.preview = false;
     options.threads = 2;
     const auto report = bake(environment, options, folder.path());
     REQUIRE(report);
-    REQUIRE(report->targets[0].maps.size() == 1);
-    CHECK(report->targets[0].maps[0].levels.size() == 7);
-    CHECK(report->targets[0].maps[0].levels[3].roughness == doctest::Approx(0.6));
+    REQUIRE(report->engines[0].maps.size() == 1);
+    CHECK(report->engines[0].maps[0].levels.size() == 7);
+    CHECK(report->engines[0].maps[0].levels[3].roughness == doctest::Approx(0.6));
     const auto maps = read_playcanvas_atlas(folder / "sky-env-atlas.png");
     REQUIRE(maps);
     REQUIRE(maps->shiny.size() == 7);

@@ -1,15 +1,15 @@
 #pragma once
 
+#include "domelight/base/progress.h"
+#include "domelight/base/result.h"
+#include "domelight/engines/engine.h"
+#include "domelight/environment/environment.h"
+#include "domelight/filtering/brdf/brdf_table.h"
+#include "domelight/filtering/harmonic/spherical_harmonics.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/filtering/reference.h"
 #include "domelight/image/repair_report.h"
 #include "domelight/io/environment/open_environment.h"
-#include "domelight/filtering/brdf/brdf_table.h"
-#include "domelight/environment/environment.h"
-#include "domelight/filtering/prefilter.h"
-#include "domelight/base/progress.h"
-#include "domelight/filtering/reference.h"
-#include "domelight/base/result.h"
-#include "domelight/filtering/harmonic/spherical_harmonics.h"
-#include "domelight/engines/engine.h"
 #include "domelight/texture/texture.h"
 
 #include <filesystem>
@@ -31,13 +31,13 @@ std::string bake_method_name(BakeMethod method);
 enum class CubePicture { cross, strip, faces };
 std::string cube_picture_name(CubePicture picture);
 
-/// What to bake. Whatever is left out is the target's choice.
+/// What to bake. Whatever is left out is the engine's choice.
 struct BakeOptions {
-    std::vector<std::string> targets{"generic"};  ///< several share one reading of the environment
+    std::vector<std::string> engines{"generic"};  ///< several share one reading of the environment
     std::optional<Layout> layout;                 ///< cube unless asked otherwise
     std::optional<int> size;                      ///< level 0: face size, or height of a lat-long map
     std::optional<int> levels;
-    std::vector<double> roughness;  ///< of each level, [0, 1]; empty: the target's curve
+    std::vector<double> roughness;  ///< of each level, [0, 1]; empty: the engine's curve
     std::optional<Lobe> lobe;
     std::vector<double> exponents;  ///< Phong: of each level; infinity is the environment itself
     BakeMethod method = BakeMethod::exact;
@@ -114,9 +114,9 @@ struct BrdfReport {
     std::string encoding;
 };
 
-/// What one target's folder holds.
-struct TargetReport {
-    std::string target;
+/// What one engine's folder holds.
+struct EngineReport {
+    std::string name;
     std::filesystem::path folder;
     std::vector<BakedMap> maps;
     ShReport sh;
@@ -132,7 +132,7 @@ struct StageTime {
 };
 
 struct BakeReport {
-    std::vector<TargetReport> targets;
+    std::vector<EngineReport> engines;
     std::string source_sha256;
     RepairReport repaired;
     Vec3d mean_radiance;
@@ -146,7 +146,7 @@ struct BakeReport {
 Result<void> check_bake_options(const BakeOptions& options);
 
 /// Bakes an environment into `folder`: specular chain, irradiance, harmonics, BRDF table, picture, manifest; with
-/// several targets each into a folder of its name. Everything is written beside its place first and moved there when
+/// several engines each into a folder of its name. Everything is written beside its place first and moved there when
 /// all is complete; on an error nothing has changed.
 Result<BakeReport> bake(Environment& environment, const BakeOptions& options, const std::filesystem::path& folder);
 

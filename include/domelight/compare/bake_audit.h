@@ -2,11 +2,11 @@
 // Anybody's baked specular cube against the exact filter of its source: which way round it is, how rough each level
 // really is, how bright, how far off.
 
-#include "domelight/image/image.h"
-#include "domelight/filtering/prefilter.h"
 #include "domelight/base/progress.h"
 #include "domelight/base/result.h"
 #include "domelight/base/vec.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/image/image.h"
 
 #include <optional>
 #include <span>
@@ -54,7 +54,7 @@ struct LevelAudit {
     double relative_rmse = 0;  ///< sqrt(sum (theirs - fit)^2 / sum fit^2): the brightest directions count most
     double largest = 0;        ///< of |theirs - fit| / max(theirs, fit)
     std::optional<double> stated_roughness;
-    /// At the stated roughness and scale 1: what a consumer gets that trusts the file.
+    /// At the stated roughness and scale 1: what an engine gets that trusts the file.
     double stated_error = 0, stated_relative_rmse = 0;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/filtering/prefilter.h"
 #include "domelight/base/result.h"
+#include "domelight/filtering/prefilter.h"
 #include "domelight/texture/texture.h"
 
 #include <span>
@@ -16,14 +16,14 @@ std::string quantity_name(Quantity quantity);
 
 /// The file a map is written to. exr and hdr hold one image a level; the others hold the whole chain. dds9 is DDS with
 /// the header from before DX10; exr_mip a tiled OpenEXR with its levels and the envmap attribute. The last three belong
-/// to one target each: Babylon's .env, a glTF file with EXT_lights_image_based, PlayCanvas' atlas (a PNG).
+/// to one engine each: Babylon's .env, a glTF file with EXT_lights_image_based, PlayCanvas' atlas (a PNG).
 enum class Container { ktx2, ktx1, dds, dds9, exr, exr_mip, hdr, env, gltf, playcanvas_atlas };
 std::string container_name(Container container);
-/// Those that fit any target: ktx2, ktx1, dds, dds9, exr, exr-mip, hdr. The error lists them.
+/// Those that fit any engine: ktx2, ktx1, dds, dds9, exr, exr-mip, hdr. The error lists them.
 Result<Container> container_from_name(const std::string& name);
 std::string container_extension(Container container);  ///< ".ktx2", ".ktx", ...
 
-/// How a consumer's lookup differs from texture(cube, d) for the light that arrives from world direction d = (x, y, z).
+/// How an engine's lookup differs from texture(cube, d) for the light that arrives from world direction d = (x, y, z).
 enum class CubeMirror {
     none,     ///< it does not
     x,        ///< it reads texture(cube, (-x, y, z))
@@ -40,12 +40,12 @@ Result<BrdfForm> brdf_form_from_name(const std::string& name);
 /// Roughness baked into a level: of `levels` levels of a cube whose first has `size`^2 texels a face.
 using RoughnessCurve = double (*)(int level, int levels, int size);
 
-/// One consumer: what it loads and in which convention. In file names, {stem} stands for the environment's name, and
+/// One engine: what it loads and in which convention. In file names, {stem} stands for the environment's name, and
 /// the container's extension is appended. An empty name means that the map is not written.
-struct Target {
-    std::string name;      ///< "filament"
-    std::string consumer;  ///< one line for lists
-    std::string note;      ///< what the consumer does itself, or what a later version will write; may be empty
+struct Engine {
+    std::string name;   ///< "filament"
+    std::string loads;  ///< one line for lists: what the engine is, and what is made for it
+    std::string note;   ///< what the engine does itself, or what a later version will write; may be empty
 
     int size = 512;    ///< face size of level 0
     int smallest = 8;  ///< by default levels go down to this face size
@@ -56,7 +56,7 @@ struct Target {
     Encoding encoding = Encoding::rgba16f;
     Container container = Container::ktx2;
     bool zstd = false;
-    /// The consumer filters by itself: only the environment is written, as one image of the projection `panorama`: a
+    /// The engine filters by itself: only the environment is written, as one image of the projection `panorama`: a
     /// lat-long one 4 size x 2 size, else 2 size x 2 size.
     bool environment_only = false;
     std::string panorama = "latlong";  ///< name and convention, as projections.h takes them
@@ -76,16 +76,16 @@ struct Target {
     bool sh_metadata = false;  ///< the same in the specular file's key "sh"
 };
 
-/// All targets, `generic` first.
-std::span<const Target> targets();
-/// The target of that name. The error lists the names.
-Result<const Target*> find_target(const std::string& name);
+/// All engines, `generic` first.
+std::span<const Engine> engines();
+/// The engine of that name. The error lists the names.
+Result<const Engine*> find_engine(const std::string& name);
 
 /// roughness = level / (levels - 1); 0 for a single level.
 double linear_roughness(int level, int levels, int size);
 
-/// Levels of a target's cube chain whose first has `size`^2 texels a face: down to its smallest.
-int default_levels(const Target& target, int size);
+/// Levels of an engine's cube chain whose first has `size`^2 texels a face: down to its smallest.
+int default_levels(const Engine& engine, int size);
 
 /// Phong's exponents where none are given: the environment itself (infinity), then 2048 and a quarter of that with each
 /// level, as its texels double; at least 1.

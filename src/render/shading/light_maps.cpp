@@ -1,8 +1,8 @@
+#include "domelight/engines/engine.h"
 #include "domelight/filtering/brdf/brdf_table.h"
 #include "domelight/filtering/prefilter.h"
 #include "domelight/projection/projection.h"
 #include "domelight/render/shading/shading.h"
-#include "domelight/engines/engine.h"
 #include "domelight/texture/texture.h"
 
 #include "projection/bordered_cube.h"
@@ -56,7 +56,7 @@ Result<nlohmann::json> read_json(const std::filesystem::path& file) {
     std::ifstream in(file);
     if (!in)
         return Error{"cannot be read", file.string(),
-                     "The folder must be one that `domelight bake` wrote for the generic target."};
+                     "The folder must be one that `domelight bake` wrote for the generic engine."};
     auto json = nlohmann::json::parse(in, nullptr, false);
     if (json.is_discarded()) return Error{"is no JSON", file.string(), ""};
     return json;
@@ -101,7 +101,7 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
                      name, ""};
     for (const Cubemap& c : *specular) impl.specular.emplace_back(c);
 
-    // The generic target stores irradiance E, others E / pi.
+    // The generic engine stores irradiance E, others E / pi.
     const bool over_pi =
         manifest->value("irradiance", nlohmann::json::object()).value("quantity", "irradiance") == "irradiance_over_pi";
     Cubemap e = irradiance->front();
@@ -124,19 +124,19 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
 }
 
 Result<LightMaps> LightMaps::bake(ImageView<const float> latlong, const Mat3& world_to_source, int threads, Lobe lobe) {
-    const Target& target = targets().front();  // generic
-    const int levels = default_levels(target, target.size);
+    const Engine& engine = engines().front();  // generic
+    const int levels = default_levels(engine, engine.size);
     const auto exponents = default_phong_exponents(levels);
     LightMaps maps;
     maps.impl_->lobe = lobe;
     FilterOptions options;
     for (int l = 0; l < levels; ++l) {
-        const double roughness = target.roughness(l, levels, target.size);
-        options.specular.push_back({target.size >> l, l == 0,
+        const double roughness = engine.roughness(l, levels, engine.size);
+        options.specular.push_back({engine.size >> l, l == 0,
                                     lobe == Lobe::ggx ? ZonalKernel::ggx(roughness) : ZonalKernel{lobe, exponents[l]}});
         maps.impl_->roughness.push_back(lobe == Lobe::ggx ? float(roughness) : matching_roughness(exponents[l]));
     }
-    options.irradiance_size = target.irradiance_size;
+    options.irradiance_size = engine.irradiance_size;
     options.sh_bands = 3;
     options.world_to_source = world_to_source;
     options.threads = threads;

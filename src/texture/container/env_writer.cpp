@@ -1,9 +1,9 @@
 // Writes Babylon's .env, version 2.
 #include "domelight/io/file/atomic_file.h"
 
-#include "texture/container/env.h"
 #include "io/file/output_file.h"
 #include "io/picture/png_memory.h"
+#include "texture/container/env.h"
 
 #include <fmt/format.h>
 
@@ -30,7 +30,7 @@ Result<void> check_cube(const Texture& cube) {
     if (int(cube.levels.size()) != levels)
         return Error{fmt::format("a .env file {} wide has {} levels, down to one texel, not {}", cube.width, levels,
                                  cube.levels.size()),
-                     "", "Leave the number of levels to the target."};
+                     "", "Leave the number of levels to the engine."};
     return {};
 }
 

@@ -45,8 +45,9 @@ GlFormat gl_format(Encoding encoding) {
         case Encoding::r11g11b10f:
             break;
     }
-    // The type should be UNSIGNED_INT_10F_11F_11F_REV, 0x8c3b. Filament, the format's one consumer, writes and expects
-    // the internal format here and refuses the right value; readers that go by the internal format take either.
+    // The type should be UNSIGNED_INT_10F_11F_11F_REV, 0x8c3b. Filament, the one engine that reads the format, writes
+    // and expects the internal format here and refuses the right value; readers that go by the internal format take
+    // either.
     return {k_gl_r11f_g11f_b10f, k_gl_r11f_g11f_b10f, 4, k_rgb, k_rgb};
 }
 

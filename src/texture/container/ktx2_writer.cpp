@@ -84,7 +84,7 @@ unsigned colour_model(Encoding encoding) {
         case Encoding::bc6h:
             return 133;  // KHR_DF_MODEL_BC6H
         case Encoding::uastc_hdr:
-            return k_model_uastc_hdr;  // what tells its consumers that the blocks turn into BC6H
+            return k_model_uastc_hdr;  // tells engines that the blocks turn into BC6H
         case Encoding::astc4x4_hdr:
         case Encoding::astc6x6_hdr:
             return 162;  // KHR_DF_MODEL_ASTC

@@ -49,7 +49,7 @@ export async function open(browser, url, name, log) {
     return page;
 }
 
-export const call = (page, name, argument) => page.evaluate(([n, a]) => window.consumer[n](a), [name, argument]);
+export const call = (page, name, argument) => page.evaluate(([n, a]) => window.engine[n](a), [name, argument]);
 
 /// A page's picture: {width, height, rgba: Float32Array of rows from the top}, in linear light.
 export async function draw(page, argument) {

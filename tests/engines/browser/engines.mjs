@@ -1,4 +1,4 @@
-// What each engine loads of a bake, and which level it should read: the tests' own statement of it, apart from src/target/.
+// What each engine loads of a bake, and which level it should read: the tests' own statement of it, apart from src/engines/.
 
 import {repaintAtlas, repaintEnv, repaintLevels, repaintUastcHdr} from './files.mjs';
 
@@ -31,7 +31,7 @@ const babylon = {
 ///
 /// name, page         of the entry; of the module in pages/ that loads and draws
 /// options            further ones of `domelight bake`
-/// target, picks      of `domelight bake --for`; the file among the bake's names that the entry is about, if the bake has it
+/// engine, picks      of `domelight bake --for`; the file among the bake's names that the entry is about, if the bake has it
 /// files              (url of the bake's folder, names, url of its source) => the argument of the page's `load`
 /// chain, repaint     the file whose levels are replaced by constants for the test of levels, and by what
 /// roughness          (the material's, step) => what the shader looks up; step: how far the normal turns from a pixel to the next
@@ -42,17 +42,17 @@ const babylon = {
 /// plastics           false where the engine's plastics are nobody else's
 /// theirs             a bake by the engine's own tool, in DOMELIGHT_DATA, of a picture that we bake too: it must be turned and as bright alike
 /// axesOnly, slow     only its directions are tested; only with --all
-export const consumers = [
+export const entries = [
     {
         // It filters the picture itself, on the GPU.
-        name: 'three-latlong', page: 'three', target: 'three-latlong', picks: names => find(names, '.exr'), slow: true,
+        name: 'three-latlong', page: 'three', engine: 'three-latlong', picks: names => find(names, '.exr'), slow: true,
         files: (url, names) => ({latlong: url + find(names, '.exr')}),
         roughness: (roughness, step) => Math.min(1, Math.max(roughness, 0.045) + step),
         metal: ({L, E, normal, reflected, roughness, albedo}) => blend(albedo, L(leaning(reflected, normal, roughness), roughness), E(normal)),
         tolerance: 0.01, furnace: 0.01,
     },
     {
-        name: 'three', page: 'three', target: 'three', picks: names => find(names, '.pmrem.ktx2'),
+        name: 'three', page: 'three', engine: 'three', picks: names => find(names, '.pmrem.ktx2'),
         files: (url, names) => ({pmrem: url + find(names, '.pmrem.ktx2')}),
         chain: names => find(names, '.pmrem.ktx2'), repaint: repaintUastcHdr,
         level: quadratic,
@@ -64,7 +64,7 @@ export const consumers = [
         tolerance: 0.01, furnace: 0.01,
     },
     {
-        name: 'filament', page: 'filament', target: 'filament', picks: names => find(names, '_ibl.ktx'),
+        name: 'filament', page: 'filament', engine: 'filament', picks: names => find(names, '_ibl.ktx'),
         files: (url, names) => ({ibl: url + find(names, '_ibl.ktx'), skybox: url + find(names, '_skybox.ktx')}),
         chain: names => find(names, '_ibl.ktx'), repaint: repaintLevels,
         level: quadratic,
@@ -76,14 +76,14 @@ export const consumers = [
                  brightness: 0.01},
     },
     {
-        name: 'babylon', page: 'babylon', target: 'babylon', options: ['--format', 'dds'], picks: names => find(names, '.dds'),
+        name: 'babylon', page: 'babylon', engine: 'babylon', options: ['--format', 'dds'], picks: names => find(names, '.dds'),
         files: (url, names) => ({prefiltered: url + find(names, '.dds')}),
         chain: names => find(names, '.dds'), repaint: repaintLevels,
         ...babylon,
         theirs: {by: 'its own tool', latlong: 'usd', files: url => ({prefiltered: `${url}symmetrical_garden.env`}), brightness: 0.01},
     },
     {
-        name: 'babylon-env', page: 'babylon', target: 'babylon', picks: names => find(names, '.env'),
+        name: 'babylon-env', page: 'babylon', engine: 'babylon', picks: names => find(names, '.env'),
         files: (url, names) => ({prefiltered: url + find(names, '.env')}),
         chain: names => find(names, '.env'), repaint: repaintEnv,
         ...babylon,
@@ -94,11 +94,11 @@ export const consumers = [
     },
     {
         // The same file in Babylon's right-handed world.
-        name: 'babylon-right-handed', page: 'babylon', target: 'babylon', picks: names => find(names, '.env'), axesOnly: true,
+        name: 'babylon-right-handed', page: 'babylon', engine: 'babylon', picks: names => find(names, '.env'), axesOnly: true,
         files: (url, names) => ({prefiltered: url + find(names, '.env'), rightHanded: true}),
     },
     {
-        name: 'playcanvas', page: 'playcanvas', target: 'playcanvas', picks: names => find(names, '.png'),
+        name: 'playcanvas', page: 'playcanvas', engine: 'playcanvas', picks: names => find(names, '.png'),
         files: (url, names) => ({atlas: url + find(names, '.png')}),
         chain: names => find(names, '.png'), repaint: repaintAtlas,
         level: roughness => 5 * roughness, roughness: asIs,
@@ -107,7 +107,7 @@ export const consumers = [
         tolerance: 0.02, furnace: 0.01,
     },
     {
-        name: 'khronos', page: 'khronos', target: 'khronos', picks: names => find(names, 'specular.ktx2'),
+        name: 'khronos', page: 'khronos', engine: 'khronos', picks: names => find(names, 'specular.ktx2'),
         files: (url, names, environment) => ({panorama: environment, specular: url + 'ggx/specular.ktx2', sheen: url + 'charlie/sheen.ktx2',
                                               diffuse: url + 'lambertian/diffuse.ktx2', brdf: url + 'brdf.ktx2', levels: 5}),
         chain: () => 'ggx/specular.ktx2', repaint: repaintLevels,
@@ -117,7 +117,7 @@ export const consumers = [
     },
     {
         // What the viewer makes of the lat-long picture by itself, to which the baked cubes must be turned alike.
-        name: 'khronos-panorama', page: 'khronos', target: 'khronos', picks: names => find(names, 'specular.ktx2'), axesOnly: true, slow: true,
+        name: 'khronos-panorama', page: 'khronos', engine: 'khronos', picks: names => find(names, 'specular.ktx2'), axesOnly: true, slow: true,
         files: (url, names, environment) => ({panorama: environment}),
     },
 ];

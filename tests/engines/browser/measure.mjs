@@ -55,7 +55,7 @@ export function albedoOf(NdotV, roughness) {
     return albedos.get(key);
 }
 
-/// Replaces the white metals of a picture by what `metal` says of them. `light` is as `filteredLight` makes it; `widened` a consumer's `roughness`.
+/// Replaces the white metals of a picture by what `metal` says of them. `light` is as `filteredLight` makes it; `widened` an engine's `roughness`.
 export function drawMetals(scene, picture, light, metal, widened) {
     const step = 2 / scene.radius / scene.height;  // the picture is 4 units high
     const E = normal => light(normal, 1);  // at roughness 1 the lobe is the clamped cosine

@@ -8,7 +8,7 @@ import {fileURLToPath} from 'node:url';
 import {execFileSync} from 'node:child_process';
 import {ballsScene, mirrorScene, roughnesses, writeScene} from './balls.mjs';
 import {call, draw, launch, open, serve} from './browser.mjs';
-import {consumers} from './engines.mjs';
+import {entries} from './engines.mjs';
 import {testFormats} from './formats.mjs';
 import {readHdr, writeConstantHdr, writePng} from './files.mjs';
 import {albedoOf, axes, ballErrors, ballMeans, drawMetals, filteredLight, findLabels, likeness} from './measure.mjs';
@@ -42,14 +42,14 @@ const filesIn = folder => fs.readdirSync(folder, {recursive: true}).filter(name 
 const exposure = environment => (environment === 'sky.hdr' ? ['--exposure', 1.3] : []);
 
 const accepted = option => new RegExp(`${option} ([a-z0-9-]+(?:\\|[a-z0-9-]+)+)`).exec(domelight('bake', '--help'))[1].split('|');
-const targets = accepted('--for');
+const engineNames = accepted('--for');
 
-/// Bakes an environment of the work folder once for each target and further options: the folder's name in it.
+/// Bakes an environment of the work folder once for each engine and further options: the folder's name in it.
 const bakes = new Map();
-function bake(environment, target, more = []) {
-    const folder = [path.parse(environment).name, target, ...more].join('-').replaceAll('--', '');
+function bake(environment, engine, more = []) {
+    const folder = [path.parse(environment).name, engine, ...more].join('-').replaceAll('--', '');
     if (!bakes.has(folder)) {
-        domelight('bake', path.join(work, environment), '-o', path.join(work, folder), '--for', target, '--quiet', '--no-preview',
+        domelight('bake', path.join(work, environment), '-o', path.join(work, folder), '--for', engine, '--quiet', '--no-preview',
                   ...exposure(environment), ...more);
         bakes.set(folder, filesIn(path.join(work, folder)));
     }
@@ -73,9 +73,9 @@ const shot = (page, scene, more = {}) =>
 
 const percent = v => `${(100 * v).toFixed(2)} %`;
 
-async function testAxes(consumer, page, environment) {
+async function testAxes(entry, page, environment) {
     const picture = await shot(page, mirrorScene);
-    keep(`${consumer.name}-mirror`, picture);
+    keep(`${entry.name}-mirror`, picture);
     const found = findLabels(mirrorScene, environment, picture);
     for (const name of Object.keys(axes)) {
         const {at, shift, pixels, matching} = found[name];
@@ -83,47 +83,47 @@ async function testAxes(consumer, page, environment) {
         if (pixels < 50) wrong.push(`only ${pixels} pixels to judge by`);
         if (!(matching >= 0.98)) wrong.push(`${percent(1 - matching)} of its ${pixels} pixels have another colour`);
         if (Math.hypot(...shift) > 1) wrong.push(`it is ${shift} pixels from ${at.map(v => v.toFixed(0))}`);
-        claim(`${consumer.name}: the label ${name} is where a mirror shows ${name}`, wrong,
+        claim(`${entry.name}: the label ${name} is where a mirror shows ${name}`, wrong,
               `about ${at.map(v => v.toFixed(0))}, shifted by ${shift}; ${percent(matching)} of ${pixels} pixels right`);
     }
 }
 
-async function testFurnace(consumer, picture) {
-    keep(`${consumer.name}-furnace`, picture);
+async function testFurnace(entry, picture) {
+    keep(`${entry.name}-furnace`, picture);
     const means = ballMeans(ballsScene, picture, 0.9);
     for (const name of Object.keys(means).filter(n => n.startsWith('metal') || n === 'lambert')) {
         const off = Math.max(...means[name].map(v => Math.abs(v - 1)));
-        claim(`${consumer.name}: in a white furnace ${name} is white within ${percent(consumer.furnace)}`,
-              off <= consumer.furnace ? [] : [`it is ${means[name].map(v => v.toFixed(4))}`], `off by ${percent(off)}`);
+        claim(`${entry.name}: in a white furnace ${name} is white within ${percent(entry.furnace)}`,
+              off <= entry.furnace ? [] : [`it is ${means[name].map(v => v.toFixed(4))}`], `off by ${percent(off)}`);
     }
 }
 
 /// Levels that are one grey each: 57/64 in the first, 9/64 in the last, exact in every encoding here.
 const levelGrey = (level, count) => Math.round(64 * (0.89 - 0.75 * level / (count - 1))) / 64;
 
-async function testLevels(consumer, page, bakeOf, load, furnace) {
+async function testLevels(entry, page, bakeOf, load, furnace) {
     const {folder, names} = bakeOf;
     const copy = `${folder}-levels`;
     fs.cpSync(path.join(work, folder), path.join(work, copy), {recursive: true});
-    const chain = consumer.chain(names);
-    const values = consumer.repaint(path.join(work, folder, chain), path.join(work, copy, chain), levelGrey);
+    const chain = entry.chain(names);
+    const values = entry.repaint(path.join(work, folder, chain), path.join(work, copy, chain), levelGrey);
     await call(page, 'load', load(copy));
     const picture = await shot(page, ballsScene);
-    keep(`${consumer.name}-levels`, picture);
+    keep(`${entry.name}-levels`, picture);
     // About the centre, where the normal turns by 1 / radius from pixel to pixel. Over the furnace, whatever else the material does cancels.
     const seen = ballMeans(ballsScene, picture, 0.2), white = ballMeans(ballsScene, furnace, 0.2);
     const radius = ballsScene.radius * ballsScene.height / 4;
     const size = JSON.parse(fs.readFileSync(path.join(work, folder, 'manifest.json'))).specular?.levels?.[0]?.size;
     for (const roughness of roughnesses) {
         const last = values.length - 1;
-        const level = Math.min(last, consumer.level(consumer.roughness(roughness, 1 / radius), last, size));
+        const level = Math.min(last, entry.level(entry.roughness(roughness, 1 / radius), last, size));
         const low = Math.min(last - 1, Math.floor(level));
-        const shown = consumer.shown ?? (v => v);
-        const seenRoughness = consumer.roughness(roughness, 1 / radius);
+        const shown = entry.shown ?? (v => v);
+        const seenRoughness = entry.roughness(roughness, 1 / radius);
         const expected = shown(values[low] + (level - low) * (values[low + 1] - values[low]),
                                {first: values[0], last: values[last], alpha: seenRoughness ** 2, albedo: albedoOf(1, seenRoughness)});
         const value = seen[`metal ${roughness}`][1] / white[`metal ${roughness}`][1];
-        claim(`${consumer.name}: roughness ${roughness} reads level ${level.toFixed(2)} of 0 to ${last}`,
+        claim(`${entry.name}: roughness ${roughness} reads level ${level.toFixed(2)} of 0 to ${last}`,
               Math.abs(value - expected) <= 0.012 ? [] : [`it reads ${value.toFixed(3)} and not ${expected.toFixed(3)}`],
               `${value.toFixed(3)} for ${expected.toFixed(3)}`);
     }
@@ -155,68 +155,68 @@ function filteredSky() {
     return skyLevels;
 }
 
-async function testBrightness(consumer, page) {
+async function testBrightness(entry, page) {
     const picture = await shot(page, ballsScene);
-    keep(`${consumer.name}-sky`, picture);
+    keep(`${entry.name}-sky`, picture);
     const ours = splitSum();
-    drawMetals(ballsScene, ours, filteredSky(), consumer.metal, consumer.roughness);
-    keep(`${consumer.name}-sky-reference`, ours);
+    drawMetals(ballsScene, ours, filteredSky(), entry.metal, entry.roughness);
+    keep(`${entry.name}-sky-reference`, ours);
     const theirs = ballMeans(ballsScene, picture, 0.9), expected = ballMeans(ballsScene, ours, 0.9), errors = ballErrors(ballsScene, picture, ours, 0.9);
     for (const {name} of ballsScene.balls) {
-        if (consumer.plastics === false && name.startsWith('plastic')) continue;
+        if (entry.plastics === false && name.startsWith('plastic')) continue;
         const off = Math.max(...theirs[name].map((v, c) => Math.abs(v / expected[name][c] - 1)));
         const wrong = [];
-        if (!(off <= consumer.tolerance)) wrong.push(`it is ${theirs[name].map(v => v.toFixed(4))} and not ${expected[name].map(v => v.toFixed(4))}`);
+        if (!(off <= entry.tolerance)) wrong.push(`it is ${theirs[name].map(v => v.toFixed(4))} and not ${expected[name].map(v => v.toFixed(4))}`);
         // Pixel by pixel less closely: levels are mixed linearly, and a mirror is a little blurred.
         if (!(errors[name] <= (name === 'metal 0' ? 0.07 : 0.03))) wrong.push(`its pixels are off by ${percent(errors[name])} RMS`);
-        claim(`${consumer.name}: under a sky, ${name} is as bright as our reference within ${percent(consumer.tolerance)}`, wrong,
+        claim(`${entry.name}: under a sky, ${name} is as bright as our reference within ${percent(entry.tolerance)}`, wrong,
               `means off by ${percent(off)}, pixels by ${percent(errors[name])} RMS`);
     }
 }
 
 /// The engine's own tool baked a photograph, and so do we: both must light the mirror ball alike.
-async function testTheirs(consumer, page) {
+async function testTheirs(entry, page) {
     const data = process.env.DOMELIGHT_DATA && path.join(process.env.DOMELIGHT_DATA, 'reference/symmetrical_garden');
-    const {by, latlong, files, brightness} = consumer.theirs;
-    if (!data || !fs.existsSync(data)) return skip(`${consumer.name}: the bake by ${by} is not in DOMELIGHT_DATA`);
+    const {by, latlong, files, brightness} = entry.theirs;
+    if (!data || !fs.existsSync(data)) return skip(`${entry.name}: the bake by ${by} is not in DOMELIGHT_DATA`);
     fs.cpSync(data, path.join(work, 'theirs'), {recursive: true});
-    const folder = `ours-${consumer.name}`;
-    domelight('bake', path.join(data, 'symmetrical_garden_1k.hdr'), '-o', path.join(work, folder), '--for', consumer.target, '--latlong', latlong,
-              '--quiet', '--no-preview', ...(consumer.options ?? []));
-    await call(page, 'load', consumer.files(`/files/${folder}/`, filesIn(path.join(work, folder))));
+    const folder = `ours-${entry.name}`;
+    domelight('bake', path.join(data, 'symmetrical_garden_1k.hdr'), '-o', path.join(work, folder), '--for', entry.engine, '--latlong', latlong,
+              '--quiet', '--no-preview', ...(entry.options ?? []));
+    await call(page, 'load', entry.files(`/files/${folder}/`, filesIn(path.join(work, folder))));
     const ours = await shot(page, mirrorScene);
     await call(page, 'load', files('/files/theirs/'));
     const theirs = await shot(page, mirrorScene);
-    keep(`${consumer.name}-garden`, ours);
-    keep(`${consumer.name}-garden-theirs`, theirs);
+    keep(`${entry.name}-garden`, ours);
+    keep(`${entry.name}-garden-theirs`, theirs);
     const alike = likeness(mirrorScene, ours, theirs);
-    claim(`${consumer.name}: turned as the bake of the same picture by ${by}`, alike > 0.95 ? [] : [`correlation ${alike.toFixed(3)}`],
+    claim(`${entry.name}: turned as the bake of the same picture by ${by}`, alike > 0.95 ? [] : [`correlation ${alike.toFixed(3)}`],
           `correlation ${alike.toFixed(3)}`);
     const cut = picture => ballMeans(mirrorScene, {...picture, rgba: picture.rgba.map(v => Math.min(1, v))}, 0.95).mirror;
     const a = cut(ours), b = cut(theirs), off = Math.max(...a.map((v, c) => Math.abs(v / b[c] - 1)));
-    claim(`${consumer.name}: as bright as the bake by ${by} within ${percent(brightness)}`,
+    claim(`${entry.name}: as bright as the bake by ${by} within ${percent(brightness)}`,
           off <= brightness ? [] : [`${a.map(v => v.toFixed(3))} and not ${b.map(v => v.toFixed(3))}`], `off by ${percent(off)}`);
 }
 
-async function testConsumer(consumer, browser, server, log, axesImage) {
-    if (!targets.includes(consumer.target)) return skip(`${consumer.name}: the program does not bake for it`);
-    const environments = consumer.axesOnly ? ['axes.hdr'] : ['axes.hdr', 'white.hdr', 'sky.hdr'];
-    const bakesOf = Object.fromEntries(environments.map(environment => [environment, bake(environment, consumer.target, consumer.options)]));
-    if (!consumer.picks(bakesOf['axes.hdr'].names)) return skip(`${consumer.name}: bake --for ${consumer.target} does not write its file`);
-    const page = await open(browser, server.url, consumer.page, log);
-    console.log(`${consumer.name}: version ${await page.evaluate(() => window.consumer.version)}`);
-    const load = environment => folder => consumer.files(`/files/${folder}/`, bakesOf[environment].names, `/files/${environment}`);
+async function testEngine(entry, browser, server, log, axesImage) {
+    if (!engineNames.includes(entry.engine)) return skip(`${entry.name}: the program does not bake for it`);
+    const environments = entry.axesOnly ? ['axes.hdr'] : ['axes.hdr', 'white.hdr', 'sky.hdr'];
+    const bakesOf = Object.fromEntries(environments.map(environment => [environment, bake(environment, entry.engine, entry.options)]));
+    if (!entry.picks(bakesOf['axes.hdr'].names)) return skip(`${entry.name}: bake --for ${entry.engine} does not write its file`);
+    const page = await open(browser, server.url, entry.page, log);
+    console.log(`${entry.name}: version ${await page.evaluate(() => window.engine.version)}`);
+    const load = environment => folder => entry.files(`/files/${folder}/`, bakesOf[environment].names, `/files/${environment}`);
     const lit = environment => call(page, 'load', load(environment)(bakesOf[environment].folder));
     await lit('axes.hdr');
-    await testAxes(consumer, page, axesImage);
-    if (consumer.axesOnly) return page.close();
+    await testAxes(entry, page, axesImage);
+    if (entry.axesOnly) return page.close();
     await lit('white.hdr');
     const furnace = await shot(page, ballsScene);
-    await testFurnace(consumer, furnace);
-    if (consumer.chain) await testLevels(consumer, page, bakesOf['white.hdr'], load('white.hdr'), furnace);
+    await testFurnace(entry, furnace);
+    if (entry.chain) await testLevels(entry, page, bakesOf['white.hdr'], load('white.hdr'), furnace);
     await lit('sky.hdr');
-    await testBrightness(consumer, page);
-    if (consumer.theirs) await testTheirs(consumer, page);
+    await testBrightness(entry, page);
+    if (entry.theirs) await testTheirs(entry, page);
     await page.close();
 }
 
@@ -226,7 +226,7 @@ function testDocs() {
     for (const name of fs.readdirSync(path.join(here, 'pages'))) {
         const lines = fs.readFileSync(path.join(here, 'pages', name), 'utf8').split('\n');
         lines.forEach((line, first) => {
-            const page = /^ *\/\/ docs\/targets\/(\w+\.md)/.exec(line);
+            const page = /^ *\/\/ docs\/engines\/(\w+\.md)/.exec(line);
             if (!page) return;
             const block = lines.slice(first + 1, lines.findIndex((l, k) => k > first && l.trim() === '// end')).map(l => l.slice(4)).join('\n');
             const text = fs.readFileSync(path.join(folder, page[1]), 'utf8');
@@ -237,7 +237,7 @@ function testDocs() {
 
 /// The mirror balls that were drawn, side by side, and below each its balls under the sky.
 function writeSheet(file) {
-    const names = consumers.map(c => c.name).filter(name => picturesOf[`${name}-sky`]), cell = 320, height = 256 + 128;
+    const names = entries.map(c => c.name).filter(name => picturesOf[`${name}-sky`]), cell = 320, height = 256 + 128;
     const rgb = Buffer.alloc(3 * cell * names.length * height);
     names.forEach((name, k) => {
         for (const [part, left, top] of [['mirror', 32, 0], ['sky', 0, 256]]) {
@@ -263,15 +263,15 @@ const browserLog = fs.createWriteStream(path.join(work, 'browser.log'));
 const log = line => browserLog.write(`${line}\n`);
 try {
     const axesImage = readHdr(path.join(work, 'axes.hdr'));
-    for (const consumer of consumers) {
-        if (option('--only') ? option('--only') !== consumer.name : consumer.slow && !options.includes('--all')) continue;
+    for (const entry of entries) {
+        if (option('--only') ? option('--only') !== entry.name : entry.slow && !options.includes('--all')) continue;
         const start = process.uptime();
         try {
-            await testConsumer(consumer, browser, server, log, axesImage);
+            await testEngine(entry, browser, server, log, axesImage);
         } catch (error) {
-            claim(`${consumer.name}: loads and draws`, [String(error.stderr ?? error.stack ?? error)]);
+            claim(`${entry.name}: loads and draws`, [String(error.stderr ?? error.stack ?? error)]);
         }
-        console.log(`${consumer.name}: ${(process.uptime() - start).toFixed(1)} s`);
+        console.log(`${entry.name}: ${(process.uptime() - start).toFixed(1)} s`);
     }
     if (!option('--only') || option('--only') === 'formats')
         await testFormats({claim, skip, domelight, work, modules, browser, server, log, encodings: accepted('--encoding')})

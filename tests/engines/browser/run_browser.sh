@@ -21,7 +21,7 @@ mkdir -p "$folder"
 # What is missing of the browser and of Node, wherever the latter came from.
 declare -A command_of=([chromium]=chromium [nodejs]=node [npm]=npm [openexr]=exrheader)
 wanted=()
-for package in "${consumer_packages[@]}"; do
+for package in "${engine_packages[@]}"; do
     command -v "${command_of[$package]}" >/dev/null || wanted+=("$package")
 done
 if [ ${#wanted[@]} -gt 0 ]; then

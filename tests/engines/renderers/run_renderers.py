@@ -166,7 +166,7 @@ def main():
         environment = read_hdr(folder / "axes.hdr")
         test_mitsuba(environment, folder)
         test_blender(environment, folder)
-    print(f"targets: {passed} passed, {failed} failed, {skipped} skipped")
+    print(f"engines: {passed} passed, {failed} failed, {skipped} skipped")
     return 1 if failed else 0
 
 

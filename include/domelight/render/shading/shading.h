@@ -1,9 +1,9 @@
 #pragma once
 // What a real-time engine draws: a scene lit by the maps that `bake` writes, each model as its shader has it.
 
-#include "domelight/render/render.h"
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
 #include "domelight/filtering/kernel/zonal_kernel.h"
+#include "domelight/render/render.h"
 
 #include <memory>
 #include <optional>
@@ -13,10 +13,10 @@ namespace domelight {
 /// The maps of a bake, as a shader binds them. Lookups are in world directions.
 class LightMaps {
   public:
-    /// Reads what `domelight bake -o DIR` wrote for the generic target, with either lobe: specular.ktx2,
+    /// Reads what `domelight bake -o DIR` wrote for the generic engine, with either lobe: specular.ktx2,
     /// irradiance.ktx2, sh.json, brdf.ktx2, roughness or exponent by level from manifest.json. Errors name the file.
     static Result<LightMaps> load(const std::filesystem::path& folder);
-    /// Bakes them in memory as the generic target has them. lobe: ggx, or phong_brdf with its default exponents.
+    /// Bakes them in memory as the generic engine has them. lobe: ggx, or phong_brdf with its default exponents.
     static Result<LightMaps> bake(ImageView<const float> latlong, const Mat3& world_to_source, int threads = 0,
                                   Lobe lobe = Lobe::ggx);
     ~LightMaps();
