@@ -1,11 +1,12 @@
 #include "cli/compare/compare_pictures.h"
 
 #include "domelight/bake/bake.h"
-#include "domelight/io/write_image.h"
 #include "domelight/compare/metrics.h"
+#include "domelight/io/write_image.h"
 
-#include "compare/picture_reader.h"
+#include "cli/console/output_endings.h"
 #include "compare/compare_sheet.h"
+#include "compare/picture_reader.h"
 #include "preview/tonemap.h"
 
 #include <fmt/core.h>
@@ -386,7 +387,9 @@ Result<void> write_pictures(const Comparison& c, const PictureWords& w, int thre
     if (!w.heat.empty()) {
         const auto map = named_map(c, w.heat_of, threads);
         if (!map) return map.error();
-        if (auto ok = write_png(w.heat, heat_picture(map->heat(w.heat_max, c.mask_view()), c.mask_view()).view()); !ok)
+        if (auto ok =
+                write_screen_picture(w.heat, heat_picture(map->heat(w.heat_max, c.mask_view()), c.mask_view()).view());
+            !ok)
             return ok.error().at(w.heat);
     }
     if (w.sheet.empty()) return {};
@@ -403,7 +406,8 @@ Result<void> write_pictures(const Comparison& c, const PictureWords& w, int thre
     sheet.difference = difference->heat(0, c.mask_view());
     sheet.perceived = perceived->heat(0, c.mask_view());
     sheet.mask = c.mask_view();
-    if (auto ok = write_png(w.sheet, compare_sheet(sheet, threads).view()); !ok) return ok.error().at(w.sheet);
+    if (auto ok = write_screen_picture(w.sheet, compare_sheet(sheet, threads).view()); !ok)
+        return ok.error().at(w.sheet);
     return {};
 }
 
@@ -539,8 +543,7 @@ Result<void> check_words(const PictureWords& w) {
     }
     if (w.level.value_or(0) < 0) return Error{"is below 0", "--level", ""};
     for (const auto& [option, file] : {std::pair("--heat", &w.heat), std::pair("--sheet", &w.sheet)})
-        if (!file->empty() && !file->ends_with(".png"))
-            return Error{fmt::format("\"{}\" does not end in .png", *file), option, ""};
+        if (auto ok = check_ending(option, *file, screen_picture_extensions()); !ok) return ok;
     return {};
 }
 
@@ -564,10 +567,11 @@ void add_picture_options(Arguments& a, PictureWords& w) {
              "how closely FLIP looks (67.02: 0.7 m from a 0.7 m wide display of 3840 pixels)");
     a.flag("--no-flip", w.no_flip, "without FLIP and HDR-FLIP, which take most of the time");
     a.group("Two pictures: what is written");
-    a.text("--heat", "FILE", w.heat, "a heat map with its scale, .png");
+    a.text("--heat", "FILE", w.heat, "a heat map with its scale, .png or .jpg");
     a.choice("--heat-of", w.heat_of, k_maps, "what it shows (auto: hdr-flip, of screen pictures flip)");
     a.number("--heat-max", "X", w.heat_max, "the value of its last colour (FLIP: 1; else by the values)");
-    a.text("--sheet", "FILE", w.sheet, "A, B, their signed difference and the perceived one side by side, .png");
+    a.text("--sheet", "FILE", w.sheet,
+           "A, B, their signed difference and the perceived one side by side, .png or .jpg");
     a.text("--view-exposure", "EV", w.view_exposure,
            "stops for the sheet and for FLIP; auto brings B's log-average luminance to 0.18 (auto)");
     a.texts("--fail-above", "METRIC=VALUE", w.fail_above,

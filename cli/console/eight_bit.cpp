@@ -18,7 +18,7 @@ Result<void> write_8bit(const std::filesystem::path& file, RowSource& rows) {
                 std::uint8_t(255 * (c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f) + 0.5f);
         }
     }
-    return write_png(file, pixels.view());
+    return write_screen_picture(file, pixels.view());
 }
 
 }  // namespace domelight::cli

@@ -30,7 +30,7 @@ struct ConvertWords {
 void declare(Arguments& a, ConvertWords& w) {
     a.positional("IN", w.files,
                  "an environment (or the six faces of a cube, a folder of them, front and back of a dual paraboloid), "
-                 "then where to write: .hdr, .exr, .ktx2, .ktx, .dds, or .png for a look");
+                 "then where to write: .hdr, .exr, .ktx2, .ktx, .dds, or .png or .jpg for a look");
     a.group("What to make");
     a.text("--to", "PROJECTION", w.to,
            "latlong, cube, sphere-map, mirror-ball/fov=DEGREES, angular, hemisphere, paraboloid, paraboloid-opposite, "

@@ -1,10 +1,12 @@
 #include "cli/convert/convert_output.h"
 
 #include "domelight/image/cube_layout.h"
+#include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
 #include "cli/console/arguments.h"
 #include "cli/console/eight_bit.h"
+#include "cli/console/output_endings.h"
 
 #include <fmt/core.h>
 
@@ -14,13 +16,6 @@
 
 namespace domelight::cli {
 namespace {
-
-std::string extension_of(const std::string& file) {
-    std::string extension = std::filesystem::path(file).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return extension;
-}
 
 bool is_texture(const std::string& extension) {
     return extension == ".ktx2" || extension == ".ktx" || extension == ".dds";
@@ -34,10 +29,11 @@ std::vector<std::string> layouts_of(const Projection& projection, const std::str
     return {"cross", "vertical-cross", "strip", "vertical-strip", "faces"};
 }
 
-std::vector<std::string> encodings_of(const std::string& extension) {
+std::vector<std::string> encodings_of(const std::string& file) {
+    const std::string extension = lower_case_extension(file);
     if (extension == ".exr") return {"half", "float"};
     if (extension == ".hdr") return {"rgbe"};
-    if (extension == ".png") return {"srgb"};
+    if (is_screen_picture(file)) return {"srgb"};
     std::vector<std::string> all{"rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "bc6h"};
     if (extension != ".dds") all.insert(all.end(), {"astc4x4-hdr", "astc6x6-hdr"});
     if (extension == ".ktx2") all.insert(all.end(), {"uastc-hdr", "rgbm", "rgbd", "rgbp"});
@@ -89,9 +85,9 @@ FilteredMap as_level(const ProjectedImage& image) {
 
 Result<void> write_picture(const std::string& file, ImageView<const float> picture, const ProjectedImage& image,
                            const ConvertOutput& output) {
-    const std::string extension = extension_of(file);
+    const std::string extension = lower_case_extension(file);
     if (extension == ".hdr") return write_hdr(file, picture, output.threads);
-    if (extension == ".png") {
+    if (is_screen_picture(file)) {
         ImageRowSource rows(picture);
         return write_8bit(file, rows);
     }
@@ -106,11 +102,9 @@ Result<void> write_picture(const std::string& file, ImageView<const float> pictu
 }  // namespace
 
 Result<void> check_output(ConvertOutput& output, const Projection& projection) {
-    const std::string extension = extension_of(output.file);
-    static const std::vector<std::string> formats{".hdr", ".exr", ".png", ".ktx2", ".ktx", ".dds"};
-    if (std::find(formats.begin(), formats.end(), extension) == formats.end())
-        return Error{fmt::format("\"{}\" ends in none of the formats", output.file), "OUT",
-                     "Accepted: " + join(formats, ", ") + "."};
+    const std::string extension = lower_case_extension(output.file);
+    static const std::vector<std::string> formats{".hdr", ".exr", ".png", ".jpg", ".jpeg", ".ktx2", ".ktx", ".dds"};
+    if (auto ok = check_ending("OUT", output.file, formats); !ok) return ok;
     const auto check = [&](std::string& value, const char* option, const std::vector<std::string>& accepted,
                            const std::string& of) -> Result<void> {
         if (value.empty()) value = accepted[0];
@@ -124,13 +118,13 @@ Result<void> check_output(ConvertOutput& output, const Projection& projection) {
         return ok;
     if (output.layout == "envmap" && extension != ".exr")
         return Error{"cube/openexr is OpenEXR's own", "--to", "Write an .exr, or convert to cube."};
-    return check(output.encoding, "--encoding", encodings_of(extension), extension);
+    return check(output.encoding, "--encoding", encodings_of(output.file), extension);
 }
 
 Result<WrittenPicture> write_projected(const ProjectedImage& image, const ConvertOutput& output) {
-    const std::string extension = extension_of(output.file);
+    const std::string extension = lower_case_extension(output.file);
     WrittenPicture written;
-    written.clips = extension == ".png";
+    written.clips = is_screen_picture(output.file);
     if (is_texture(extension)) {
         const FilteredMap level = as_level(image);
         std::vector<EncodingReport> reports;

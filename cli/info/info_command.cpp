@@ -1,9 +1,10 @@
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/bake/bake.h"
+#include "domelight/io/environment/open_environment.h"
+#include "domelight/io/file/file_extension.h"
 
+#include "base/sha256.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
-#include "base/sha256.h"
 #include "cli/console/environment_options.h"
 #include "cli/info/environment_survey.h"
 
@@ -224,9 +225,7 @@ int info_bake(const fs::path& folder, const InfoWords& w) {
 }
 
 bool is_texture(const fs::path& file) {
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
+    const std::string extension = lower_case_extension(file);
     return extension == ".ktx2" || extension == ".ktx" || extension == ".dds";
 }
 

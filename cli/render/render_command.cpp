@@ -22,7 +22,7 @@ void declare(Arguments& a, RenderWords& w) {
                  "a model (.glb, .gltf, .obj, .ply), or one that is built in: " + join(built_in_scene_names(), ", "));
     a.group("The picture");
     a.texts("-o,--output", "FILE", w.outputs,
-            "where to write it, several allowed: .exr (all layers), .hdr, .png (tone mapped)");
+            "where to write it, several allowed: .exr (all layers), .hdr, .png or .jpg (tone mapped)");
     a.integer("--width", "N", w.width, "pixels (512)");
     a.integer("--height", "N", w.height, "pixels (by the camera's own shape; 512 where it has none)");
     a.text("--camera", "N|NAME", w.camera, "which of the scene's cameras, 1 is the first (1)");
@@ -38,11 +38,12 @@ void declare(Arguments& a, RenderWords& w) {
     a.flag("--shadow-catcher", w.shadow_catcher, "an invisible ground under the scene that shows its shadow");
     std::vector<std::string> tonemaps;
     for (const TonemapName& t : tonemap_names()) tonemaps.emplace_back(t.name);
-    a.choice("--tonemap", w.tonemap, tonemaps, "of a .png (agx)");
-    a.number("--ev", "STOPS", w.ev, "exposure of a .png (from the log-average luminance of what the surfaces show)");
+    a.choice("--tonemap", w.tonemap, tonemaps, "of a .png or .jpg (agx)");
+    a.number("--ev", "STOPS", w.ev,
+             "exposure of a .png or .jpg (from the log-average luminance of what the surfaces show)");
     a.group("Going round");
     a.integer("--frames", "N", w.frames,
-              "numbered pictures of one turn, and an animation (.webp) beside the .png ones");
+              "numbered pictures of one turn, and an animation (.webp) beside the .png or .jpg ones");
     a.choice("--turn", w.turn, {"camera", "environment"}, "what goes round (camera)");
     a.number("--fps", "N", w.fps, "frames a second of the animation (30)");
     a.flag("--resume", w.resume, "keep the frames that exist, draw the others");

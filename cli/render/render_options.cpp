@@ -1,5 +1,9 @@
 #include "cli/render/render_options.h"
 
+#include "domelight/io/file/file_extension.h"
+#include "domelight/io/write_image.h"
+
+#include "cli/console/output_endings.h"
 #include "preview/tonemap.h"
 
 #include <fmt/core.h>
@@ -7,7 +11,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 
 namespace domelight::cli {
 namespace {
@@ -52,16 +55,14 @@ Result<void> check_outputs(RenderWords& w) {
     w.outputs = std::move(outputs);
     if (w.outputs.empty()) return Error{"is missing", "--output", "Say where the picture goes: -o picture.png."};
     if (w.study) {
-        const std::string extension = std::filesystem::path(w.outputs[0]).extension().string();
-        if (w.outputs.size() > 1 || (extension != "" && extension != ".png"))
-            return Error{fmt::format("\"{}\" is neither a folder nor a .png", join(w.outputs, ",")), "--output",
+        const std::string& output = w.outputs[0];
+        if (w.outputs.size() > 1 || (!lower_case_extension(output).empty() && !is_screen_picture(output)))
+            return Error{fmt::format("\"{}\" is neither a folder nor a .png or .jpg", join(w.outputs, ",")), "--output",
                          "A study goes into a folder, or onto one sheet: -o DIR or -o study.png."};
         return {};
     }
     for (const std::string& o : w.outputs)
-        if (!ends_in(o, ".exr") && !ends_in(o, ".hdr") && !ends_in(o, ".png"))
-            return Error{fmt::format("\"{}\" ends in none of the formats", o), "--output",
-                         "Accepted: .exr, .hdr, .png."};
+        if (auto ok = check_ending("--output", o, light_and_screen_endings()); !ok) return ok;
     return {};
 }
 
@@ -87,6 +88,11 @@ Result<void> check_company(const RenderWords& w, const Arguments& a) {
         return Error{"goes with --background colour only", "--background-color", ""};
     for (const auto& rule : rules)
         if (auto ok = needs(rule.option, rule.fine, rule.what); !ok) return ok;
+    if (w.backdrop == Background::transparent)
+        for (const std::string& o : w.outputs)
+            if (is_screen_picture(o) && !holds_opacity(o))
+                return Error{fmt::format("\"{}\" cannot be transparent: JPEG holds no opacity", o), "--output",
+                             "Write a .png, or choose another --background."};
     if (!w.camera.empty() && !w.camera_position.empty())
         return Error{"is one camera, --camera-position another", "--camera", "Leave one of them out."};
     if (w.turn == "environment" && !w.maps.empty())
@@ -99,10 +105,6 @@ Result<void> check_company(const RenderWords& w, const Arguments& a) {
 }
 
 }  // namespace
-
-bool ends_in(const std::string& file, const std::string& extension) {
-    return std::filesystem::path(file).extension().string() == extension;
-}
 
 Result<Vec3f> parse_colour(const std::string& text) {
     const Error wrong{fmt::format("\"{}\" is no colour", text), "", "Accepted: #rrggbb (sRGB), or R,G,B (linear)."};

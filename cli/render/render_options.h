@@ -47,9 +47,6 @@ struct RenderWords {
     std::string scene_name() const { return scenes.empty() ? "" : scenes.front(); }
 };
 
-/// Whether the file's name ends in this (".png").
-bool ends_in(const std::string& file, const std::string& extension);
-
 /// Options that are wrong, or do not go together. Splits outputs at commas, and settles the background.
 Result<void> check_words(RenderWords& words, const Arguments& arguments);
 

@@ -1,6 +1,7 @@
 #include "cli/render/render_outputs.h"
 
 #include "domelight/image/colour.h"
+#include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
 #include "preview/tonemap.h"
@@ -96,11 +97,11 @@ Image<std::uint8_t> display_picture(const RenderResult& r, const RenderWords& w,
 Result<void> write_picture(const std::string& file, const FinishedPicture& picture, const Scene& scene,
                            const RenderWords& w) {
     const RenderResult& r = picture.result;
-    if (ends_in(file, ".png")) return write_png(file, display_picture(r, w, picture.ev).view());
+    if (is_screen_picture(file)) return write_screen_picture(file, display_picture(r, w, picture.ev).view());
     const bool colour = w.backdrop == Background::colour;
     const ImageF over = colour ? over_colour(r, w.backdrop_colour) : ImageF();
     const ImageView<const float> radiance = colour ? over.view() : r.radiance.view();
-    if (ends_in(file, ".hdr")) return write_hdr(file, radiance, w.threads());
+    if (lower_case_extension(file) == ".hdr") return write_hdr(file, radiance, w.threads());
     return write_layers(file, r, radiance, scene);
 }
 

@@ -81,7 +81,7 @@ Json json_of(const SplitSumFigure& f) {
 /// Writes the figures into the folder as they come, or keeps them for the sheet.
 class Output {
   public:
-    explicit Output(const std::string& place) : place_(place), sheet_(ends_in(place, ".png")) {}
+    explicit Output(const std::string& place) : place_(place), sheet_(is_screen_picture(place)) {}
     Result<void> begin() {
         if (sheet_) return {};
         std::error_code failure;
@@ -103,7 +103,7 @@ class Output {
     Result<void> end(const Json& json) {
         if (sheet_) {
             files_ = {place_};
-            if (auto ok = write_png(place_, stacked(pictures_).view()); !ok) return ok.error().at(place_);
+            if (auto ok = write_screen_picture(place_, stacked(pictures_).view()); !ok) return ok.error().at(place_);
             return {};
         }
         const std::string file = (fs::path(place_) / "study.json").string(), text = json.dump(2) + "\n";

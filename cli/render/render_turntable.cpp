@@ -1,12 +1,13 @@
 #include "cli/render/render_turntable.h"
 
-#include "domelight/io/picture/animation.h"
 #include "domelight/bake/bake.h"
+#include "domelight/io/picture/animation.h"
+#include "domelight/io/write_image.h"
 
 #include "cli/console/interruption.h"
+#include "cli/render/render_outputs.h"
 #include "io/file/file_reader.h"
 #include "io/picture/texture_image.h"
-#include "cli/render/render_outputs.h"
 
 #include <fmt/core.h>
 
@@ -104,7 +105,7 @@ class Turntable {
     Vec3f centre_;
 };
 
-/// The pixels of a frame's PNG.
+/// The pixels of a frame's PNG or JPEG.
 Result<Image<std::uint8_t>> read_frame(const std::string& file, bool transparent) {
     const auto bytes = FileBytes::open(file, std::int64_t(1) << 30);
     if (!bytes) return bytes.error().at(file);
@@ -207,9 +208,11 @@ int run_turntable(const RenderWords& w, const RayScene& scene, const Environment
     AnimationOptions animation;
     animation.frames_per_second = w.fps;
     for (const std::string& o : w.outputs) {
-        if (!ends_in(o, ".png")) continue;
-        ProgressBar bar(w.scene_name(), w.common);
+        if (!is_screen_picture(o)) continue;
         const std::string file = fs::path(o).replace_extension(".webp").string();
+        // turn.png and turn.jpg have one animation.
+        if (std::find(animations.begin(), animations.end(), file) != animations.end()) continue;
+        ProgressBar bar(w.scene_name(), w.common);
         const auto frame = [&](int i) -> Result<Image<std::uint8_t>> {
             if (Interruption::wanted()) return Error{"cancelled", "", ""};
             bar.update("animate", double(i) / turntable.frames());

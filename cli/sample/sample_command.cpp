@@ -43,14 +43,14 @@ Result<void> write_pictures(const SampleWords& w, const EnvironmentSampler& samp
     if (!w.picture.empty()) {
         options.subtitle = fmt::format("{} samples · {} · {}, seed {}", w.count.value_or(1024), drawn_how(w),
                                        w.sequence, w.seed_number);
-        if (auto ok = write_png(w.picture, sample_picture(sampler, draw(w, sampler), options).view()); !ok)
+        if (auto ok = write_screen_picture(w.picture, sample_picture(sampler, draw(w, sampler), options).view()); !ok)
             return ok.error().at(w.picture);
     }
     if (!w.heat.empty()) {
         const bool uv = w.heat_measure == "uv";
         options.subtitle = fmt::format("density {} · {}",
                                        uv ? "over the image, pdf_uv" : "per steradian, pdf_solid_angle", drawn_how(w));
-        if (auto ok = write_png(
+        if (auto ok = write_screen_picture(
                 w.heat,
                 density_picture(sampler, uv ? DensityMeasure::uv : DensityMeasure::solid_angle, options).view());
             !ok)

@@ -184,7 +184,7 @@ Result<Told> estimate_by_all_strategies(const SampleWords& w, const EnvironmentS
     if (!study) return study.error();
     Told told{table(w, *study), document(w, *study)};
     if (!w.plot.empty()) {
-        if (auto ok = write_png(w.plot, draw_plot(convergence_plot(w, *study)).view()); !ok)
+        if (auto ok = write_screen_picture(w.plot, draw_plot(convergence_plot(w, *study)).view()); !ok)
             return ok.error().at(w.plot);
         told.json["plot"] = w.plot;
         told.text += w.plot + "\n";

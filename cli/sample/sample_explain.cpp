@@ -115,7 +115,9 @@ Result<Told> explain_sample(const SampleWords& w, const EnvironmentSampler& samp
     Told told{text_of(w, sampler, e), json_of(e)};
     if (!w.explain_picture.empty()) {
         const std::string title = std::filesystem::path(w.environment_name()).filename().string();
-        if (auto ok = write_png(w.explain_picture, explanation_picture(sampler, e, title, w.threads()).view()); !ok)
+        if (auto ok =
+                write_screen_picture(w.explain_picture, explanation_picture(sampler, e, title, w.threads()).view());
+            !ok)
             return ok.error().at(w.explain_picture);
         told.text += "\n" + w.explain_picture + "\n";
         told.json["picture"] = w.explain_picture;

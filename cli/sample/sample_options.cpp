@@ -1,13 +1,15 @@
 #include "cli/sample/sample_options.h"
 
+#include "domelight/io/write_image.h"
+
 #include "cli/console/environment_options.h"
+#include "cli/console/output_endings.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 
 namespace domelight::cli {
 namespace {
@@ -17,21 +19,11 @@ constexpr DistributionMethod k_methods[] = {DistributionMethod::linear,   Distri
                                             DistributionMethod::alias,    DistributionMethod::hierarchical,
                                             DistributionMethod::bilinear, DistributionMethod::bilinear_plain};
 
-std::string extension_of(const std::string& file) {
-    return std::filesystem::path(file).extension().string();
-}
+const std::string k_sample_endings[] = {".csv", ".json"};
 
 Result<void> within(const char* option, double value, double low, double high) {
     if (value >= low && value <= high) return {};
     return Error{fmt::format("{:g} is not from {:g} to {:.12g}", value, low, high), option, ""};
-}
-
-Result<void> ends_in(const char* option, const std::string& file, const std::vector<std::string>& accepted) {
-    if (file.empty()) return {};
-    const std::string extension = extension_of(file);
-    if (std::find(accepted.begin(), accepted.end(), extension) != accepted.end()) return {};
-    return Error{fmt::format("\"{}\" ends in none of the formats", file), option,
-                 "Accepted: " + join(accepted, ", ") + "."};
 }
 
 Result<Vec3d> direction(const char* option, const std::vector<double>& v) {
@@ -130,8 +122,8 @@ void declare_sample_options(Arguments& a, SampleWords& w) {
              "the points of the unit square (sobol; with --estimate random, for which its standard errors hold)");
     a.text("--seed", "N", w.seed, "another number, another randomisation; 0: the textbook's plain points (1)");
     a.group("Pictures and tables");
-    a.text("--picture", "FILE", w.picture, "a PNG of the environment, as it is stored, with the samples on it");
-    a.text("--heat", "FILE", w.heat, "a PNG of the density as a heat map");
+    a.text("--picture", "FILE", w.picture, "the environment, as it is stored, with the samples on it, .png or .jpg");
+    a.text("--heat", "FILE", w.heat, "the density as a heat map, .png or .jpg");
     a.choice("--heat-measure", w.heat_measure, {"solid-angle", "uv"},
              "the density per steradian or over the image (solid-angle)");
     a.integer("--picture-width", "PIXELS", w.picture_width, "width of the environment in these, 256 to 8192 (1024)");
@@ -141,7 +133,7 @@ void declare_sample_options(Arguments& a, SampleWords& w) {
     a.group("How good each strategy is");
     a.flag("--estimate", w.estimate, "estimate the light that a surface reflects by every strategy, and compare them");
     a.choices("--strategy", w.strategies, k_strategy_words, "compare only these with environment (all)");
-    a.text("--plot", "FILE", w.plot, "a PNG of each strategy's error over the number of samples, with slopes");
+    a.text("--plot", "FILE", w.plot, "each strategy's error over the number of samples, with slopes, .png or .jpg");
     a.numbers("--normal", "X,Y,Z", w.normal, "the surface's normal (0,1,0)");
     a.numbers("--view", "X,Y,Z", w.view, "towards the viewer (the normal)");
     a.choice("--brdf", w.brdf, {"lambert", "phong", "ggx", "charlie"}, "the surface (lambert)");
@@ -151,7 +143,7 @@ void declare_sample_options(Arguments& a, SampleWords& w) {
     a.group("How it works");
     a.numbers("--explain", "U,V", w.explain,
               "show how this point of the unit square becomes a direction: row, column, density");
-    a.text("--explain-picture", "FILE", w.explain_picture, "the same as a PNG");
+    a.text("--explain-picture", "FILE", w.explain_picture, "the same as a picture, .png or .jpg");
     add_environment_options(a, w.environment);
     add_common_options(a, w.common);
 }
@@ -162,11 +154,11 @@ Result<void> check_sample_options(const Arguments& arguments, SampleWords& w) {
                      "Sample one environment at a time."};
     const int most = w.estimate ? 1 << 24 : 100'000'000;
     if (auto ok = within("--count", w.count.value_or(1), 1, most); !ok) return ok;
-    if (auto ok = ends_in("--output", w.output, {".csv", ".json"}); !ok) return ok;
-    if (auto ok = ends_in("--picture", w.picture, {".png"}); !ok) return ok;
-    if (auto ok = ends_in("--heat", w.heat, {".png"}); !ok) return ok;
-    if (auto ok = ends_in("--plot", w.plot, {".png"}); !ok) return ok;
-    if (auto ok = ends_in("--explain-picture", w.explain_picture, {".png"}); !ok) return ok;
+    if (auto ok = check_ending("--output", w.output, k_sample_endings); !ok) return ok;
+    if (auto ok = check_ending("--picture", w.picture, screen_picture_extensions()); !ok) return ok;
+    if (auto ok = check_ending("--heat", w.heat, screen_picture_extensions()); !ok) return ok;
+    if (auto ok = check_ending("--plot", w.plot, screen_picture_extensions()); !ok) return ok;
+    if (auto ok = check_ending("--explain-picture", w.explain_picture, screen_picture_extensions()); !ok) return ok;
     if (auto ok = within("--picture-width", w.picture_width.value_or(1024), 256, 8192); !ok) return ok;
     if (auto ok = within("--uniform-share", w.uniform_share, 0, 1); !ok) return ok;
     if (arguments.given("--heat-measure") && w.heat.empty())

@@ -1,10 +1,12 @@
 #include "domelight/bake/bake.h"
-#include "domelight/io/write_image.h"
 #include "domelight/environment/sky/sky.h"
+#include "domelight/io/file/file_extension.h"
+#include "domelight/io/write_image.h"
 
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/eight_bit.h"
+#include "cli/console/output_endings.h"
 
 #include <fmt/core.h>
 
@@ -25,7 +27,7 @@ struct SkyWords {
 
 void declare(Arguments& a, SkyWords& w) {
     a.group("The picture");
-    a.text("-o,--output", "FILE", w.output, "where to write it: .hdr, .exr, or .png (8 bits, not HDR)");
+    a.text("-o,--output", "FILE", w.output, "where to write it: .hdr, .exr, or .png or .jpg (8 bits, not HDR)");
     a.integer("--height", "N", w.height, "rows of the lat-long image, which is twice as wide (512)");
     a.choice("--exr", w.encoding, {"half", "float"}, "channels of an .exr; half clips the sun at 65504 (half)");
     a.flag("--axes", w.axes, "the labelled six-axis environment instead of a sky: it shows every orientation mistake");
@@ -45,10 +47,7 @@ Result<void> check(const SkyWords& w) {
         return Error{fmt::format("{:g} is not from {:g} to {:g}", value, low, high), option, ""};
     };
     if (w.output.empty()) return Error{"is missing", "--output", "Say where the picture goes: -o sky.hdr."};
-    const std::string extension = std::filesystem::path(w.output).extension().string();
-    if (extension != ".hdr" && extension != ".exr" && extension != ".png")
-        return Error{fmt::format("\"{}\" ends in none of the formats", w.output), "--output",
-                     "Accepted: .hdr, .exr, .png."};
+    if (auto ok = check_ending("--output", w.output, light_and_screen_endings()); !ok) return ok;
     if (auto ok = within("--height", w.height.value_or(512), 1, 32768); !ok) return ok;
     if (auto ok = within("--sun-elevation-deg", w.sky.sun_elevation_deg, -18, 90); !ok) return ok;
     if (auto ok = within("--sun-azimuth-deg", w.sky.sun_azimuth_deg, -3600, 3600); !ok) return ok;
@@ -80,9 +79,8 @@ class WatchedRows : public RowSource {
 };
 
 Result<void> write(const SkyWords& w, WatchedRows& rows) {
-    const std::string extension = std::filesystem::path(w.output).extension().string();
-    if (extension == ".hdr") return write_hdr(w.output, rows);
-    if (extension == ".png") return write_8bit(w.output, rows);
+    if (is_screen_picture(w.output)) return write_8bit(w.output, rows);
+    if (lower_case_extension(w.output) == ".hdr") return write_hdr(w.output, rows);
     ExrWriteOptions exr;
     exr.half = w.encoding == "half";
     return write_exr(w.output, rows, exr);
@@ -134,10 +132,9 @@ int run_sky(const std::vector<std::string>& words) {
     ProgressBar bar(w.output, w.common);
     WatchedRows rows(*source, bar.callback());
     if (auto ok = write(w, rows); !ok) return print_error(ok.error().at(w.output));
-    const std::string extension = std::filesystem::path(w.output).extension().string();
-    if (extension == ".png" && !w.axes)
+    if (is_screen_picture(w.output) && !w.axes)
         print_warnings({w.output + ": 8 bits clip the sky at 1; write .hdr or .exr for light"}, w.common);
-    if (extension == ".exr" && w.encoding == "half" && rows.largest() > 65504)
+    if (lower_case_extension(w.output) == ".exr" && w.encoding == "half" && rows.largest() > 65504)
         print_warnings({fmt::format("{}: half floats clip the sun ({:.4g}) at 65504; --exr float keeps it", w.output,
                                     rows.largest())},
                        w.common);

@@ -1,3 +1,4 @@
+#include "domelight/io/file/file_extension.h"
 #include "domelight/scene/scene.h"
 
 #include "io/image_reader.h"
@@ -14,9 +15,7 @@ namespace {
 
 Result<Scene> read_scene(const std::filesystem::path& file, std::shared_ptr<const FileBytes> bytes,
                          const SceneOptions& options) {
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
+    const std::string extension = lower_case_extension(file);
     const auto starts = [&](std::string_view magic) {
         const auto all = bytes->bytes();
         return all.size() >= magic.size() && std::equal(magic.begin(), magic.end(), all.begin());

@@ -129,7 +129,7 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["bake", "studio.hdr", "-o", "o", "--projection", "fisheye"], "cube-cross"),
         (["bake", "studio.hdr", "-o", "o", "--up", "w"], "--up"),
         (["convert"], "IN OUT"),
-        (["convert", "studio.hdr", "out.tga"], ".hdr, .exr, .png, .ktx2"),
+        (["convert", "studio.hdr", "out.tga"], ".hdr, .exr, .png, .jpg, .jpeg, .ktx2"),
         (["convert", "studio.hdr", "out.hdr", "--to", "mercator"], "sphere-map, mirror-ball, angular"),
         (["convert", "studio.hdr", "out.hdr", "--to", "latlong/sideways"], "materialx"),
         (["convert", "studio.hdr", "out.hdr", "--to", "angular/centre=+X,right=-X"], "three different axes"),
@@ -148,12 +148,12 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["compare", "studio.hdr", "evening.hdr", "--fail-above", "colour=1"], "rmse, relative, tone-mapped"),
         (["compare", "studio.hdr", "evening.hdr", "--fail-above", "chi2=1"], "variance"),
         (["compare", "studio.hdr", "evening.hdr", "--heat-of", "warmth"], "hdr-flip, flip, difference"),
-        (["compare", "studio.hdr", "evening.hdr", "--heat", "h.jpg"], ".png"),
+        (["compare", "studio.hdr", "evening.hdr", "--heat", "h.gif"], ".png, .jpg"),
         (["compare", "studio.hdr", "evening.hdr", "--view-exposure", "bright"], "auto"),
         (["compare", "studio.hdr", "--bake", "a.ktx2"], "--env"),
         (["compare", "--bake", "a.ktx2", "--texels", "3"], "--texels"),
         (["sky"], "-o sky.hdr"),
-        (["sky", "-o", "sky.tiff"], ".hdr, .exr, .png"),
+        (["sky", "-o", "sky.tiff"], ".hdr, .exr, .png, .jpg"),
         (["sky", "-o", "sky.hdr", "--turbidity", "50"], "1 to 10"),
         (["info", "a.hdr", "b.hdr"], "one at a time"),
         (["lights", "studio.hdr"], "-o DIR"),
@@ -177,7 +177,7 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["sample", "--uniform-share", "1.5"], "from 0 to 1"),
         (["sample", "--uniform-share", "nan"], "from 0 to 1"),
         (["sample", "-o", "o.txt"], ".csv, .json"),
-        (["sample", "--picture", "o.jpg"], ".png"),
+        (["sample", "--picture", "o.gif"], ".png, .jpg"),
         (["sample", "--picture-width", "7"], "from 256 to 8192"),
         (["sample", "--heat-measure", "uv"], "--heat"),
         (["sample", "--tables-format", "exr"], "--tables"),
@@ -198,7 +198,8 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["sample", "a.hdr", "b.hdr"], "one environment at a time"),
         (["render", "-o", "o.png"], "spheres, ball, furnace"),
         (["render", "spheres"], "-o picture.png"),
-        (["render", "spheres", "-o", "o.jpg"], ".exr, .hdr, .png"),
+        (["render", "spheres", "-o", "o.gif"], ".hdr, .exr, .png, .jpg"),
+        (["render", "spheres", "-o", "o.jpg", "--background", "transparent"], "JPEG holds no opacity"),
         (["render", "spheres", "-o", "o.png", "--nonsense"], "--shading"),
         (["render", "spheres", "-o", "o.png", "--width", "0"], "from 1 to 16384"),
         (["render", "spheres", "-o", "o.png", "--tonemap", "film"], "agx, agx-punchy, neutral, aces, reinhard, gamma22, none"),
@@ -1108,6 +1109,20 @@ def make_glb():
     text += b" " * (-len(text) % 4)
     chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(buffer), 0x004E4942) + buffer
     return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
+def test_pictures_for_a_screen_may_be_jpeg(folder):
+    run("render", "ball", "-o", "r.jpg,r.png", *TINY, "--frames", "2", folder=folder)
+    run("sky", "--axes", "-o", "axes.jpeg", "--height", "32", folder=folder)
+    run("sample", "studio.hdr", "--picture", "p.jpg", "--heat", "h.JPG", folder=folder)
+    run("compare", "studio.hdr", "evening.hdr", "--heat", "d.jpg", "--sheet", "s.jpg", "--no-flip", folder=folder)
+    run("convert", "studio.hdr", "c.jpg", folder=folder)
+    for name in ["r_0001.jpg", "r_0002.jpg", "axes.jpeg", "p.jpg", "h.JPG", "d.jpg", "s.jpg", "c.jpg"]:
+        data = (folder / name).read_bytes()
+        assert data.startswith(b"\xff\xd8\xff") and data.endswith(b"\xff\xd9"), name
+    assert (folder / "r.webp").exists()
+    said = json.loads(run("info", "axes.jpeg", "--json", folder=folder).stdout)
+    assert (said["format"], said["width"], said["height"]) == ("JPEG", 64, 32)
 
 
 def png_of(file):

@@ -55,4 +55,18 @@ Result<void> write_exr_layers(const std::filesystem::path& file, std::span<const
 Result<void> write_png(const std::filesystem::path& file, ImageView<const std::uint8_t> pixels,
                        int compression_level = 3);
 
+/// 8-bit JPEG (baseline, 4:4:4), 1 or 3 channels, sRGB. `quality`: 1 to 100, libjpeg's scale; the default leaves 8-bit
+/// pictures without visible blocks. Errors: other numbers of channels; a side longer than 65500.
+Result<void> write_jpeg(const std::filesystem::path& file, ImageView<const std::uint8_t> pixels, int quality = 92);
+
+/// The endings of pictures for a screen, which write_screen_picture() writes: ".png", ".jpg", ".jpeg".
+std::span<const std::string> screen_picture_extensions();
+/// Whether the file's name ends in one of them, in any case.
+bool is_screen_picture(const std::filesystem::path& file);
+/// Whether the format of this name can hold opacity: PNG can, JPEG cannot.
+bool holds_opacity(const std::filesystem::path& file);
+/// An 8-bit sRGB picture in the format that the file's name ends in: write_png() or write_jpeg().
+/// Precondition: is_screen_picture(file).
+Result<void> write_screen_picture(const std::filesystem::path& file, ImageView<const std::uint8_t> pixels);
+
 }  // namespace domelight
