@@ -1,13 +1,11 @@
 #include "cli/bake/bake_report.h"
 
-#include <fmt/core.h>
+#include "base/json.h"
 
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
 namespace domelight::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string shown_name(const BakedMap& map) {
     if (!map.file.file.empty()) return map.file.file;
@@ -74,11 +72,11 @@ void print_json(const std::vector<BakeOutcome>& outcomes) {
         for (const EngineReport& e : o.report.engines)
             bake["engines"].push_back({{"engine", e.name},
                                        {"folder", e.folder.string()},
-                                       {"manifest", Json::parse(e.manifest, nullptr, false)}});
+                                       {"manifest", *Json::parse(e.manifest)}});
         bakes.push_back(bake);
     }
     fmt::print("{}\n",
-               Json{{"version", version()}, {"bakes", bakes}}.dump(2, ' ', false, Json::error_handler_t::replace));
+               Json{{"version", version()}, {"bakes", bakes}}.dump(2));
 }
 
 }  // namespace domelight::cli

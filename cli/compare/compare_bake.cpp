@@ -6,6 +6,7 @@
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/texture/texture.h"
 
+#include "base/json.h"
 #include "cli/console/environment_options.h"
 #include "io/environment/cube_texture_reader.h"
 #include "io/file/file_reader.h"
@@ -15,12 +16,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace domelight::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// A bake as read: its levels, and what it is.
 struct Bake {
@@ -148,7 +146,7 @@ void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, co
                     {"roughness_stated_by", bake.stated_by},
                     {"levels", levels},
                     {"warnings", warnings}};
-    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", json.dump(2));
 }
 
 std::string percent(double v) {

@@ -4,6 +4,7 @@
 #include "domelight/compare/metrics.h"
 #include "domelight/io/write_image.h"
 
+#include "base/json.h"
 #include "cli/console/output_endings.h"
 #include "compare/compare_sheet.h"
 #include "compare/picture_reader.h"
@@ -14,12 +15,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <nlohmann/json.hpp>
 
 namespace domelight::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 const std::vector<std::string> k_metrics = {"rmse", "relative", "tone-mapped", "largest", "psnr", "ssim",
                                             "flip", "hdr-flip", "mean",        "above-2", "chi2", "total-z"};
@@ -460,7 +458,7 @@ void print_json(const Comparison& c, const std::vector<std::string>& failures) {
     json["skipped_pixels"] = c.skipped;
     json["failures"] = failures;
     json["warnings"] = c.warnings;
-    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", json.dump(2));
 }
 
 void print_noise(const NoiseSummary& n) {

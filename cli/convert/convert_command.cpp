@@ -3,6 +3,7 @@
 #include "domelight/image/colour.h"
 #include "domelight/io/environment/convert.h"
 
+#include "base/json.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/convert/convert_output.h"
@@ -11,7 +12,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace domelight::cli {
 namespace {
@@ -123,13 +123,13 @@ double relative(double before, double after) {
     return before > 0 ? after / before - 1 : 0;
 }
 
-nlohmann::ordered_json json_of(const Vec3d& v) {
+Json json_of(const Vec3d& v) {
     return {v.x, v.y, v.z};
 }
 
 void print_json(const ConvertWords& w, const Environment& environment, const Conversion& made,
                 const WrittenPicture& written) {
-    nlohmann::ordered_json json{
+    Json json{
         {"version", version()},
         {"source",
          {{"file", environment.file.string()},
@@ -150,7 +150,7 @@ void print_json(const ConvertWords& w, const Environment& environment, const Con
           {"relative_change", relative(luminance(made.power_before), luminance(made.power_after))}}},
         {"clipped_texels", written.encoding.clipped_texels},
         {"clipped_energy", written.encoding.clipped_energy}};
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", json.dump(2));
 }
 
 void print_text(const ConvertWords& w, const Conversion& made, const WrittenPicture& written) {

@@ -2,6 +2,7 @@
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/io/file/file_extension.h"
 
+#include "base/json.h"
 #include "base/sha256.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
@@ -13,13 +14,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 namespace domelight::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 struct InfoWords {
     CommonOptions common;
@@ -37,7 +36,7 @@ std::string rgb(const Vec3d& v) {
 }
 
 void print_document(const Json& json) {
-    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", json.dump(2));
 }
 
 // --- an environment ---
@@ -157,8 +156,9 @@ int info_texture(const std::string& file, const InfoWords& w) {
 void list_files(const Json& json, std::vector<std::pair<std::string, std::string>>& files, int depth = 0) {
     if (depth > 16 || !json.is_structured()) return;
     if (json.is_object() && json.contains("file") && json["file"].is_string() && json.contains("sha256"))
-        files.emplace_back(json["file"], json["sha256"].is_string() ? json["sha256"].get<std::string>() : "");
+        files.emplace_back(json["file"].get<std::string>(), json["sha256"].is_string() ? json["sha256"].get<std::string>() : "");
     for (const auto& [key, value] : json.items()) list_files(value, files, depth + 1);
+    for (const Json& element : json.elements()) list_files(element, files, depth + 1);
 }
 
 std::string file_state(const fs::path& file, const std::string& expected) {
@@ -178,7 +178,7 @@ std::string member(const Json& json, const char* key) {
 
 void print_levels(const Json& map) {
     if (!map.contains("levels") || !map["levels"].is_array()) return;
-    for (const Json& level : map["levels"]) {
+    for (const Json& level : map["levels"].elements()) {
         const bool phong = level.is_object() && level.contains("exponent");
         fmt::print("    level {:<3} size {:<6} {} {:<10} clipped energy {}\n", member(level, "level"),
                    member(level, "size"), phong ? "exponent" : "roughness",
@@ -189,7 +189,8 @@ void print_levels(const Json& map) {
 int info_bake(const fs::path& folder, const InfoWords& w) {
     const fs::path file = folder / "manifest.json";
     std::ifstream stream(file, std::ios::binary);
-    const Json manifest = Json::parse(stream, nullptr, false);
+    const auto parsed = Json::parse(std::string(std::istreambuf_iterator<char>(stream), {}));
+    const Json manifest = parsed ? *parsed : Json();
     if (!manifest.is_object() || !manifest.contains("source") || !manifest.contains("options"))
         return print_error({"is not a manifest that a bake wrote", file.string(), ""});
     std::vector<std::pair<std::string, std::string>> files;
@@ -220,7 +221,7 @@ int info_bake(const fs::path& folder, const InfoWords& w) {
                        member(map, "layout"));
             if (member(map, "quantity") == "radiance") print_levels(map);
         }
-    for (const Json& state : states) fmt::print("  {:<28} {}\n", member(state, "file"), member(state, "state"));
+    for (const Json& state : states.elements()) fmt::print("  {:<28} {}\n", member(state, "file"), member(state, "state"));
     return whole ? exit_done : print_error({"not all files are as they were written", folder.string(), "Bake again."});
 }
 

@@ -6,6 +6,7 @@
 #include "domelight/io/write_image.h"
 #include "domelight/sampling/light_extraction.h"
 
+#include "base/json.h"
 #include "bake/staging.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
@@ -18,12 +19,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace domelight::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct LightsWords {
     CommonOptions common;
@@ -193,7 +191,7 @@ Result<Json> write_all(const LightsWords& w, Outcome& o) {
     if (auto ok = write_text(staging->stage("lights.gltf"), gltf); !ok) return ok.error();
     Json json = document(w, o);
     if (auto ok =
-            write_text(staging->stage("lights.json"), json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+            write_text(staging->stage("lights.json"), json.dump(2) + "\n");
         !ok)
         return ok.error();
     if (auto ok = staging->commit("lights.json"); !ok) return ok.error();
@@ -242,7 +240,7 @@ int run(const LightsWords& w) {
                                     found->report.texel_deg)},
                        w.common, name);
     if (w.common.json)
-        fmt::print("{}\n", json->dump(2, ' ', false, Json::error_handler_t::replace));
+        fmt::print("{}\n", json->dump(2));
     else if (!w.common.quiet)
         print_summary(w, outcome);
     return exit_done;

@@ -1,5 +1,6 @@
 #include "domelight/bake/bake.h"
 
+#include "base/json.h"
 #include "cli/commands.h"
 #include "cli/console/environment_options.h"
 #include "cli/console/interruption.h"
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <nlohmann/json.hpp>
 
 namespace domelight::cli {
 namespace {
@@ -82,13 +82,13 @@ void declare(Arguments& a, RenderWords& w) {
 
 void print_result(const RenderWords& w, const Scene& scene, const RenderResult& r, const RenderOptions& o, double ev) {
     if (w.common.json) {
-        nlohmann::ordered_json json{
+        Json json{
             {"version", version()},      {"files", w.outputs},   {"width", o.width},
             {"height", o.height},        {"shading", w.shading}, {"triangles", scene.triangle_count()},
             {"samples", r.sample_count}, {"seconds", r.seconds}, {"ev", ev}};
         if (w.reference()) json["noise"] = r.noise, json["rays"] = r.rays;
         json["warnings"] = scene.warnings;
-        fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+        fmt::print("{}\n", json.dump(2));
     } else if (!w.common.quiet) {
         fmt::print("{}: {} x {}, {} triangles, {} samples a pixel at most, {:.2f} s", join(w.outputs, ", "), o.width,
                    o.height, scene.triangle_count(), r.sample_count, r.seconds);

@@ -4,6 +4,7 @@
 #include "domelight/bake/bake.h"
 #include "domelight/io/write_image.h"
 
+#include "base/json.h"
 #include "cli/console/interruption.h"
 #include "cli/render/render_study_pictures.h"
 
@@ -11,13 +12,11 @@
 
 #include <chrono>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace domelight::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 const char* strategy_word(LightStrategy s) {
     return s == LightStrategy::environment ? "env" : s == LightStrategy::brdf ? "brdf" : "mis";
@@ -193,7 +192,7 @@ int run_study(const RenderWords& w, std::optional<Scene> given, Environment& env
     if (w.common.json) {
         (*json)["files"] = output.files();
         (*json)["seconds"] = seconds;
-        fmt::print("{}\n", json->dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+        fmt::print("{}\n", json->dump(2));
     } else if (!w.common.quiet) {
         fmt::print("{}: {:.1f} s\n", join(output.files(), ", "), seconds);
     }

@@ -4,6 +4,7 @@
 #include "domelight/io/picture/animation.h"
 #include "domelight/io/write_image.h"
 
+#include "base/json.h"
 #include "cli/console/interruption.h"
 #include "cli/render/render_outputs.h"
 #include "io/file/file_reader.h"
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace domelight::cli {
 
@@ -139,13 +139,13 @@ struct Tally {
 void print_turntable(const RenderWords& w, const RenderOptions& o, const Turntable& turntable, const Tally& tally,
                      const std::vector<std::string>& animations, double ev) {
     if (w.common.json) {
-        nlohmann::ordered_json json{{"version", version()}, {"width", o.width}, {"height", o.height},
+        Json json{{"version", version()}, {"width", o.width}, {"height", o.height},
                                     {"shading", w.shading}, {"ev", ev},         {"turn", w.turn}};
-        auto& frames = json["frames"] = nlohmann::ordered_json::array();
+        auto& frames = json["frames"] = Json::array();
         for (int i = 1; i <= turntable.frames(); ++i) frames.push_back(turntable.files(i));
         json["drawn"] = tally.drawn, json["kept"] = tally.kept;
         json["animations"] = animations, json["fps"] = w.fps, json["seconds"] = tally.seconds;
-        fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+        fmt::print("{}\n", json.dump(2));
     } else if (!w.common.quiet) {
         fmt::print("{} to {}: {} x {}, {} frames ({} drawn, {} kept), {:.2f} s\n", turntable.files(1).front(),
                    turntable.files(turntable.frames()).front(), o.width, o.height, turntable.frames(), tally.drawn,

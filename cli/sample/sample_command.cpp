@@ -1,6 +1,7 @@
 #include "domelight/bake/bake.h"
 #include "domelight/io/write_image.h"
 
+#include "base/json.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/environment_options.h"
@@ -13,12 +14,8 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include <nlohmann/json.hpp>
-
 namespace domelight::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::vector<LightSample> draw(const SampleWords& w, const EnvironmentSampler& sampler) {
     const int count = w.count.value_or(1024);
@@ -80,7 +77,7 @@ Result<void> work(const SampleWords& w, const EnvironmentSampler& sampler, Json&
     }
     const bool text = !w.common.json && !w.common.quiet;
     if (text)
-        for (const auto& file : files) fmt::print("{}\n", file.get<std::string>());
+        for (const Json& file : files.elements()) fmt::print("{}\n", file.get<std::string>());
     json["files"] = std::move(files);
     if (!w.explain.empty()) {
         auto told = explain_sample(w, sampler);
@@ -144,7 +141,7 @@ int run_sample(const std::vector<std::string>& words) {
     const auto done = work(w, *sampler, json);
     if (!done) return print_error(done.error());
     if (w.common.json && json.contains("files"))
-        fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+        fmt::print("{}\n", json.dump(2));
     return exit_done;
 }
 

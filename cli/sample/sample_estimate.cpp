@@ -3,6 +3,7 @@
 #include "domelight/image/colour.h"
 #include "domelight/io/write_image.h"
 
+#include "base/json.h"
 #include "preview/plot.h"
 #include "cli/sample/sample_study.h"
 
@@ -14,8 +15,6 @@
 
 namespace domelight::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// JSON has no infinity: null, as everywhere where there is no number.
 Json number_json(double v) {

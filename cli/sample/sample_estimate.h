@@ -3,9 +3,9 @@
 #include "domelight/sampling/environment_sampler.h"
 #include "domelight/base/progress.h"
 
+#include "base/json.h"
 #include "cli/sample/sample_options.h"
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 namespace domelight::cli {
@@ -13,7 +13,7 @@ namespace domelight::cli {
 /// What a part of `domelight sample` has to say, in both forms.
 struct Told {
     std::string text;
-    nlohmann::ordered_json json;
+    Json json;
 };
 
 /// The table of all strategies; writes --plot where it is asked for.

@@ -3,6 +3,8 @@
 #include "domelight/image/colour.h"
 #include "domelight/io/write_image.h"
 
+#include "base/json.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -10,8 +12,6 @@
 
 namespace domelight::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// The pieces around the one found, with an arrow at it.
 std::string neighbours(const Found& f, const char* piece, const char* axis) {

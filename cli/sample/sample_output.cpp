@@ -5,6 +5,7 @@
 #include "domelight/io/write_image.h"
 #include "domelight/texture/texture.h"
 
+#include "base/json.h"
 #include "bake/staging.h"
 
 #include <fmt/core.h>
@@ -14,13 +15,10 @@
 #include <cstdio>
 #include <functional>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <system_error>
 
 namespace domelight::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Where pieces of text go: false when they cannot.
 using Sink = std::function<bool(const std::string&)>;
@@ -50,7 +48,7 @@ std::string json_head(const SampleWords& w, const EnvironmentSampler& sampler, i
                     {"sequence", w.sequence},
                     {"seed", w.seed_number},
                     {"count", count}};
-    std::string text = head.dump(2, ' ', false, Json::error_handler_t::replace);
+    std::string text = head.dump(2);
     text.erase(text.rfind("\n}"));
     return text + ",\n  \"samples\": [\n";
 }

@@ -3,6 +3,7 @@
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
+#include "base/json.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/eight_bit.h"
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace domelight::cli {
 namespace {
@@ -88,7 +88,7 @@ Result<void> write(const SkyWords& w, WatchedRows& rows) {
 
 void print_result(const SkyWords& w, int height, const WatchedRows& rows) {
     if (w.common.json) {
-        nlohmann::ordered_json json{{"version", version()},
+        Json json{{"version", version()},
                                     {"file", w.output},
                                     {"width", 2 * height},
                                     {"height", height},
@@ -99,7 +99,7 @@ void print_result(const SkyWords& w, int height, const WatchedRows& rows) {
                            {"turbidity", w.sky.turbidity},
                            {"ground_albedo", w.sky.ground_albedo},
                            {"sun_disc", w.sky.sun_disc}};
-        fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+        fmt::print("{}\n", json.dump(2));
     } else if (!w.common.quiet) {
         fmt::print("{}: {} x {}, values up to {:.6g}\n", w.output, 2 * height, height, rows.largest());
     }

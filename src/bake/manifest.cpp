@@ -3,6 +3,7 @@
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/projection/projections.h"
 
+#include "base/json.h"
 #include "bake/panorama.h"
 #include "base/sha256.h"
 
@@ -10,12 +11,9 @@
 
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 namespace domelight {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 const char* const k_cube_convention =
     "faces +X -X +Y -Y +Z -Z with OpenGL's orientation of each; texture(cube, d) is the light arriving from world "
@@ -39,7 +37,7 @@ const char* g_name(BrdfG g) {
 
 /// File names may hold bytes that are not UTF-8: those become replacement characters.
 std::string json_text(const Json& json) {
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json.dump(2) + "\n";
 }
 
 Json hash_json(const std::string& sha256) {
@@ -191,9 +189,10 @@ bool files_match(const Json& json, const std::filesystem::path& folder, int dept
         const auto hash = sha256_file(folder / json["file"].get<std::string>());
         if (!hash || *hash != json["sha256"].get<std::string>()) return false;
     }
-    if (json.is_structured())
-        for (const auto& [key, value] : json.items())
-            if (!files_match(value, folder, depth + 1)) return false;
+    for (const auto& [key, value] : json.items())
+        if (!files_match(value, folder, depth + 1)) return false;
+    for (const Json& element : json.elements())
+        if (!files_match(element, folder, depth + 1)) return false;
     return true;
 }
 
@@ -250,7 +249,9 @@ std::string sh_json(const ShReport& sh) {
 bool manifest_matches(const std::filesystem::path& folder, const EnginePlan& plan, const BakeOptions& options,
                       const std::string& source_sha256) {
     std::ifstream stream(folder / "manifest.json", std::ios::binary);
-    const Json json = Json::parse(stream, nullptr, false);
+    const auto parsed = Json::parse(std::string(std::istreambuf_iterator<char>(stream), {}));
+    if (!parsed) return false;
+    const Json& json = *parsed;
     if (!json.is_object() || !json.contains("version") || !json.contains("source") || !json.contains("options"))
         return false;
     if (json["version"] != Json(version()) || !json["source"].is_object() || !json["source"].contains("sha256"))

@@ -1,9 +1,11 @@
 #include "io/file/json_fields.h"
 
+#include "base/json.h"
 #include "io/image_reader.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -11,28 +13,21 @@ namespace domelight {
 
 namespace {
 
-const nlohmann::json k_nothing;
+const Json k_nothing;
 
 }  // namespace
 
-Result<nlohmann::json> parse_json(std::string_view text) {
-    try {
-        return nlohmann::json::parse(text.begin(), text.end());
-    } catch (const nlohmann::json::exception& e) {
-        // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
-        const std::string_view message = e.what();
-        const std::size_t end = message.find("] ");
-        return Error{"broken JSON: " + printable(message.substr(end == message.npos ? 0 : end + 2), 160), "", ""};
-    }
+Result<Json> parse_json(std::string_view text) {
+    auto json = Json::parse(text);
+    if (!json) return Error{printable(json.error().what, 173), "", ""};
+    return json;
 }
 
-JsonFields::JsonFields(const nlohmann::json& value, std::string place, std::optional<Error>& error)
+JsonFields::JsonFields(const Json& value, std::string place, std::optional<Error>& error)
     : value_(&value), place_(std::move(place)), error_(&error) {}
 
-const nlohmann::json* JsonFields::find(const char* key) const {
-    if (!value_->is_object()) return nullptr;
-    const auto at = value_->find(key);
-    return at == value_->end() ? nullptr : &*at;
+const Json* JsonFields::find(const char* key) const {
+    return value_->find(key);
 }
 
 std::string JsonFields::path(std::string_view key) const {
@@ -50,7 +45,7 @@ JsonFields& JsonFields::require(const char* key) {
 }
 
 float JsonFields::number(const char* key, float fallback) {
-    const nlohmann::json* member = find(key);
+    const Json* member = find(key);
     if (!member) return fallback;
     const double value = member->is_number() ? member->get<double>() : std::numeric_limits<double>::infinity();
     if (std::abs(value) <= std::numeric_limits<float>::max()) return float(value);
@@ -63,11 +58,11 @@ float JsonFields::number(const char* key, float fallback, float low, float high)
 }
 
 std::vector<float> JsonFields::numbers(const char* key, std::size_t count) {
-    const nlohmann::json* member = find(key);
+    const Json* member = find(key);
     if (!member) return {};
     std::vector<float> values;
     if (member->is_array() && (count == 0 || member->size() == count))
-        for (const nlohmann::json& element : *member)
+        for (const Json& element : member->elements())
             if (element.is_number() && std::abs(element.get<double>()) <= std::numeric_limits<float>::max())
                 values.push_back(element.get<float>());
     if (member->is_array() && values.size() == member->size() && (count == 0 || values.size() == count)) return values;
@@ -76,7 +71,7 @@ std::vector<float> JsonFields::numbers(const char* key, std::size_t count) {
 }
 
 std::uint64_t JsonFields::size(const char* key, std::uint64_t fallback) {
-    const nlohmann::json* member = find(key);
+    const Json* member = find(key);
     if (!member) return fallback;
     if (member->is_number_unsigned()) return member->get<std::uint64_t>();
     // "16.0" is a whole number too.
@@ -97,7 +92,7 @@ int JsonFields::index(const char* key, std::size_t limit) {
 }
 
 std::vector<int> JsonFields::indices(const char* key, std::size_t limit) {
-    const nlohmann::json* member = find(key);
+    const Json* member = find(key);
     if (!member) return {};
     if (!member->is_array()) {
         fail(key, "is not an array");
@@ -105,7 +100,7 @@ std::vector<int> JsonFields::indices(const char* key, std::size_t limit) {
     }
     std::vector<int> values;
     values.reserve(member->size());
-    for (const nlohmann::json& element : *member) {
+    for (const Json& element : member->elements()) {
         const bool whole = element.is_number_unsigned();
         const std::uint64_t value = whole ? element.get<std::uint64_t>() : 0;
         if (!whole || value >= limit) {
@@ -119,7 +114,7 @@ std::vector<int> JsonFields::indices(const char* key, std::size_t limit) {
 }
 
 bool JsonFields::flag(const char* key, bool fallback) {
-    const nlohmann::json* member = find(key);
+    const Json* member = find(key);
     if (!member) return fallback;
     if (member->is_boolean()) return member->get<bool>();
     fail(key, "is not true or false");
@@ -127,24 +122,24 @@ bool JsonFields::flag(const char* key, bool fallback) {
 }
 
 bool JsonFields::flag_in(const char* owner, const char* key) const {
-    const nlohmann::json* object = find(owner);
+    const Json* object = find(owner);
     if (!object || !object->is_object()) return false;
-    const auto member = object->find(key);
-    return member != object->end() && member->is_boolean() && member->get<bool>();
+    const Json* member = object->find(key);
+    return member && member->is_boolean() && member->get<bool>();
 }
 
 std::optional<float> JsonFields::number_in(const char* owner, const char* key) const {
-    const nlohmann::json* members = find(owner);
+    const Json* members = find(owner);
     if (!members || !members->is_object()) return std::nullopt;
-    const auto member = members->find(key);
-    if (member == members->end() || !member->is_number()) return std::nullopt;
+    const Json* member = members->find(key);
+    if (!member || !member->is_number()) return std::nullopt;
     const double value = member->get<double>();
     if (!(std::abs(value) <= std::numeric_limits<float>::max())) return std::nullopt;
     return float(value);
 }
 
 std::string JsonFields::text(const char* key, const std::string& fallback) {
-    const nlohmann::json* member = find(key);
+    const Json* member = find(key);
     if (!member) return fallback;
     if (member->is_string()) return member->get<std::string>();
     fail(key, "is not a string");
@@ -152,18 +147,18 @@ std::string JsonFields::text(const char* key, const std::string& fallback) {
 }
 
 std::vector<std::string> JsonFields::texts(const char* key) {
-    const nlohmann::json* member = find(key);
+    const Json* member = find(key);
     if (!member) return {};
     std::vector<std::string> values;
     if (member->is_array())
-        for (const nlohmann::json& element : *member)
+        for (const Json& element : member->elements())
             if (element.is_string()) values.push_back(element.get<std::string>());
     if (!member->is_array() || values.size() != member->size()) fail(key, "is not an array of strings");
     return values;
 }
 
 JsonFields JsonFields::object(const char* key) {
-    const nlohmann::json* member = find(key);
+    const Json* member = find(key);
     if (!member) return {k_nothing, path(key), *error_};
     if (member->is_object()) return {*member, path(key), *error_};
     fail(key, "is not an object");
@@ -171,7 +166,7 @@ JsonFields JsonFields::object(const char* key) {
 }
 
 std::vector<JsonFields> JsonFields::array(const char* key) {
-    const nlohmann::json* member = find(key);
+    const Json* member = find(key);
     if (!member) return {};
     if (!member->is_array()) {
         fail(key, "is not an array");
@@ -179,7 +174,7 @@ std::vector<JsonFields> JsonFields::array(const char* key) {
     }
     std::vector<JsonFields> elements;
     elements.reserve(member->size());
-    for (const nlohmann::json& element : *member) {
+    for (const Json& element : member->elements()) {
         std::string place = fmt::format("{}[{}]", path(key), elements.size());
         if (element.is_object()) {
             elements.push_back({element, std::move(place), *error_});
@@ -194,7 +189,8 @@ std::vector<JsonFields> JsonFields::array(const char* key) {
 std::vector<std::pair<std::string, int>> JsonFields::named_indices(std::size_t limit) {
     std::vector<std::pair<std::string, int>> members;
     if (!value_->is_object()) return members;
-    for (const auto& member : value_->items()) members.emplace_back(member.key(), index(member.key().c_str(), limit));
+    for (const auto& [key, value] : value_->items()) members.emplace_back(key, index(key.c_str(), limit));
+    std::ranges::sort(members);
     return members;
 }
 

@@ -2,8 +2,9 @@
 
 #include "domelight/base/result.h"
 
+#include "base/json.h"
+
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,7 +13,7 @@
 namespace domelight {
 
 /// Errors: it is no JSON; says where.
-Result<nlohmann::json> parse_json(std::string_view text);
+Result<Json> parse_json(std::string_view text);
 
 /// The members of a JSON object, read with their types checked. The first thing found wrong is kept in an error that
 /// all objects of one document share, and reading goes on with defaults: the caller looks at the error once, at the
@@ -24,7 +25,7 @@ Result<nlohmann::json> parse_json(std::string_view text);
 ///     only 3"
 class JsonFields {
   public:
-    JsonFields(const nlohmann::json& value, std::string place, std::optional<Error>& error);
+    JsonFields(const Json& value, std::string place, std::optional<Error>& error);
 
     bool has(const char* key) const { return value_->is_object() && value_->contains(key); }
     /// Whether this is an object that was in the file, and not the empty one that stands for a missing member.
@@ -65,10 +66,10 @@ class JsonFields {
     const std::string& place() const { return place_; }
 
   private:
-    const nlohmann::json* find(const char* key) const;
+    const Json* find(const char* key) const;
     std::string path(std::string_view key) const;
 
-    const nlohmann::json* value_;
+    const Json* value_;
     std::string place_;
     std::optional<Error>* error_;
 };

@@ -5,6 +5,7 @@
 #include "domelight/render/shading/shading.h"
 #include "domelight/texture/texture.h"
 
+#include "base/json.h"
 #include "projection/bordered_cube.h"
 #include "render/environment_map.h"
 
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 namespace domelight {
 
@@ -45,20 +45,20 @@ Result<Lobe> lobe_of(const std::string& name) {
     return Error{fmt::format("tells of a chain of lobe \"{}\"", name), "", "Bake with --lobe ggx or --lobe phong."};
 }
 
-float level_roughness(const nlohmann::json& level, Lobe lobe) {
+float level_roughness(const Json& level, Lobe lobe) {
     const char* key = lobe == Lobe::ggx ? "roughness" : "exponent";
     if (!level.is_object() || !level.contains(key) || !level[key].is_number()) return 0;  // "inf": the environment
     const double value = level[key].get<double>();
     return lobe == Lobe::ggx ? float(value) : matching_roughness(std::max(0.0, value));
 }
 
-Result<nlohmann::json> read_json(const std::filesystem::path& file) {
+Result<Json> read_json(const std::filesystem::path& file) {
     std::ifstream in(file);
     if (!in)
         return Error{"cannot be read", file.string(),
                      "The folder must be one that `domelight bake` wrote for the generic engine."};
-    auto json = nlohmann::json::parse(in, nullptr, false);
-    if (json.is_discarded()) return Error{"is no JSON", file.string(), ""};
+    auto json = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}));
+    if (!json) return Error{"is not JSON", file.string(), ""};
     return json;
 }
 
@@ -85,15 +85,15 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
     if (!brdf) return brdf.error();
 
     const std::string name = (folder / "manifest.json").string();
-    const auto chain = manifest->value("specular", nlohmann::json::object());
-    const auto levels = chain.value("levels", nlohmann::json::array());
+    const Json& chain = std::as_const(*manifest)["specular"];
+    const Json& levels = chain["levels"];
     if (levels.size() != specular->size())
         return Error{fmt::format("tells of {} specular levels, specular.ktx2 has {}", levels.size(), specular->size()),
                      name, ""};
-    const auto lobe = lobe_of(chain.value("lobe", lobe_name(Lobe::ggx)));
+    const auto lobe = lobe_of(chain["lobe"].is_string() ? chain["lobe"].get<std::string>() : lobe_name(Lobe::ggx));
     if (!lobe) return lobe.error().at(name);
     impl.lobe = *lobe;
-    for (const auto& level : levels) impl.roughness.push_back(level_roughness(level, impl.lobe));
+    for (const Json& level : levels.elements()) impl.roughness.push_back(level_roughness(level, impl.lobe));
     if (!std::ranges::is_sorted(impl.roughness))
         return Error{fmt::format("has {} that do not {} from level to level",
                                  impl.lobe == Lobe::ggx ? "roughness values" : "exponents",
@@ -103,7 +103,7 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
 
     // The generic engine stores irradiance E, others E / pi.
     const bool over_pi =
-        manifest->value("irradiance", nlohmann::json::object()).value("quantity", "irradiance") == "irradiance_over_pi";
+        std::as_const(*manifest)["irradiance"]["quantity"] == Json("irradiance_over_pi");
     Cubemap e = irradiance->front();
     if (!over_pi)
         for (float& p : e.pixels()) p /= float(k_pi);
@@ -112,11 +112,11 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
 
     const auto sh = read_json(folder / "sh.json");
     if (!sh) return sh.error();
-    const auto coefficients = sh->value("radiance", nlohmann::json::array());
+    const Json& coefficients = std::as_const(*sh)["radiance"];
     std::vector<Vec3d> radiance;
-    for (const auto& c : coefficients)
-        if (c.is_array() && c.size() == 3 && c[0].is_number())
-            radiance.push_back({c[0].get<double>(), c[1].get<double>(), c[2].get<double>()});
+    for (const Json& c : coefficients.elements())
+        if (c.size() == 3 && std::ranges::all_of(c.elements(), &Json::is_number))
+            radiance.push_back({c.elements()[0].get<double>(), c.elements()[1].get<double>(), c.elements()[2].get<double>()});
     if (radiance.empty()) return Error{"has no coefficients", (folder / "sh.json").string(), ""};
     if (radiance.size() > 9) radiance.resize(9);
     impl.sh_irradiance = sh_irradiance_over_pi(radiance);

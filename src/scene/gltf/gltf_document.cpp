@@ -1,5 +1,6 @@
 #include "scene/gltf/gltf_document.h"
 
+#include "base/json.h"
 #include "scene/gltf/gltf_materials.h"
 #include "io/image_reader.h"
 #include "io/file/json_fields.h"
@@ -38,7 +39,7 @@ int components_of(const std::string& type) {
 /// Reads the document part by part. Wrong members end up in `error_`.
 class DocumentParser {
   public:
-    DocumentParser(const nlohmann::json& json, const SceneOptions& options)
+    DocumentParser(const Json& json, const SceneOptions& options)
         : root_(json, "", error_), options_(options) {}
     Result<GltfDocument> parse();
 

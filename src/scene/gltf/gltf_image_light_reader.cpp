@@ -1,4 +1,5 @@
 // Reads glTF's EXT_lights_image_based.
+#include "base/json.h"
 #include "texture/texel/rgba8_ranges.h"
 #include "scene/gltf/gltf_chunks.h"
 #include "scene/gltf/gltf_data.h"
@@ -31,30 +32,30 @@ struct Definition {
 };
 
 /// An array of arrays of numbers; anything else is noted in `fields` and gives none.
-std::vector<std::vector<double>> numbers_of(JsonFields& fields, const nlohmann::json& light, const char* key,
+std::vector<std::vector<double>> numbers_of(JsonFields& fields, const Json& light, const char* key,
                                             std::size_t inner) {
     std::vector<std::vector<double>> rows;
     fields.require(key);
-    const auto at = light.find(key);
-    if (at == light.end() || !at->is_array()) {
+    const Json* at = light.find(key);
+    if (!at || !at->is_array()) {
         fields.fail(key, "is not an array");
         return {};
     }
-    for (const nlohmann::json& row : *at) {
+    for (const Json& row : at->elements()) {
         const bool fits = row.is_array() && row.size() == inner &&
-                          std::all_of(row.begin(), row.end(), [](const auto& v) { return v.is_number(); });
+                          std::ranges::all_of(row.elements(), &Json::is_number);
         if (!fits) {
             fields.fail(key, fmt::format("its elements are not {} numbers each", inner));
             return {};
         }
         rows.emplace_back();
-        for (const nlohmann::json& v : row) rows.back().push_back(v.get<double>());
+        for (const Json& v : row.elements()) rows.back().push_back(v.get<double>());
     }
     return rows;
 }
 
 /// The light that the scene names, else the first.
-Result<Definition> definition_of(const nlohmann::json& json, std::size_t images) {
+Result<Definition> definition_of(const Json& json, std::size_t images) {
     std::optional<Error> error;
     JsonFields root(json, "", error);
     auto lights = root.extension(k_extension).array("lights");
@@ -68,7 +69,7 @@ Result<Definition> definition_of(const nlohmann::json& json, std::size_t images)
 
     Definition d;
     JsonFields& fields = lights[std::size_t(index)];
-    const nlohmann::json& light = json["extensions"][k_extension]["lights"][std::size_t(index)];
+    const Json& light = json["extensions"][k_extension]["lights"][std::size_t(index)];
     d.intensity = fields.number("intensity", 1, 0, 1e20f);
     if (const auto rotation = fields.numbers("rotation", 4); rotation.size() == 4)
         std::copy(rotation.begin(), rotation.end(), d.rotation.begin());

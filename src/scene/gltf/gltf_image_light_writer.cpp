@@ -1,20 +1,18 @@
 // Writes glTF with EXT_lights_image_based.
 #include "domelight/io/file/atomic_file.h"
 
+#include "base/json.h"
 #include "scene/gltf/gltf_image_light.h"
 #include "io/picture/png_memory.h"
 
 #include <fmt/format.h>
 
 #include <bit>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
 namespace domelight {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// RFC 4648, section 4.
 std::string base64(std::span<const std::uint8_t> bytes) {
@@ -58,7 +56,7 @@ Result<void> write_gltf_image_light(const std::filesystem::path& file, const Glt
                     {"images", images},
                     {"scenes", Json::array({{{"extensions", {{"EXT_lights_image_based", {{"light", 0}}}}}}})},
                     {"scene", 0}};
-    const std::string text = json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    const std::string text = json.dump(1) + "\n";
     return write_file_atomically(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 

@@ -1,15 +1,14 @@
 #include "scene/gltf/gltf_lights_writer.h"
 
+#include "base/json.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace domelight {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json array(const Vec3d& v) {
     return Json::array({v.x, v.y, v.z});
@@ -58,7 +57,7 @@ std::string gltf_lights(std::span<const ExtractedLight> lights, double lux_per_u
     }
     json["scenes"] = Json::array({scene});
     json["scene"] = 0;
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json.dump(2) + "\n";
 }
 
 }  // namespace domelight

@@ -1,6 +1,11 @@
 // Writes Babylon's .env, version 2.
 #include "domelight/io/file/atomic_file.h"
 
+<<<<<<< HEAD
+=======
+#include "base/json.h"
+#include "texture/container/env.h"
+>>>>>>> bad9bcb (build: JSON is compiled once, common headers are parsed once)
 #include "io/file/output_file.h"
 #include "io/picture/png_memory.h"
 #include "texture/container/env.h"
@@ -8,15 +13,12 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
 namespace domelight {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Result<void> check_cube(const Texture& cube) {
     if (cube.encoding != Encoding::rgbd)
