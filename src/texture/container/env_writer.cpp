@@ -1,11 +1,7 @@
 // Writes Babylon's .env, version 2.
 #include "domelight/io/file/atomic_file.h"
 
-<<<<<<< HEAD
-=======
 #include "base/json.h"
-#include "texture/container/env.h"
->>>>>>> bad9bcb (build: JSON is compiled once, common headers are parsed once)
 #include "io/file/output_file.h"
 #include "io/picture/png_memory.h"
 #include "texture/container/env.h"
