@@ -146,9 +146,16 @@ class Sheet:
         resized = Image.fromarray(pixels).resize((round(width * self.SCALE), round(height * self.SCALE)), how)
         self.image.paste(resized, (round(x * self.SCALE), round(y * self.SCALE)))
 
+    def _finished(self):
+        return self.image.resize((self.image.width // self.SCALE, self.image.height // self.SCALE), Image.Resampling.LANCZOS)
+
+    def save_jpeg(self, name, quality=88):
+        """Writes NAME into this script's folder, for sheets of photographs and of smooth gradients, which a palette would turn into bands."""
+        self._finished().save(HERE / name, quality=quality, optimize=True)
+
     def save(self, name, colours=256):
-        """Writes NAME beside this script, as a palette picture (a third of the bytes)."""
-        small = self.image.resize((self.image.width // self.SCALE, self.image.height // self.SCALE), Image.Resampling.LANCZOS)
+        """Writes NAME into this script's folder, as a palette picture (a third of the bytes)."""
+        small = self._finished()
         if colours:
             small = small.quantize(colours, dither=Image.Dither.NONE)
         small.save(HERE / name, optimize=True)
