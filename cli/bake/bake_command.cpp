@@ -72,7 +72,7 @@ void declare(Arguments& a, BakeWords& w) {
     a.choice("--encoding", w.encoding,
              {"rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "bc6h", "uastc-hdr", "astc4x4-hdr", "astc6x6-hdr", "rgbm",
               "rgbd", "rgbp"},
-             "texels of the maps (the engine's)");
+             "texels of the maps; left out, an EXR holds halves, or rgba32f where halves would clip (the engine's)");
     a.choice("--encoding-quality", w.encoding_quality, {"fast", "default", "high", "exhaustive"},
              "how hard bc6h, uastc-hdr and astc search for the best block; exhaustive takes minutes (default)");
     a.choice("--format", w.format, {"ktx2", "ktx1", "dds", "dds9", "exr", "exr-mip", "hdr"},

@@ -1,6 +1,7 @@
 #include "cli/bake/bake_report.h"
 
 #include "base/json.h"
+#include "cli/console/console.h"
 
 #include <fmt/core.h>
 
@@ -23,6 +24,7 @@ void print_map(const BakedMap& map) {
     const std::string shape =
         map.layout == Layout::cube ? fmt::format("6 x {}^2", size) : fmt::format("{} x {}", 2 * size, size);
     std::string line = fmt::format("  {:<28} {}: {}, {}", shown_name(map), map.role, shape, map.encoding);
+    if (map.widened) line += fmt::format(" ({})", k_why_float_channels);
     if (map.levels.size() > 1) line += fmt::format(", {} levels to {}", map.levels.size(), map.levels.back().size);
     if (map.quantity != Quantity::radiance) line += ", " + quantity_name(map.quantity);
     fmt::print("{}\n", line);

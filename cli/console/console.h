@@ -33,6 +33,9 @@ std::optional<int> begin_command(Arguments& arguments, const std::vector<std::st
 void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options,
                     const std::string& place = "");
 
+/// Behind the encoding of an OpenEXR image whose channels became 32-bit floats by the rule of fits_half().
+inline constexpr const char* k_why_float_channels = "halves would clip at 65504";
+
 /// "0:07", "12:30", "3:05:00".
 std::string clock_text(double seconds);
 

@@ -44,8 +44,8 @@ void declare(Arguments& a, ConvertWords& w) {
            "a cube: cross, vertical-cross, strip, vertical-strip, faces (name_px.hdr ...); a dual paraboloid: "
            "side-by-side, files (name_front.hdr ...)");
     a.text("--encoding", "NAME", w.output.encoding,
-           ".exr: half, float (half); textures: rgba16f, rgba32f, rgb9e5, r11g11b10f, bc6h, .ktx2 also uastc-hdr, "
-           "astc4x4-hdr, astc6x6-hdr, rgbm, rgbd, rgbp (rgba16f)");
+           ".exr: auto, half, float (auto: half, or float where half would clip); textures: rgba16f, rgba32f, rgb9e5, "
+           "r11g11b10f, bc6h, .ktx2 also uastc-hdr, astc4x4-hdr, astc6x6-hdr, rgbm, rgbd, rgbp (rgba16f)");
     a.texts("--rotate", "X,Y,Z,DEGREES", w.rotations,
             "turn the light about an axis, clockwise as seen from the axis's tip: 0,1,0,90 is --rotate-y-deg 90; "
             "several are done one after the other");
@@ -142,7 +142,7 @@ void print_json(const ConvertWords& w, const Environment& environment, const Con
         {"layout", w.output.layout},
         {"width", made.image.width()},
         {"height", made.image.height()},
-        {"encoding", w.output.encoding},
+        {"encoding", written.encoding_name},
         {"method", made.method},
         {"power",
          {{"before", json_of(made.power_before)},
@@ -159,9 +159,10 @@ void print_text(const ConvertWords& w, const Conversion& made, const WrittenPict
     const double before = luminance(made.power_before), after = luminance(made.power_after);
     fmt::print("radiant power {:.6g} before, {:.6g} after ({:+.2g} %), resampled: {}\n", before, after,
                100 * relative(before, after), made.method);
+    if (written.widened) fmt::print("32-bit float channels: {}\n", k_why_float_channels);
     if (written.encoding.clipped_texels > 0)
-        fmt::print("{} clips {} texels and {:.3g} % of the power\n", w.output.encoding, written.encoding.clipped_texels,
-                   100 * written.encoding.clipped_energy);
+        fmt::print("{} clips {} texels and {:.3g} % of the power\n", written.encoding_name,
+                   written.encoding.clipped_texels, 100 * written.encoding.clipped_energy);
 }
 
 Result<void> check(ConvertWords& w) {

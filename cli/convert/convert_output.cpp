@@ -31,7 +31,7 @@ std::vector<std::string> layouts_of(const Projection& projection, const std::str
 
 std::vector<std::string> encodings_of(const std::string& file) {
     const std::string extension = lower_case_extension(file);
-    if (extension == ".exr") return {"half", "float"};
+    if (extension == ".exr") return {"auto", "half", "float"};
     if (extension == ".hdr") return {"rgbe"};
     if (is_screen_picture(file)) return {"srgb"};
     std::vector<std::string> all{"rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "bc6h"};
@@ -121,9 +121,15 @@ Result<void> check_output(ConvertOutput& output, const Projection& projection) {
     return check(output.encoding, "--encoding", encodings_of(output.file), extension);
 }
 
-Result<WrittenPicture> write_projected(const ProjectedImage& image, const ConvertOutput& output) {
-    const std::string extension = lower_case_extension(output.file);
+Result<WrittenPicture> write_projected(const ProjectedImage& image, const ConvertOutput& asked) {
+    const std::string extension = lower_case_extension(asked.file);
     WrittenPicture written;
+    ConvertOutput output = asked;
+    if (asked.encoding == "auto") {
+        written.widened = !fits_half(image.pixels.view());
+        output.encoding = written.widened ? "float" : "half";
+    }
+    written.encoding_name = output.encoding;
     written.clips = is_screen_picture(output.file);
     if (is_texture(extension)) {
         const FilteredMap level = as_level(image);

@@ -14,7 +14,7 @@ namespace domelight::cli {
 struct ConvertOutput {
     std::string file;
     std::string layout;    ///< empty: the format's and projection's own
-    std::string encoding;  ///< empty: half for .exr, rgba16f for textures
+    std::string encoding;  ///< empty: auto for .exr (half, or float where half would clip), rgba16f for textures
     int threads = 0;
 };
 
@@ -24,6 +24,8 @@ Result<void> check_output(ConvertOutput& output, const Projection& projection);
 
 struct WrittenPicture {
     std::vector<std::string> files;
+    std::string encoding_name;
+    bool widened = false;     ///< `encoding_name` is float, because half would clip
     EncodingReport encoding;  ///< what the encoding clipped; textures and half .exr
     bool clips = false;       ///< 8 bits: everything above 1
 };

@@ -19,7 +19,7 @@ namespace {
 
 struct SkyWords {
     CommonOptions common;
-    std::string output, encoding = "half";
+    std::string output, encoding = "auto";
     std::optional<int> height;
     SkyOptions sky;
     bool axes = false, no_sun_disc = false;
@@ -29,7 +29,8 @@ void declare(Arguments& a, SkyWords& w) {
     a.group("The picture");
     a.text("-o,--output", "FILE", w.output, "where to write it: .hdr, .exr, or .png or .jpg (8 bits, not HDR)");
     a.integer("--height", "N", w.height, "rows of the lat-long image, which is twice as wide (512)");
-    a.choice("--exr", w.encoding, {"half", "float"}, "channels of an .exr; half clips the sun at 65504 (half)");
+    a.choice("--exr", w.encoding, {"auto", "half", "float"},
+             "channels of an .exr; half clips the sun at 65504, so auto takes float where the sun is up (auto)");
     a.flag("--axes", w.axes, "the labelled six-axis environment instead of a sky: it shows every orientation mistake");
     a.group("The sky");
     a.number("--sun-elevation-deg", "DEGREES", w.sky.sun_elevation_deg,
@@ -78,21 +79,53 @@ class WatchedRows : public RowSource {
     float largest_ = 0;
 };
 
-Result<void> write(const SkyWords& w, WatchedRows& rows) {
+/// What is to be written, and the picture that its rows come from where it is not made row by row.
+struct Source {
+    ImageF axes;
+    std::unique_ptr<RowSource> rows;
+};
+
+std::unique_ptr<Source> open_source(const SkyWords& w) {
+    auto source = std::make_unique<Source>();
+    if (w.axes) {
+        source->axes = make_axes_environment(w.sky.height);
+        source->rows = std::make_unique<ImageRowSource>(source->axes.view());
+    } else {
+        source->rows = make_sky(w.sky);
+    }
+    return source;
+}
+
+bool is_exr(const SkyWords& w) {
+    return lower_case_extension(w.output) == ".exr";
+}
+
+/// Half or float channels of an .exr. To find out whether halves are enough, the rows down to the sun are made twice:
+/// a file of floats would be twice as large where halves are.
+Result<std::string> choose_channels(const SkyWords& w) {
+    if (!is_exr(w) || w.encoding != "auto") return w.encoding;
+    const auto fits = fits_half(*open_source(w)->rows);
+    if (!fits) return fits.error();
+    return std::string(*fits ? "half" : "float");
+}
+
+Result<void> write(const SkyWords& w, const std::string& channels, WatchedRows& rows) {
     if (is_screen_picture(w.output)) return write_8bit(w.output, rows);
     if (lower_case_extension(w.output) == ".hdr") return write_hdr(w.output, rows);
     ExrWriteOptions exr;
-    exr.half = w.encoding == "half";
+    exr.half = channels == "half";
     return write_exr(w.output, rows, exr);
 }
 
-void print_result(const SkyWords& w, int height, const WatchedRows& rows) {
+void print_result(const SkyWords& w, const std::string& channels, const WatchedRows& rows) {
+    const int height = w.sky.height;
     if (w.common.json) {
         Json json{{"version", version()},
                                     {"file", w.output},
                                     {"width", 2 * height},
                                     {"height", height},
                                     {"largest", rows.largest()}};
+        if (is_exr(w)) json["channels"] = channels;
         if (!w.axes)
             json["sky"] = {{"sun_elevation_deg", w.sky.sun_elevation_deg},
                            {"sun_azimuth_deg", w.sky.sun_azimuth_deg},
@@ -102,6 +135,8 @@ void print_result(const SkyWords& w, int height, const WatchedRows& rows) {
         fmt::print("{}\n", json.dump(2));
     } else if (!w.common.quiet) {
         fmt::print("{}: {} x {}, values up to {:.6g}\n", w.output, 2 * height, height, rows.largest());
+        if (is_exr(w) && w.encoding == "auto" && channels == "float")
+            fmt::print("32-bit float channels: {}\n", k_why_float_channels);
     }
 }
 
@@ -121,24 +156,19 @@ int run_sky(const std::vector<std::string>& words) {
     w.sky.sun_disc = !w.no_sun_disc;
     w.sky.threads = w.common.threads.value_or(0);
 
-    ImageF axes;
-    std::unique_ptr<RowSource> source;
-    if (w.axes) {
-        axes = make_axes_environment(w.sky.height);
-        source = std::make_unique<ImageRowSource>(axes.view());
-    } else {
-        source = make_sky(w.sky);
-    }
+    const auto channels = choose_channels(w);
+    if (!channels) return print_error(channels.error().at(w.output));
+    const auto source = open_source(w);
     ProgressBar bar(w.output, w.common);
-    WatchedRows rows(*source, bar.callback());
-    if (auto ok = write(w, rows); !ok) return print_error(ok.error().at(w.output));
+    WatchedRows rows(*source->rows, bar.callback());
+    if (auto ok = write(w, *channels, rows); !ok) return print_error(ok.error().at(w.output));
     if (is_screen_picture(w.output) && !w.axes)
         print_warnings({w.output + ": 8 bits clip the sky at 1; write .hdr or .exr for light"}, w.common);
-    if (lower_case_extension(w.output) == ".exr" && w.encoding == "half" && rows.largest() > 65504)
+    if (is_exr(w) && w.encoding == "half" && rows.largest() > 65504)
         print_warnings({fmt::format("{}: half floats clip the sun ({:.4g}) at 65504; --exr float keeps it", w.output,
                                     rows.largest())},
                        w.common);
-    print_result(w, w.sky.height, rows);
+    print_result(w, *channels, rows);
     return exit_done;
 }
 

@@ -222,6 +222,7 @@ class EngineBake {
     MapFormat map_format(const std::string& name, Encoding encoding) const {
         MapFormat format;
         format.encoding = encoding;
+        format.widen_for_range = !options_.encoding;
         format.container = plan_.container;
         format.zstd = plan_.zstd;
         format.cube_picture = options_.cube_picture;

@@ -169,10 +169,22 @@ void write_pictures(BakedMap& report, std::span<FilteredMap> levels, const MapFo
     }
 }
 
+/// Whether the map's OpenEXR files are to hold floats, although halves were planned, because halves would clip.
+bool is_widened(std::span<const FilteredMap> levels, const MapFormat& format) {
+    const bool openexr = format.container == Container::exr || format.container == Container::exr_mip;
+    if (!openexr || !format.widen_for_range || format.encoding != Encoding::rgba16f) return false;
+    return !std::all_of(levels.begin(), levels.end(), [](const FilteredMap& level) {
+        return fits_half(level.cube.empty() ? level.latlong.view() : level.cube.strip());
+    });
+}
+
 }  // namespace
 
-void write_map(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
+void write_map(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& planned, const BakeOptions& options,
                Staging& staging, Background& background) {
+    MapFormat format = planned;
+    report.widened = is_widened(levels, planned);
+    if (report.widened) format.encoding = Encoding::rgba32f;
     report.encoding = format.container == Container::hdr ? "rgbe" : encoding_name(format.encoding);
     report.container = container_name(format.container);
     report.zstd = format.zstd;

@@ -33,6 +33,8 @@ class Background {
 /// How one map is to be stored.
 struct MapFormat {
     Encoding encoding = Encoding::rgba16f;
+    /// In OpenEXR: 32-bit floats instead of halves where halves would clip a level (fits_half()).
+    bool widen_for_range = false;
     Container container = Container::ktx2;
     bool zstd = false;
     CubePicture cube_picture = CubePicture::cross;

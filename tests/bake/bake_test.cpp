@@ -256,6 +256,24 @@ TEST_CASE("bake: what was clipped is reported") {
     CHECK(report->warnings[0].find("specular level 0") != std::string::npos);
 }
 
+TEST_CASE("bake: OpenEXR maps hold floats where halves would clip, unless halves are asked for") {
+    const test::TemporaryFolder folder;
+    for (const Container container : {Container::exr, Container::exr_mip})
+        for (const bool bright : {false, true})
+            for (const bool asked : {false, true}) {
+                ImageF image(64, 32, 3, 1.0f);
+                if (bright) image.at(10, 16)[1] = 1e6f;
+                Environment environment = environment_of(image);
+                BakeOptions options = small_options();
+                options.format = container;
+                if (asked) options.encoding = Encoding::rgba16f;
+                REQUIRE(bake(environment, options, folder.path()));
+                const auto specular = read_json(folder / "manifest.json")["specular"];
+                CHECK(specular["encoding"] == (bright && !asked ? "rgba32f" : "rgba16f"));
+                CHECK((specular["levels"][0]["clipped_texels"] > 0) == (bright && asked));
+            }
+}
+
 TEST_CASE("bake_is_up_to_date: only for the same source, options and files") {
     const test::TemporaryFolder folder;
     const std::vector<std::filesystem::path> files{folder / "env.hdr"};

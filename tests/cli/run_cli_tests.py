@@ -736,6 +736,24 @@ def test_sky_formats_and_axes(folder):
     assert json.loads(run("info", "axes.png", "--json", folder=folder).stdout)["width"] == 128
 
 
+def test_exr_channels_hold_the_sun(folder):
+    """Half floats end at 65504: where they would clip, 32-bit floats are written, and a line says so."""
+    brightest = lambda name: json.loads(run("info", name, "--json", folder=folder).stdout)["range"][1]
+    for words in [["sky", "-o", "a.exr", "--height", "64"], ["convert", "a.exr", "b.exr", "--size", "64"]]:
+        said = run(*words, folder=folder)
+        assert "32-bit float channels: halves would clip at 65504" in said.stdout and not said.stderr, said
+    assert brightest("a.exr") > 2e5 and brightest("b.exr") == brightest("a.exr")
+    assert converted(folder, "a.exr", "b.exr")["encoding"] == "float"
+    assert "rgba32f (halves would clip at 65504)" in run("bake", "a.exr", "-o", "out", "--for", "blender", "--size", "64", folder=folder).stdout
+    assert brightest("out/a.exr") > 65504 and manifest_of(folder / "out")["environment"]["encoding"] == "rgba32f"
+
+    run("convert", "a.exr", "b.exr", "--encoding", "half", folder=folder)
+    assert "half floats clip the sun" in run("sky", "-o", "c.exr", "--exr", "half", "--height", "64", folder=folder).stderr
+    assert brightest("b.exr") == brightest("c.exr") == 65504
+    assert "float" not in run("sky", "-o", "c.exr", "--no-sun-disc", "--height", "64", folder=folder).stdout
+    assert converted(folder, "c.exr", "b.exr")["encoding"] == "half"
+
+
 def converted(folder, *words):
     return json.loads(run("convert", *words, "--json", folder=folder).stdout)
 

@@ -8,6 +8,7 @@
 #include "test.h"
 
 #include <ImfEnvmapAttribute.h>
+#include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfStandardAttributes.h>
 #include <ImfTiledInputFile.h>
@@ -39,6 +40,18 @@ ImageF numbered(int width, int height, float first) {
 }
 
 }  // namespace
+
+TEST_CASE("write_exr_levels: one level that halves would clip makes floats of all") {
+    const TemporaryFolder folder;
+    const std::vector<ImageF> levels{numbered(4, 2, 0), numbered(2, 1, 70000)};
+    const auto channel_type = [&](std::size_t count) {
+        const std::vector<ImageView<const float>> views(levels.begin(), levels.begin() + count);
+        REQUIRE(write_exr_levels(folder / "a.exr", views));
+        return Imf::TiledInputFile((folder / "a.exr").c_str()).header().channels().begin().channel().type;
+    };
+    CHECK(channel_type(1) == Imf::HALF);
+    CHECK(channel_type(2) == Imf::FLOAT);
+}
 
 TEST_CASE("write_exr_levels: OpenEXR reads every level back, and the ones that were not given are averages") {
     const TemporaryFolder folder;

@@ -15,6 +15,7 @@
 #include <ImfStringAttribute.h>
 
 #include <cmath>
+#include <limits>
 
 using namespace domelight;
 using namespace domelight::test;
@@ -96,11 +97,31 @@ TEST_CASE("write_exr: half is clipped at 65504, float is not") {
     ImageF image(4, 1, 3, 1.0f);
     image.pixels()[0] = 1e6f;
     image.pixels()[1] = -1e6f;
-    REQUIRE(write_exr(file, image));
+    REQUIRE(write_exr(file, image, {.half = true}));
     CHECK(read_exr(file, {"R", "G", "B"}).pixels()[0] == 65504);
     CHECK(read_exr(file, {"R", "G", "B"}).pixels()[1] == -65504);
     REQUIRE(write_exr(file, image, {.half = false}));
     CHECK(read_exr(file, {"R", "G", "B"}).pixels()[0] == 1e6f);
+}
+
+TEST_CASE("write_exr: channels are half where that clips nothing, else float, unless they are asked for") {
+    const TemporaryFolder folder;
+    const auto file = folder / "a.exr";
+    const auto channel_type = [&] { return Imf::InputFile(file.c_str()).header().channels().begin().channel().type; };
+    ImageF image(4, 2, 3, 65504.0f);
+    REQUIRE(write_exr(file, image));
+    CHECK(channel_type() == Imf::HALF);
+    for (const float value : {65505.0f, -1e6f, std::numeric_limits<float>::infinity()}) {
+        image.at(3, 1)[2] = value;
+        CHECK_FALSE(fits_half(image));
+        REQUIRE(write_exr(file, image));
+        CHECK(channel_type() == Imf::FLOAT);
+        CHECK(read_exr(file, {"R", "G", "B"}).at(3, 1)[2] == value);
+    }
+    ImageRowSource rows(image), same_rows(image);
+    CHECK_FALSE(*fits_half(rows));
+    REQUIRE(write_exr(file, same_rows));
+    CHECK(channel_type() == Imf::FLOAT);
 }
 
 TEST_CASE("write_exr: a cube lies as OpenEXR's own directions say") {
@@ -137,12 +158,12 @@ TEST_CASE("write_exr: the same bytes on any number of threads, from a view and f
     const ImageF image = sample_image(100, 200, 3);
     for (const std::string& compression : k_compressions) {
         CAPTURE(compression);
-        REQUIRE(write_exr(folder / "1.exr", image, {.compression = compression, .threads = 1}));
+        REQUIRE(write_exr(folder / "1.exr", image, {.half = true, .compression = compression, .threads = 1}));
         const auto expected = file_bytes(folder / "1.exr");
-        REQUIRE(write_exr(folder / "4.exr", image, {.compression = compression, .threads = 4}));
+        REQUIRE(write_exr(folder / "4.exr", image, {.half = true, .compression = compression, .threads = 4}));
         CHECK(file_bytes(folder / "4.exr") == expected);
         ImageRowSource rows(image.view());
-        REQUIRE(write_exr(folder / "r.exr", rows, {.compression = compression}));
+        REQUIRE(write_exr(folder / "r.exr", rows, {.half = true, .compression = compression}));
         CHECK(file_bytes(folder / "r.exr") == expected);
     }
 }

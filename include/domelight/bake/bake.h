@@ -91,6 +91,7 @@ struct BakedMap {
     Layout layout = Layout::cube;
     std::string projection;  ///< the environment as one image: its name and convention; else empty
     std::string encoding, container;
+    bool widened = false;  ///< `encoding` is rgba32f, because halves, the default of OpenEXR files, would clip
     bool zstd = false;
     BakedFile file;  ///< containers that hold the whole chain
     std::vector<BakedLevel> levels;

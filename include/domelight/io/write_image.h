@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -20,8 +21,16 @@ namespace domelight {
 Result<void> write_hdr(const std::filesystem::path& file, ImageView<const float> rgb, int threads = 0);
 Result<void> write_hdr(const std::filesystem::path& file, RowSource& rows, int threads = 0);
 
+/// Whether half floats hold every value without clipping: none is beyond 65504 in either direction, nor infinite. This
+/// is the rule by which the channels of an OpenEXR image are chosen where nobody asks for half or float.
+bool fits_half(ImageView<const float> pixels);
+/// The same of a source's rows, from its next one on. Stops at the first row that does not fit.
+Result<bool> fits_half(RowSource& rows);
+
 struct ExrWriteOptions {
-    bool half = true;                 ///< half or float channels
+    /// Half or float channels. Left out: half where fits_half(), else float; of rows that are written as they are read
+    /// the values are not known before, so these become float.
+    std::optional<bool> half = {};
     std::string compression = "zip";  ///< none | rle | zips | zip | piz | pxr24 | b44 | b44a | dwaa | dwab
     /// The envmap attribute: "", "latlong" (the pixels must then be in OpenEXR's own lat-long convention) or "cube"
     /// (pixels: a size x 6 size strip of faces in OpenGL's orientation, which are turned into OpenEXR's).
@@ -29,8 +38,8 @@ struct ExrWriteOptions {
     std::map<std::string, std::string> attributes = {};  ///< further attributes of type string
     int threads = 0;                                     ///< for compression; 0: all
 };
-/// OpenEXR scanline image, RGB (or as many as 4 channels), linear Rec. 709. A channel's values beyond half's range are
-/// clipped to 65504.
+/// OpenEXR scanline image, RGB (or as many as 4 channels), linear Rec. 709. Where half is asked for, values beyond its
+/// range are clipped to 65504.
 Result<void> write_exr(const std::filesystem::path& file, ImageView<const float> pixels,
                        const ExrWriteOptions& options = {});
 Result<void> write_exr(const std::filesystem::path& file, RowSource& rows, const ExrWriteOptions& options = {});

@@ -83,9 +83,12 @@ Result<void> write_exr_levels(const std::filesystem::path& file, std::span<const
                               const ExrWriteOptions& options) {
     if (levels.empty()) return Error{"no level to write", file.string(), ""};
     const bool cube = options.envmap == "cube";
+    const bool half = options.half ? *options.half : std::all_of(levels.begin(), levels.end(), [](const auto& level) {
+        return fits_half(level);
+    });
     if (const auto fit = check_sizes(levels, cube); !fit) return fit.error().at(file.string());
     return write_exr_file(file, [&](ExrOutputStream& stream) -> Result<void> {
-        auto header = exr_header(levels[0].width, levels[0].height, levels[0].channels, options);
+        auto header = exr_header(levels[0].width, levels[0].height, levels[0].channels, half, options);
         if (!header) return header.error();
         header->setTileDescription(Imf::TileDescription(k_tile, k_tile, Imf::MIPMAP_LEVELS, Imf::ROUND_DOWN));
         const int threads = resolve_threads(options.threads);
@@ -97,7 +100,7 @@ Result<void> write_exr_levels(const std::filesystem::path& file, std::span<const
                 image = cube ? exr_cube_strip(levels[std::size_t(l)]) : copy_of(levels[std::size_t(l)]);
             else
                 image = half_of(image);
-            write_level(out, l, image, options.half);
+            write_level(out, l, image, half);
         }
         return {};
     });

@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -61,13 +62,30 @@ std::vector<const char*> exr_channel_names(int channels) {
     return names;
 }
 
-Result<Imf::Header> exr_header(int width, int height, int channels, const ExrWriteOptions& options) {
+bool fits_half(ImageView<const float> pixels) {
+    for (int y = 0; y < pixels.height; ++y)
+        for (const float* v = pixels.row(y); v < pixels.row(y) + pixels.width * pixels.channels; ++v)
+            if (std::abs(*v) > k_half_max) return false;
+    return true;
+}
+
+Result<bool> fits_half(RowSource& rows) {
+    ImageF block(rows.width(), std::min(rows.height(), k_block_rows), 3);
+    for (int y = 0; y < rows.height(); y += k_block_rows) {
+        const ImageView<float> view = block.view().rows(0, std::min(k_block_rows, rows.height() - y));
+        if (const auto read = rows.read(view); !read) return read.error();
+        if (!fits_half(view)) return false;
+    }
+    return true;
+}
+
+Result<Imf::Header> exr_header(int width, int height, int channels, bool half, const ExrWriteOptions& options) {
     const auto compression = compression_from_name(options.compression);
     if (!compression) return compression.error();
     Imf::Header header(width, height);
     header.compression() = *compression;
     for (const char* name : exr_channel_names(channels))
-        header.channels().insert(name, Imf::Channel(options.half ? Imf::HALF : Imf::FLOAT));
+        header.channels().insert(name, Imf::Channel(half ? Imf::HALF : Imf::FLOAT));
     Imf::addChromaticities(header, Imf::Chromaticities());  // its default is Rec. 709
     if (options.envmap == "latlong")
         Imf::addEnvmap(header, Imf::ENVMAP_LATLONG);
@@ -133,15 +151,15 @@ class RowWriter {
 using NextRows = std::function<Result<ImageView<const float>>(int first, int count)>;
 
 /// May throw.
-Result<void> write_image(ExrOutputStream& stream, int width, int height, int channels, const ExrWriteOptions& options,
-                         const NextRows& next) {
-    auto header = exr_header(width, height, channels, options);
+Result<void> write_image(ExrOutputStream& stream, int width, int height, int channels, bool half,
+                         const ExrWriteOptions& options, const NextRows& next) {
+    auto header = exr_header(width, height, channels, half, options);
     if (!header) return header.error();
     // The pool is the process's; it only grows. With one thread everything happens here.
     const int threads = resolve_threads(options.threads);
     provide_exr_threads(threads);
     Imf::OutputFile file(stream, *header, threads > 1 ? threads : 0);
-    RowWriter rows(file, channels, options.half);
+    RowWriter rows(file, channels, half);
     for (int y = 0; y < height; y += k_block_rows) {
         const auto block = next(y, std::min(k_block_rows, height - y));
         if (!block) return block.error();
@@ -150,10 +168,11 @@ Result<void> write_image(ExrOutputStream& stream, int width, int height, int cha
     return {};
 }
 
-Result<void> write_exr_rows(const std::filesystem::path& file, int width, int height, int channels,
+Result<void> write_exr_rows(const std::filesystem::path& file, int width, int height, int channels, bool half,
                             const ExrWriteOptions& options, const NextRows& next) {
-    return write_exr_file(
-        file, [&](ExrOutputStream& stream) { return write_image(stream, width, height, channels, options, next); });
+    return write_exr_file(file, [&](ExrOutputStream& stream) {
+        return write_image(stream, width, height, channels, half, options, next);
+    });
 }
 
 }  // namespace
@@ -203,15 +222,16 @@ Result<void> write_exr(const std::filesystem::path& file, ImageView<const float>
         cube = exr_cube_strip(pixels);
         pixels = cube;
     }
+    const bool half = options.half ? *options.half : fits_half(pixels);
     return write_exr_rows(
-        file, pixels.width, pixels.height, pixels.channels, options,
+        file, pixels.width, pixels.height, pixels.channels, half, options,
         [&](int first, int count) -> Result<ImageView<const float>> { return pixels.rows(first, count); });
 }
 
 Result<void> write_exr(const std::filesystem::path& file, RowSource& rows, const ExrWriteOptions& options) {
     if (options.envmap == "cube") return Error{"a cube cannot be written row by row", file.string(), ""};
     ImageF block(rows.width(), std::min(rows.height(), k_block_rows), 3);
-    return write_exr_rows(file, rows.width(), rows.height(), 3, options,
+    return write_exr_rows(file, rows.width(), rows.height(), 3, options.half.value_or(false), options,
                           [&](int, int count) -> Result<ImageView<const float>> {
                               const ImageView<float> view = block.view().rows(0, count);
                               Result<void> read = rows.read(view);

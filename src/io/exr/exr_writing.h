@@ -15,9 +15,9 @@ namespace domelight {
 /// Names of 1 to 4 interleaved channels: Y, or R G B A.
 std::vector<const char*> exr_channel_names(int channels);
 
-/// A header of the options' compression, channels, envmap and attributes. Errors: unknown words, a cube that is no
-/// strip, an attribute with a name of another type.
-Result<Imf::Header> exr_header(int width, int height, int channels, const ExrWriteOptions& options);
+/// A header of the options' compression, envmap and attributes, with half or float channels. Errors: unknown words, a
+/// cube that is no strip, an attribute with a name of another type.
+Result<Imf::Header> exr_header(int width, int height, int channels, bool half, const ExrWriteOptions& options);
 
 /// Faces from OpenGL's orientation to OpenEXR's.
 ImageF exr_cube_strip(ImageView<const float> strip);
