@@ -71,6 +71,9 @@ void declare(Arguments& a, RenderWords& w) {
     a.choice("--brdf", w.brdf, {"scene", "phong"},
              "phong: modified Phong lobes of matching width instead of GGX, the truth for --shading phong (scene)");
     a.flag("--bent-lookup", w.bent_lookup, "split-sum: the lookup leans towards the normal on rough surfaces");
+    a.choice("--diffuse-weight", w.diffuse_weight, {"energy", "fresnel"},
+             "split-sum, stretched: what is left for the diffuse layer, 1 - (F0 scale + bias), or 1 - F(NdotV) as in most "
+             "courses (energy)");
     a.integer("--seed", "N", w.seed, "another randomisation (0)");
     a.number("--save-every", "SECONDS", w.save_every,
              "reference: write the picture so far every so often, and when interrupted");
@@ -167,6 +170,8 @@ Result<RenderResult> draw(const RenderWords& w, const RayScene& scene, const Env
     shading.sh_irradiance = w.irradiance == "sh";
     shading.bent_lookup = w.bent_lookup;
     shading.multiple_scattering = w.multiple_scattering;
+    for (const DiffuseWeight d : {DiffuseWeight::energy, DiffuseWeight::fresnel})
+        if (diffuse_weight_name(d) == w.diffuse_weight) shading.diffuse_weight = d;
     shading.occlusion = o.occlusion;
     return render_shaded(scene, *maps, sampler, shading, o);
 }

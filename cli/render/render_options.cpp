@@ -82,6 +82,8 @@ Result<void> check_company(const RenderWords& w, const Arguments& a) {
                  {"--fps", w.frames.has_value(), "--frames"},
                  {"--turn", w.frames.has_value(), "--frames"},
                  {"--resume", w.frames.has_value(), "--frames"},
+                 {"--diffuse-weight", w.shading == "split-sum" || w.shading == "stretched",
+                  "--shading split-sum or stretched"},
                  {"--save-every", w.reference() && !w.frames && !w.study, "a single picture of --shading reference"}};
     // (Its first spelling is not what Arguments::given looks for.)
     if (!w.background_color.empty() && !colour)

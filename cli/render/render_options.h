@@ -19,7 +19,7 @@ struct RenderWords {
     std::vector<std::string> scenes, environment_files, outputs;
     EnvironmentOptions environment;
     std::string shading = "reference", strategy = "mis", occlusion = "on", background, maps, tonemap = "agx",
-                irradiance = "cube", lookup = "environment", brdf = "scene";
+                irradiance = "cube", lookup = "environment", brdf = "scene", diffuse_weight = "energy";
     std::optional<int> width, height, spp, bounces, seed, lookup_size;
     std::vector<double> camera_position, camera_target;
     std::string camera;

@@ -226,6 +226,8 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["render", "spheres", "-o", "o.png", "--resume"], "--frames"),
         (["render", "spheres", "-o", "o.png", "--save-every", "5", "--shading", "split-sum"], "--shading reference"),
         (["render", "spheres", "-o", "o.png", "--save-every", "-1"], "from 0"),
+        (["render", "spheres", "-o", "o.png", "--diffuse-weight", "fresnel"], "--shading split-sum or stretched"),
+        (["render", "spheres", "-o", "o.png", "--shading", "split-sum", "--diffuse-weight", "max"], "energy, fresnel"),
         (["render", "--study", "-o", "o.exr"], "a folder nor a .png"),
         (["render", "--study", "-o", "o", "--frames", "3"], "--study"),
         (["render", "--study", "-o", "o", "--shading", "phong"], "--study"),
@@ -931,6 +933,14 @@ def test_render_writes_each_format_and_tells(folder):
         run("render", "ball", "-o", f"b{threads}.exr,b{threads}.png", *TINY, "--shadow-catcher", "--threads", threads, folder=folder)
     for extension in ["exr", "png"]:
         assert (folder / f"b1.{extension}").read_bytes() == (folder / f"b3.{extension}").read_bytes()
+
+
+def test_render_weighs_the_diffuse_layer_as_asked(folder):
+    pictures = {}
+    for name, words in {"default": [], "energy": ["--diffuse-weight", "energy"], "fresnel": ["--diffuse-weight", "fresnel"]}.items():
+        run("render", "spheres", "-o", f"{name}.png", *TINY, "--shading", "split-sum", *words, folder=folder)
+        pictures[name] = (folder / f"{name}.png").read_bytes()
+    assert pictures["default"] == pictures["energy"] != pictures["fresnel"]
 
 
 def test_render_takes_the_camera_that_is_asked_for(folder):

@@ -42,9 +42,13 @@ struct SceneTexture {
     explicit operator bool() const { return image >= 0; }
 };
 
-/// Engines' `reflectance`, [0, 1], F0 = 0.16 reflectance^2 of a dielectric (Lagarde and de Rousiers 2014, 3.2.1), as
-/// the index of refraction that has the same F0 = ((ior - 1) / (ior + 1))^2: 0.5 is 1.5, glTF's default. A glTF
-/// material may say it as extras.reflectance, where it has no KHR_materials_ior.
+/// F0 of a dielectric from the `reflectance` that engines' materials have, [0, 1]: 0.5 is 4 %, 1 is 16 %. Lagarde and
+/// de Rousiers 2014, 3.2.1.
+inline float f0_of_reflectance(float reflectance) {
+    return 0.16f * reflectance * reflectance;
+}
+/// The same reflectance as the index of refraction that has this F0 = ((ior - 1) / (ior + 1))^2: 0.5 is 1.5, glTF's
+/// default. A glTF material may say it as extras.reflectance, where it has no KHR_materials_ior.
 inline float ior_of_reflectance(float reflectance) {
     return (1 + 0.4f * reflectance) / (1 - 0.4f * reflectance);
 }

@@ -119,6 +119,10 @@ std::string shading_model_name(ShadingModel model) {
     return "refract";
 }
 
+std::string diffuse_weight_name(DiffuseWeight weight) {
+    return weight == DiffuseWeight::energy ? "energy" : "fresnel";
+}
+
 Lobe shading_lobe(ShadingModel model) {
     return model == ShadingModel::phong ? Lobe::phong_brdf : Lobe::ggx;
 }

@@ -33,6 +33,14 @@ ShadedLight shade_refract(const SurfacePoint& s, const Vec3f& V, float ior, cons
 struct LobeLight {
     Vec3f scale, bias;
 };
+/// DiffuseWeight::fresnel: 1 - F(NdotV).
+Vec3f diffuse_weight_fresnel(const Vec3f& f0, const Vec3f& f90, float NdotV);
+/// DiffuseWeight::energy: 1 - (F0 scale + F90 bias).
+Vec3f diffuse_weight_energy(const Vec3f& f0, const Vec3f& f90, LightMaps::ScaleBias table);
+/// The share of an even light that reaches the viewer after more than one bounce between the microfacets. Fdez-Aguera
+/// 2019, listing 2.
+Vec3f multiple_scattering(const Vec3f& f0, const Vec3f& f90, LightMaps::ScaleBias table);
+
 /// The metallic-roughness surface around a specular lobe: BRDF table, what is left for the diffuse layer, multiple
 /// scattering, occlusion.
 ShadedLight shade_metallic_roughness(const SurfacePoint& s, float NdotV, float occlusion, const LobeLight& lobe,

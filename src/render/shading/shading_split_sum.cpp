@@ -19,32 +19,41 @@ Vec3f lookup_direction(const Vec3f& N, const Vec3f& V, float roughness, bool ben
     return N + (R - N) * lean;
 }
 
-/// What single scattering loses, given back as cosine-weighted light: Fdez-Aguera 2019, listing 2, one channel.
-float multiple_scattering(float f0, float single, float lost) {
-    const float mean = f0 + (1 - f0) / 21;  // Schlick's F, averaged over the cosine
-    return lost * single * mean / (1 - lost * mean);
+}  // namespace
+
+Vec3f diffuse_weight_fresnel(const Vec3f& f0, const Vec3f& f90, float NdotV) {
+    return Vec3f{1, 1, 1} - fresnel_schlick(NdotV, f0, f90);
 }
 
-}  // namespace
+Vec3f diffuse_weight_energy(const Vec3f& f0, const Vec3f& f90, LightMaps::ScaleBias table) {
+    return Vec3f{1, 1, 1} - (f0 * table.scale + f90 * table.bias);
+}
+
+Vec3f multiple_scattering(const Vec3f& f0, const Vec3f& f90, LightMaps::ScaleBias table) {
+    const Vec3f single = f0 * table.scale + f90 * table.bias;
+    const float lost = 1 - (table.scale + table.bias);
+    const auto channel = [&](float f, float once) {
+        const float mean = f + (1 - f) / 21;  // Schlick's F, averaged over the cosine
+        return lost * once * mean / (1 - lost * mean);
+    };
+    return {channel(f0.x, single.x), channel(f0.y, single.y), channel(f0.z, single.z)};
+}
 
 ShadedLight shade_metallic_roughness(const SurfacePoint& s, float NdotV, float occlusion, const LobeLight& lobe,
                                      const LightMaps& maps, const ShadingOptions& o) {
     const Bsdf& b = s.bsdf;
     const Vec3f E = diffuse_irradiance_over_pi(s.normal, maps, o);
-    const auto [scale, bias] = maps.brdf(NdotV, std::sqrt(b.alpha));
+    const LightMaps::ScaleBias table = maps.brdf(NdotV, std::sqrt(b.alpha));
     ShadedLight light;
-    light.specular = product(lobe.scale, b.f0 * scale) + product(lobe.bias, b.f90 * bias);
-    const Vec3f F = fresnel_schlick(NdotV, b.f0, b.f90);
-    Vec3f below = b.diffuse * (1 - std::max({F.x, F.y, F.z}));  // kD (1 - metalness) c, the metalness in b.diffuse
+    light.specular = product(lobe.scale, b.f0 * table.scale) + product(lobe.bias, b.f90 * table.bias);
+    Vec3f weight = o.diffuse_weight == DiffuseWeight::fresnel ? diffuse_weight_fresnel(b.f0, b.f90, NdotV)
+                                                              : diffuse_weight_energy(b.f0, b.f90, table);
     if (o.multiple_scattering) {
-        const Vec3f single = b.f0 * scale + b.f90 * bias;
-        const float lost = 1 - (scale + bias);
-        const Vec3f multiple{multiple_scattering(b.f0.x, single.x, lost), multiple_scattering(b.f0.y, single.y, lost),
-                             multiple_scattering(b.f0.z, single.z, lost)};
+        const Vec3f multiple = multiple_scattering(b.f0, b.f90, table);
         light.specular = light.specular + product(multiple, E);
-        below = product(b.diffuse, Vec3f{1, 1, 1} - (single + multiple));
+        if (o.diffuse_weight == DiffuseWeight::energy) weight = weight - multiple;
     }
-    light.diffuse = product(below, E) * occlusion;
+    light.diffuse = product(product(b.diffuse, weight), E) * occlusion;
     light.specular = light.specular * specular_occlusion(NdotV, occlusion, b.alpha);
     return light;
 }

@@ -65,6 +65,17 @@ enum class MapLookup {
 /// "environment", "cube", "latlong", "sphere-map", "dual-paraboloid".
 std::string map_lookup_name(MapLookup lookup);
 
+/// What a metallic-roughness surface leaves for its diffuse layer, for each channel; the layer's albedo already holds
+/// the factor 1 - metalness. F0 is the mix of 0.04 (or of what the index of refraction says) and the base colour.
+enum class DiffuseWeight {
+    energy,   ///< 1 - (F0 scale + F90 bias), less the multiple scattering where that is on: what the specular layer does
+              ///< not reflect, so that a white surface reflects an even light as it is
+    fresnel,  ///< 1 - F(NdotV), as most courses write it; a white plastic in an even light of 1 then shows 0.28 where it
+              ///< is rough and seen at a slant (roughness 1, NdotV = 0.05)
+};
+/// "energy", "fresnel".
+std::string diffuse_weight_name(DiffuseWeight weight);
+
 struct ShadingOptions {
     ShadingModel model = ShadingModel::split_sum;
     MapLookup lookup = MapLookup::environment;  ///< mirror and refract: the texture they read
@@ -73,6 +84,7 @@ struct ShadingOptions {
     bool bent_lookup =
         false;  ///< the lookup leans from the mirror direction to the normal (Lagarde and de Rousiers 2014, 4.9.3)
     bool multiple_scattering = false;  ///< Fdez-Aguera 2019
+    DiffuseWeight diffuse_weight = DiffuseWeight::energy;
     bool occlusion = true;  ///< occlusion textures, with specular occlusion (Lagarde and de Rousiers 2014, 4.10.2)
 };
 
