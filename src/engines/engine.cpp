@@ -107,9 +107,20 @@ int default_levels(const Engine& engine, int size) {
     return levels;
 }
 
+double default_phong_exponent(double level) {
+    if (level < 1) return 2050 / std::pow(level, 4) - 2;
+    return std::max({1.0, 2048 * std::pow(0.25, level - 1), std::exp2(7 - level)});
+}
+
+double default_phong_level(double exponent) {
+    if (exponent > 2048) return std::pow(2050 / (exponent + 2), 0.25);
+    const double power = std::log2(exponent);
+    return std::max((13 - power) / 2, 7 - power);
+}
+
 std::vector<double> default_phong_exponents(int levels) {
     std::vector<double> exponents{INFINITY};
-    for (int l = 1; l < levels; ++l) exponents.push_back(std::max(1.0, 2048 * std::pow(0.25, l - 1)));
+    for (int l = 1; l < levels; ++l) exponents.push_back(default_phong_exponent(l));
     return exponents;
 }
 

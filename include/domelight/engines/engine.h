@@ -87,8 +87,14 @@ double linear_roughness(int level, int levels, int size);
 /// Levels of an engine's cube chain whose first has `size`^2 texels a face: down to its smallest.
 int default_levels(const Engine& engine, int size);
 
-/// Phong's exponents where none are given: the environment itself (infinity), then 2048 and a quarter of that with each
-/// level, as its texels double; at least 1.
+/// Phong's exponent n_s of a level >= 0 where none are given. Level 0 is the environment itself (infinity), level 1 has
+/// 2048, each further one a quarter of the one before it, as its texels are twice as wide: 2048 / 4^(level - 1); at
+/// least 1. Between whole levels it goes on without a step: below level 1 as the roughness of the matching lobe does,
+/// 2050 / level^4 - 2, and from level 6 to 7, 2 to 1, as 2^(7 - level).
+double default_phong_exponent(double level);
+/// Its inverse for exponents >= 1, infinity among them.
+double default_phong_level(double exponent);
+/// The exponents of the levels 0 .. levels - 1.
 std::vector<double> default_phong_exponents(int levels);
 
 }  // namespace domelight
