@@ -1,4 +1,5 @@
 #include "domelight/bake/bake.h"
+#include "domelight/filtering/kernel/lobe_names.h"
 #include "domelight/io/environment/open_environment.h"
 
 #include "cli/bake/bake_report.h"
@@ -101,10 +102,6 @@ Result<void> parse_riemann_steps(const std::string& words, BakeOptions& options)
 }
 
 Result<BakeOptions> bake_options(const BakeWords& w) {
-    static const std::map<std::string, Lobe> lobes{{"ggx", Lobe::ggx},
-                                                   {"charlie", Lobe::charlie},
-                                                   {"phong", Lobe::phong_brdf},
-                                                   {"phong-plain", Lobe::phong_plain}};
     static const std::map<std::string, BakeMethod> methods{{"exact", BakeMethod::exact},
                                                            {"bruteforce", BakeMethod::bruteforce},
                                                            {"riemann", BakeMethod::riemann},
@@ -122,7 +119,7 @@ Result<BakeOptions> bake_options(const BakeWords& w) {
     o.levels = w.levels;
     o.roughness = w.roughness;
     o.exponents = w.exponents;
-    if (!w.lobe.empty()) o.lobe = lobes.at(w.lobe);
+    if (!w.lobe.empty()) o.lobe = *lobe_from_name(w.lobe);
     o.method = methods.at(w.method);
     o.samples = w.samples.value_or(o.samples);
     if (!w.riemann_steps.empty())

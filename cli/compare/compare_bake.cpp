@@ -2,6 +2,7 @@
 
 #include "domelight/bake/bake.h"
 #include "domelight/compare/bake_audit.h"
+#include "domelight/filtering/kernel/lobe_names.h"
 #include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/texture/texture.h"
@@ -16,6 +17,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 
 namespace domelight::cli {
 namespace {
@@ -25,19 +28,35 @@ struct Bake {
     std::vector<CubeLevel> levels;
     std::string format;
     std::string stated_by;  ///< who says which roughness the levels have
+    Lobe lobe = Lobe::ggx;
 };
 
-/// "0 0.25 0.5" or "0,0.25,0.5": one number a level, else nothing.
-std::vector<double> numbers_in(std::string text, std::size_t count) {
+/// "0 0.25 0.5" or "0,0.25,0.5": one number from 0 to `most` a level, else nothing.
+std::vector<double> numbers_in(std::string text, std::size_t count, double most) {
     std::replace(text.begin(), text.end(), ',', ' ');
     std::vector<double> values;
     for (const std::string& word : split(text, ' ')) {
         if (word.empty()) continue;
         const auto value = parse_number(word);
-        if (!value || !(*value >= 0 && *value <= 1)) return {};
+        if (!value || !(*value >= 0 && *value <= most)) return {};
         values.push_back(*value);
     }
     return values.size() == count ? values : std::vector<double>{};
+}
+
+/// Which lobe the levels were filtered with, and how wide it is in each, where the file says so.
+void read_keys(const std::map<std::string, std::string>& keys, Bake& bake) {
+    const auto value = [&](const char* name) {
+        const auto key = keys.find(name);
+        return key == keys.end() ? std::string() : key->second;
+    };
+    bake.lobe = lobe_from_name(value("domelight.lobe")).value_or(Lobe::ggx);
+    const auto roughness = numbers_in(value("domelight.roughness"), bake.levels.size(), 1);
+    const auto exponents =
+        numbers_in(value("domelight.exponent"), bake.levels.size(), std::numeric_limits<double>::infinity());
+    for (std::size_t l = 0; l < roughness.size(); ++l) bake.levels[l].roughness = roughness[l];
+    for (std::size_t l = 0; l < exponents.size(); ++l) bake.levels[l].exponent = exponents[l];
+    if (!roughness.empty() || !exponents.empty()) bake.stated_by = "the file";
 }
 
 Result<Bake> read_chain(const std::string& file) {
@@ -49,11 +68,7 @@ Result<Bake> read_chain(const std::string& file) {
     Bake bake;
     bake.format = info ? fmt::format("{}, {}", info->container, info->format) : "texture";
     for (Cubemap& cube : *cubes) bake.levels.emplace_back().cube = std::move(cube);
-    if (const auto key = texture->metadata.find("domelight.roughness"); key != texture->metadata.end()) {
-        const auto stated = numbers_in(key->second, bake.levels.size());
-        for (std::size_t l = 0; l < stated.size(); ++l) bake.levels[l].roughness = stated[l];
-        if (!stated.empty()) bake.stated_by = "the file";
-    }
+    read_keys(texture->metadata, bake);
     return bake;
 }
 
@@ -76,7 +91,7 @@ Result<Bake> read_pictures(const std::vector<std::string>& words, int threads) {
                 "is not a picture of a cube", word,
                 "Give a KTX2, KTX or DDS with its levels, or a cube picture or folder of six faces for each level."};
         bake.format = cube->format;
-        bake.levels.push_back({std::move(cube->cube), {}});
+        bake.levels.emplace_back().cube = std::move(cube->cube);
     }
     return bake;
 }
@@ -84,6 +99,7 @@ Result<Bake> read_pictures(const std::vector<std::string>& words, int threads) {
 Result<Bake> read_bake(const BakeWords& w, int threads) {
     auto bake =
         w.bake.size() == 1 && is_texture_file(w.bake[0]) ? read_chain(w.bake[0]) : read_pictures(w.bake, threads);
+    if (bake && !w.lobe.empty()) bake->lobe = *lobe_from_name(w.lobe);
     if (!bake || w.engine.empty()) return bake;
     const auto engine = find_engine(w.engine);
     if (!engine) return engine.error();
@@ -107,14 +123,21 @@ std::string convention_of(const Mat3& ours_from_theirs, const Mat3& world_to_sou
 
 // --- telling ---
 
+/// A number, or "inf" as in a manifest.
+Json exponent_json(double exponent) {
+    return std::isinf(exponent) ? Json("inf") : Json(exponent);
+}
+
 Json level_json(int index, const LevelAudit& l) {
     Json json{{"level", index},
               {"size", l.size},
               {"roughness", l.roughness_known ? Json(l.roughness) : Json()},
+              {"exponent", l.roughness_known && l.exponent ? exponent_json(*l.exponent) : Json()},
               {"roughness_within", l.roughness_within},
               {"scale", l.scale},
               {"energy", l.energy},
               {"error", l.error},
+              {"broad_error", l.broad_error},
               {"relative_rmse", l.relative_rmse},
               {"largest", l.largest}};
     if (l.stated_roughness) {
@@ -126,7 +149,8 @@ Json level_json(int index, const LevelAudit& l) {
 }
 
 void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, const std::string& as_convention,
-                const std::vector<std::string>& warnings) {
+                std::vector<std::string> warnings) {
+    warnings.insert(warnings.end(), audit.notes.begin(), audit.notes.end());
     const CubeOrientation& o = audit.orientation;
     Json matrix = Json::array(), levels = Json::array();
     for (const Vec3d& row : o.ours_from_theirs.row) matrix.push_back({row.x, row.y, row.z});
@@ -136,6 +160,10 @@ void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, co
                     {"bake", w.bake},
                     {"format", bake.format},
                     {"env", w.env},
+                    {"verdict", audit.verdict},
+                    {"of_source", audit.of_source},
+                    {"within", audit.within},
+                    {"lobe", lobe_name(audit.lobe)},
                     {"orientation",
                      {{"words", o.words},
                       {"ours_from_theirs", matrix},
@@ -153,40 +181,63 @@ std::string percent(double v) {
     return fmt::format("{:.3g} %", 100 * v);
 }
 
+/// A level's roughness, or its exponent, and how far from it the fit stays nearly as good.
+std::string width_text(const LevelAudit& l) {
+    if (!l.roughness_known) return "any fits";
+    if (!l.exponent) return fmt::format("{:.4f} ± {:<6.2g}", l.roughness, l.roughness_within);
+    if (std::isinf(*l.exponent)) return "inf         ";
+    const double from_roughness = 2 * std::pow(l.roughness, -5);  // of the exponent (1 / r^4 - 1) / 2
+    return fmt::format("{:.4g} ± {:<6.2g}", *l.exponent, from_roughness * l.roughness_within);
+}
+
+const char* width_legend(Lobe lobe) {
+    switch (lobe) {
+        case Lobe::ggx:
+            return "roughness     of GGX (n = v = r) that fits best, 0: the environment itself";
+        case Lobe::charlie:
+            return "roughness     of Charlie's lobe that fits best";
+        case Lobe::phong_brdf:
+            return "exponent      n of (n + 2) cos^(n+1) that fits best, inf: the environment itself";
+        case Lobe::phong_plain:
+            return "exponent      n of (n + 1) cos^n that fits best, inf: the environment itself";
+    }
+    return "";
+}
+
 void print_text(const BakeWords& w, const Bake& bake, const BakeAudit& audit, const std::string& as_convention) {
     const CubeOrientation& o = audit.orientation;
     fmt::print("{}: {}, {}², {} level{}\n", join(w.bake, " "), bake.format, bake.levels[0].cube.size(),
                bake.levels.size(), bake.levels.size() == 1 ? "" : "s");
-    fmt::print("against the exact filter of {}\n\n", w.env.empty() ? "the built-in sky" : join(w.env, " "));
+    fmt::print("against the exact filter ({}) of {}\n\n", lobe_name(audit.lobe),
+               w.env.empty() ? "the built-in sky" : join(w.env, " "));
+    fmt::print("  verdict       {}\n", audit.verdict);
+    for (const std::string& note : audit.notes) fmt::print("                {}\n", note);
     fmt::print("  orientation   {}\n", o.words);
     if (!as_convention.empty()) fmt::print("                that is as ours with --latlong {}\n", as_convention);
     fmt::print("                error {}, the next best orientation {}{}\n\n", percent(o.error), percent(o.next_error),
-               o.certain ? "" : ": the light cannot tell them apart");
+               o.certain || !audit.of_source ? "" : ": the light cannot tell them apart");
     const bool stated = std::any_of(audit.levels.begin(), audit.levels.end(),
                                     [](const LevelAudit& l) { return l.stated_roughness.has_value(); });
-    fmt::print("  {:>5}  {:>5}  {:>16}  {:>7}  {:>7}  {:>8}  {:>8}  {:>8}", "level", "size", "roughness", "scale",
-               "energy", "error", "RMSE", "largest");
+    fmt::print("  {:>5}  {:>5}  {:>16}  {:>7}  {:>7}  {:>8}  {:>8}  {:>8}", "level", "size",
+               audit.levels[0].exponent ? "exponent" : "roughness", "scale", "energy", "error", "RMSE", "largest");
     if (stated) fmt::print("  | {:>7}  {:>8}  {:>8}", "stated", "error", "RMSE");
     fmt::print("\n");
     for (std::size_t i = 0; i < audit.levels.size(); ++i) {
         const LevelAudit& l = audit.levels[i];
-        const std::string roughness = !l.roughness_known ? "any fits"
-                                      : l.roughness_within > 0
-                                          ? fmt::format("{:.4f} ± {:<6.2g}", l.roughness, l.roughness_within)
-                                          : fmt::format("{:.4f}         ", l.roughness);
-        fmt::print("  {:>5}  {:>5}  {:>16}  {:>7.4f}  {:>7.4f}  {:>8}  {:>8}  {:>8}", i, l.size, roughness, l.scale,
+        fmt::print("  {:>5}  {:>5}  {:>16}  {:>7.4f}  {:>7.4f}  {:>8}  {:>8}  {:>8}", i, l.size, width_text(l), l.scale,
                    l.energy, percent(l.error), percent(l.relative_rmse), percent(l.largest));
         if (l.stated_roughness)
-            fmt::print("  | {:>7.4f}  {:>8}  {:>8}", *l.stated_roughness, percent(l.stated_error),
-                       percent(l.stated_relative_rmse));
+            fmt::print("  | {:>7.4g}  {:>8}  {:>8}", bake.levels[i].exponent.value_or(*l.stated_roughness),
+                       percent(l.stated_error), percent(l.stated_relative_rmse));
         fmt::print("\n");
     }
     fmt::print(
-        "\n  roughness     of GGX (n = v = r) that fits best, 0: the environment itself\n"
+        "\n  {}\n"
         "  scale         median of theirs / exact          energy   ratio of the means over the sphere\n"
         "  error         RMS of (theirs - fit) / max(theirs, fit), every direction alike; RMSE relative, the brightest "
-        "count most\n");
-    if (stated) fmt::print("  stated        roughness by {}; errors there, at scale 1\n", bake.stated_by);
+        "count most\n",
+        width_legend(audit.lobe));
+    if (stated) fmt::print("  stated        by {}; errors there, at scale 1\n", bake.stated_by);
 }
 
 }  // namespace
@@ -200,6 +251,11 @@ void add_bake_options(Arguments& a, BakeWords& w) {
     a.texts("--env", "SRC", w.env, "the environment it was baked from");
     a.choice("--for", w.engine, names,
              "whose curve says which roughness a level should have (a Domelight file says it itself)");
+    a.choice("--lobe", w.lobe, {"ggx", "charlie", "phong", "phong-plain"},
+             "what the levels were filtered with (what the file says, else ggx)");
+    a.number("--within", "ERROR", w.within,
+             "exit with status 1 also where a level is further off, at its stated roughness and brightness or else at "
+             "the best fit: 0.01 is 1 %. Without it the status is 0 for any bake of this environment and 1 for others");
     a.integer("--texels", "N", w.texels, "looked at in each level (6144)");
     add_environment_options(a, w.environment);
 }
@@ -208,6 +264,8 @@ int compare_bake(const BakeWords& w, const CommonOptions& common) {
     const int threads = common.threads.value_or(0);
     if (w.texels && (*w.texels < 96 || *w.texels > 10'000'000))
         return print_error({"is not from 96 to 10000000", "--texels", ""}, exit_usage);
+    if (!std::isnan(w.within) && !(w.within > 0 && w.within <= 1))
+        return print_error({fmt::format("is {}, not above 0 and at most 1", w.within), "--within", ""}, exit_usage);
     EnvironmentOptions options = w.environment;
     options.threads = threads;
     auto bake = read_bake(w, threads);
@@ -227,6 +285,8 @@ int compare_bake(const BakeWords& w, const CommonOptions& common) {
     }
     AuditOptions audit_options;
     audit_options.threads = threads;
+    audit_options.lobe = bake->lobe;
+    if (!std::isnan(w.within)) audit_options.within = w.within;
     audit_options.texels = w.texels.value_or(audit_options.texels);
     Result<BakeAudit> audit = Error{};
     {
@@ -242,7 +302,7 @@ int compare_bake(const BakeWords& w, const CommonOptions& common) {
         print_json(w, *bake, *audit, convention, environment->report->warnings);
     else if (!common.quiet)
         print_text(w, *bake, *audit, convention);
-    return exit_done;
+    return audit->passed() ? exit_done : exit_failed;
 }
 
 }  // namespace domelight::cli

@@ -6,6 +6,8 @@
 #include "cli/console/arguments.h"
 #include "cli/console/console.h"
 
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,13 +15,14 @@ namespace domelight::cli {
 
 struct BakeWords {
     std::vector<std::string> bake, env;
-    std::string engine;
+    std::string engine, lobe;
     EnvironmentOptions environment;
     std::optional<int> texels;
+    double within = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not given
 };
 void add_bake_options(Arguments& arguments, BakeWords& words);
 
-/// Audits and prints. Returns the exit code.
+/// Audits and prints. Returns exit_done where it is a bake of the environment, within the error asked for.
 int compare_bake(const BakeWords& words, const CommonOptions& common);
 
 }  // namespace domelight::cli

@@ -47,4 +47,5 @@
 #include "domelight/base/unit_point.h"
 #include "domelight/base/vec.h"
 #include "domelight/sampling/warps.h"
+#include "domelight/filtering/kernel/lobe_names.h"
 #include "domelight/filtering/kernel/zonal_kernel.h"

@@ -1,273 +1,293 @@
 #include "domelight/compare/bake_audit.h"
-#include "domelight/base/parallel.h"
 
-#include "compare/audit_fit.h"
+#include "compare/audit_exact.h"
+#include "compare/audit_lobe.h"
+#include "compare/audit_orientation.h"
+#include "compare/audit_search.h"
+#include "compare/audit_verdict.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace domelight {
 namespace {
 
-/// Where the search begins, beside 0: the environment itself, averaged over texels.
-constexpr double k_ladder[] = {0.02, 0.03, 0.04, 0.06, 0.09, 0.13, 0.18, 0.24,
-                               0.31, 0.39, 0.48, 0.58, 0.69, 0.8,  0.9,  1};
+/// The ladder: roughnesses at which the source is filtered when a level states none that fits. 0 comes before these.
+constexpr double k_ladder[] = {0.18, 0.24, 0.31, 0.39, 0.48, 0.58, 0.69, 0.8, 0.9, 1};
+/// The same for Charlie, whose ladder has no 0.
+constexpr double k_charlie_ladder[] = {0.1, 0.14, 0.18, 0.24, 0.31, 0.39, 0.48, 0.58, 0.69, 0.8, 0.9, 1};
 
-/// The least roughness worth telling from 0 on faces of `size`^2: its lobe, 2 alpha wide, is as wide as a texel. (Much
-/// narrower lobes also take seconds to filter by.)
-double least_roughness(int size) {
-    return std::sqrt(k_pi / (4 * size));
-}
-std::vector<double> ladder(int size) {
-    std::vector<double> values{0};
-    for (const double r : k_ladder)
-        if (r >= least_roughness(size)) values.push_back(r);
-    return values;
-}
+constexpr int k_broad_texels = 1536;  ///< sampled from each averaged level
+constexpr double k_good_fit = 0.02;   ///< a stated roughness whose error is at most this needs no ladder
+constexpr double k_good_turn = 0.05;  ///< an orientation whose error is at most this needs no ladder
+constexpr int k_rounds = 4;           ///< filter runs of the final search, at most
 
-constexpr std::int64_t k_most_bytes = std::int64_t(512) << 20;  ///< of exact levels held at once
+/// One roughness of the ladder: the exact filter there, averaged to faces of k_broad_size^2.
+struct Rung {
+    double roughness = 0;
+    Cubemap broad;
+};
 
-constexpr double k_good_fit = 5e-3;  ///< an error below which a guess is taken to be right: encodings leave up to 0.005
+/// The searches for the roughness of one level: on averaged faces first, then at the level's own size.
+struct Level {
+    std::optional<double> stated;
+    LevelSearch broad, fine;
+};
 
-/// The exact filter of the source on demand.
-class Exact {
+class Audit {
   public:
-    Exact(const AuditSource& source, int threads) : source_(source), threads_(threads) {}
+    Audit(std::span<const CubeLevel> levels, const AuditSource& source, const AuditOptions& options)
+        : given_(levels), options_(options), exact_(source, options.lobe, options.threads), source_(source) {}
 
-    /// Cubes of `size`, one for each roughness; `use(i, cube)` in order. Few at a time, so that large ones fit in
-    /// memory.
-    template <typename F>
-    Result<void> levels(int size, std::span<const double> roughness, F use) const {
-        const std::int64_t bytes = std::int64_t(6) * size * size * 12;
-        const int at_once = int(std::max<std::int64_t>(1, k_most_bytes / bytes));
-        for (std::size_t first = 0; first < roughness.size(); first += std::size_t(at_once)) {
-            const auto some =
-                roughness.subspan(first, std::min<std::size_t>(std::size_t(at_once), roughness.size() - first));
-            FilterOptions options;
-            options.sh_bands = 0;
-            options.threads = threads_;
-            options.world_to_source = source_.world_to_source;
-            for (const double r : some)
-                options.specular.push_back(r > 0 ? LevelSpec{size, false, ZonalKernel::ggx(r)}
-                                                 : LevelSpec{size, true, {}});
-            auto filtered = filter(options);
-            if (!filtered) return filtered.error();
-            for (std::size_t i = 0; i < some.size(); ++i) use(int(first + i), filtered->specular[i].cube);
+    Result<BakeAudit> run() {
+        if (given_.empty()) return Error{"no levels to audit", "", ""};
+        for (auto step :
+             {&Audit::sample, &Audit::filter_as_stated, &Audit::find_orientation, &Audit::guess, &Audit::search}) {
+            auto done = (this->*step)();
+            if (!done) return done.error();
+        }
+        if (options_.progress && !options_.progress("audit", 1)) return Error{"cancelled", "", ""};
+        return report();
+    }
+
+  private:
+    // --- the steps ---
+
+    Result<void> sample() {
+        for (std::size_t l = 0; l < given_.size(); ++l) {
+            const Cubemap& cube = given_[l].cube;
+            samples_.push_back(sample_texels(cube, std::max(options_.texels, 96)));
+            if (!(samples_.back().mean > 0))
+                return Error{fmt::format("level {} is black: nothing can be found out about it", l), "", ""};
+            broad_samples_.push_back(sample_broadly(cube, k_broad_texels, options_.threads));
         }
         return {};
     }
 
-  private:
-    Result<FilterResult> filter(const FilterOptions& options) const {
-        if (source_.cube) return prefilter(*source_.cube, options);
-        ImageRowSource rows(source_.latlong);
-        return prefilter(rows, options);
+    /// Every level that states its roughness, filtered by that one.
+    Result<void> filter_as_stated() {
+        std::vector<ExactLevel> wanted;
+        std::vector<std::size_t> levels;
+        for (std::size_t l = 0; l < given_.size(); ++l)
+            if (const auto r = stated_roughness(given_[l])) {
+                wanted.push_back({given_[l].cube.size(), *r});
+                levels.push_back(l);
+            }
+        as_stated_.resize(given_.size());
+        return filter(wanted, 0.3, [&](std::size_t i, Cubemap cube) { as_stated_[levels[i]] = std::move(cube); });
     }
+
+    Result<void> find_orientation() {
+        OrientationSearch search(broad_samples_[0]);
+        if (!as_stated_[0].empty()) search.add(broad(as_stated_[0]), options_.threads);
+        orientation_ = search.found();
+        if (orientation_.error > k_good_turn) {
+            if (auto ok = make_ladder(); !ok) return ok;
+            for (const Rung& rung : ladder_) search.add(rung_for(rung, 0), options_.threads);
+            orientation_ = search.found();
+        }
+        begin_levels();
+        return {};
+    }
+
+    void begin_levels() {
+        const Mat3& m = orientation_.ours_from_theirs;
+        for (std::size_t l = 0; l < given_.size(); ++l) {
+            const auto stated = stated_roughness(given_[l]);
+            const RoughnessRange range =
+                roughness_range(starts_at_mirror(options_.lobe), given_[l].cube.size(), stated);
+            RoughnessRange broad_range = range;
+            broad_range.narrow = true;
+            std::vector<int> turned = turned_texels(samples_[l], m), broad_turned = turned_texels(broad_samples_[l], m);
+            levels_.push_back({stated, LevelSearch(std::move(broad_samples_[l]), std::move(broad_turned), broad_range),
+                               LevelSearch(std::move(samples_[l]), std::move(turned), range)});
+            Level& level = levels_.back();
+            if (!stated) continue;
+            level.broad.add(*stated, broad(as_stated_[l]));
+            level.fine.add(*stated, as_stated_[l]);
+            as_stated_[l] = {};
+        }
+    }
+
+    /// A first guess at the roughness of every level: the stated one where it fits, otherwise the best of the ladder.
+    Result<void> guess() {
+        for (std::size_t l = 0; l < levels_.size(); ++l) {
+            Level& level = levels_[l];
+            if (level.stated && level.fine.best_error() <= k_good_fit) {
+                if (*level.stated > 0) level.fine.guess(*level.stated);
+                continue;
+            }
+            if (auto ok = make_ladder(); !ok) return ok;
+            for (const Rung& rung : ladder_) level.broad.add(rung.roughness, rung_for(rung, l));
+            guessed_.push_back(l);
+        }
+        if (of_another()) return {};
+        if (auto ok = refine_guesses(); !ok) return ok;
+        for (const std::size_t l : guessed_) levels_[l].fine.guess(levels_[l].broad.found().roughness);
+        return measure_mirrors();
+    }
+
+    /// Filters the averaged levels again, at roughnesses close to the best of the ladder.
+    Result<void> refine_guesses() {
+        std::vector<ExactLevel> wanted;
+        std::vector<std::size_t> levels;
+        for (const std::size_t l : guessed_)
+            for (const double r : levels_[l].broad.wanted()) {
+                wanted.push_back({size_for_rung(r), r});
+                levels.push_back(l);
+            }
+        return filter(wanted, 0.1, [&](std::size_t i, Cubemap cube) {
+            const Rung rung{wanted[i].roughness, broad(cube)};
+            levels_[levels[i]].broad.add(rung.roughness, rung_for(rung, levels[i]));
+        });
+    }
+
+    /// For levels that fit best at roughness 0: measures how fast the error grows away from 0, at the ladder's first
+    /// roughness. The range in LevelAudit::roughness_within follows from it.
+    Result<void> measure_mirrors() {
+        std::vector<std::size_t> mirrors;
+        for (std::size_t l = 0; l < levels_.size(); ++l)
+            if (levels_[l].broad.best_roughness() == 0) mirrors.push_back(l);
+        if (mirrors.empty()) return {};
+        const double r = k_ladder[0];
+        if (ladder_.empty())
+            if (auto ok = add_rungs(std::span(&r, 1)); !ok) return ok;
+        for (const std::size_t l : mirrors) {
+            Level& level = levels_[l];
+            for (const Rung& rung : ladder_)
+                if (rung.roughness == r) level.broad.add(r, rung_for(rung, l));
+            const double there = level.broad.error_at(r), here = level.broad.error_at(0);
+            level.fine.growth_at_mirror((there * there - here * here) / (r * r));
+        }
+        return {};
+    }
+
+    /// Filters at the levels' own sizes, all levels in one run, until every level has its best roughness between two
+    /// others.
+    Result<void> search() {
+        if (of_another()) return {};
+        for (int round = 0; round < k_rounds; ++round) {
+            std::vector<ExactLevel> wanted;
+            std::vector<std::size_t> levels;
+            for (std::size_t l = 0; l < levels_.size(); ++l)
+                for (const double r : levels_[l].fine.wanted()) {
+                    wanted.push_back({levels_[l].fine.sample().size, r});
+                    levels.push_back(l);
+                }
+            if (wanted.empty()) return {};
+            const auto ok = filter(wanted, 0.5, [&](std::size_t i, const Cubemap& cube) {
+                levels_[levels[i]].fine.add(wanted[i].roughness, cube);
+            });
+            if (!ok) return ok;
+        }
+        return {};
+    }
+
+    // --- the ladder ---
+
+    Result<void> make_ladder() {
+        if (ladder_.size() > 1) return {};
+        ladder_.clear();
+        if (!starts_at_mirror(options_.lobe)) return add_rungs(k_charlie_ladder);
+        std::vector<double> values{0};
+        values.insert(values.end(), std::begin(k_ladder), std::end(k_ladder));
+        return add_rungs(values);
+    }
+
+    Result<void> add_rungs(std::span<const double> roughness) {
+        std::vector<ExactLevel> wanted;
+        for (const double r : roughness) wanted.push_back({size_for_rung(r), r});
+        return filter(wanted, 0.4, [&](std::size_t i, const Cubemap& cube) {
+            ladder_.push_back({wanted[i].roughness, broad(cube)});
+        });
+    }
+
+    /// The size at which a rung is filtered: texels half as wide as the lobe, and not above 4 k_broad_size.
+    static int size_for_rung(double roughness) {
+        int size = k_broad_size;
+        while (roughness > 0 && size < 4 * k_broad_size && 2 * least_roughness(size) > roughness) size *= 2;
+        return size;
+    }
+
+    /// A rung at the size of a level's averaged faces, which are smaller than k_broad_size for small levels.
+    Cubemap rung_for(const Rung& rung, std::size_t level) const {
+        return averaged_to(rung.broad, given_[level].cube.size(), options_.threads);
+    }
+    Cubemap broad(const Cubemap& cube) const { return averaged_to(cube, k_broad_size, options_.threads); }
+
+    // --- the report ---
+
+    bool of_another() const { return orientation_.error > options_.same; }
+
+    std::optional<double> stated_roughness(const CubeLevel& level) const {
+        if (is_phong(options_.lobe) && level.exponent) return roughness_of_exponent(*level.exponent);
+        return level.roughness;
+    }
+
+    LevelAudit report_of(const Level& level) const {
+        // The search at the level's own size is skipped for a bake of another environment.
+        const bool broadly = of_another() && !level.stated;
+        const LevelSearch& search = broadly ? level.broad : level.fine;
+        const LevelSearch::Found found = search.found();
+        LevelAudit audit;
+        audit.size = level.fine.sample().size;
+        audit.roughness = found.roughness;
+        if (is_phong(options_.lobe)) audit.exponent = exponent_of_roughness(found.roughness);
+        audit.roughness_within = found.within;
+        audit.roughness_known = found.known;
+        audit.scale = found.fit.scale;
+        audit.energy = found.energy;
+        audit.error = found.fit.error;
+        audit.broad_error = std::min(audit.error, level.broad.best_error());
+        audit.relative_rmse = found.fit.relative_rmse;
+        audit.largest = found.fit.largest;
+        audit.stated_roughness = level.stated;
+        if (level.stated) {
+            const Fit trusting = level.fine.trusting(*level.stated);
+            audit.stated_error = trusting.error;
+            audit.stated_relative_rmse = trusting.relative_rmse;
+        }
+        return audit;
+    }
+
+    BakeAudit report() const {
+        BakeAudit audit;
+        audit.lobe = options_.lobe;
+        audit.orientation = orientation_;
+        for (const Level& level : levels_) audit.levels.push_back(report_of(level));
+        return judged(std::move(audit), source_, options_);
+    }
+
+    /// Filters the source at these levels and calls `use(index, cube)` for each. The run is taken to be `share` of the
+    /// work that is left.
+    Result<void> filter(std::span<const ExactLevel> wanted, double share,
+                        const std::function<void(std::size_t, Cubemap)>& use) {
+        if (wanted.empty()) return {};
+        const double begin = done_;
+        done_ += share * (1 - done_);
+        return exact_.make(wanted, piece_of(options_.progress, begin, done_), use);
+    }
+
+    std::span<const CubeLevel> given_;
+    const AuditOptions& options_;
+    ExactFilter exact_;
     const AuditSource& source_;
-    int threads_;
+    std::vector<TexelSample> samples_, broad_samples_;
+    std::vector<Cubemap> as_stated_;
+    CubeOrientation orientation_;
+    std::vector<Level> levels_;
+    std::vector<std::size_t> guessed_;
+    std::vector<Rung> ladder_;
+    double done_ = 0;
 };
-
-/// The level that tells orientations apart best at little cost: the one nearest to 32 texels.
-std::size_t level_for_orientation(std::span<const TexelSample> samples) {
-    std::size_t best = 0;
-    const auto distance = [&](std::size_t i) { return std::abs(std::log2(samples[i].size / 32.0)); };
-    for (std::size_t i = 1; i < samples.size(); ++i)
-        if (distance(i) < distance(best)) best = i;
-    return best;
-}
-
-Result<CubeOrientation> find_orientation(const TexelSample& sample, const Exact& exact, int threads) {
-    const std::vector<Mat3>& all = cube_orientations();
-    std::vector<std::vector<int>> turned(all.size());
-    for (std::size_t o = 0; o < all.size(); ++o) turned[o] = turned_texels(sample, all[o]);
-    std::vector<double> errors(all.size(), 2);
-    const auto use = [&](int, const Cubemap& cube) {
-        parallel_for(int(all.size()), threads, [&](int o) {
-            auto& error = errors[std::size_t(o)];
-            error = std::min(error, fit_level(sample, cube, turned[std::size_t(o)], 0, true).error);
-        });
-    };
-    if (auto ok = exact.levels(sample.size, ladder(sample.size), use); !ok) return ok.error();
-    const auto best = std::min_element(errors.begin(), errors.end());
-    std::size_t chosen = std::size_t(best - errors.begin());
-    // Where the light cannot tell, what needs no explanation is the likeliest.
-    const auto as_good = [&](std::size_t o) { return errors[o] <= 1.02 * *best + 1e-4; };
-    if (as_good(0)) chosen = 0;
-    CubeOrientation found;
-    found.ours_from_theirs = all[chosen];
-    found.words = orientation_words(all[chosen]);
-    found.error = errors[chosen];
-    found.next_error = 2;
-    for (std::size_t o = 0; o < all.size(); ++o)
-        if (o != chosen) found.next_error = std::min(found.next_error, errors[o]);
-    found.certain = found.next_error > 1.25 * found.error + 1e-3;
-    return found;
-}
-
-struct Candidate {
-    double roughness = 0;
-    Fit fit;
-    double mean =
-        0;  ///< luminance over the sphere, of the same texels as the level's: coarse faces are a coarse quadrature
-};
-
-/// Fits at further roughnesses, kept in rising order.
-Result<void> try_roughness(const TexelSample& sample, const std::vector<int>& turned, const Exact& exact,
-                           std::span<const double> roughness, std::vector<Candidate>& tried) {
-    const auto ok = exact.levels(sample.size, roughness, [&](int i, const Cubemap& cube) {
-        tried.push_back({roughness[std::size_t(i)], fit_level(sample, cube, turned), mean_luminance(cube)});
-    });
-    std::sort(tried.begin(), tried.end(),
-              [](const Candidate& a, const Candidate& b) { return a.roughness < b.roughness; });
-    return ok;
-}
-
-std::size_t best_of(const std::vector<Candidate>& tried) {
-    const auto less = [](const Candidate& a, const Candidate& b) { return a.fit.error < b.fit.error; };
-    return std::size_t(std::min_element(tried.begin(), tried.end(), less) - tried.begin());
-}
-
-/// The minimum of a parabola through the squared errors of three neighbours, if it has one between them.
-std::optional<double> parabola_minimum(const Candidate& a, const Candidate& b, const Candidate& c) {
-    const auto square = [](const Candidate& p) { return p.fit.error * p.fit.error; };
-    const double ab = b.roughness - a.roughness, cb = b.roughness - c.roughness;
-    const double p = ab * (square(b) - square(c)), q = cb * (square(b) - square(a));
-    if (p == q) return std::nullopt;
-    const double x = b.roughness - 0.5 * (ab * p - cb * q) / (p - q);
-    if (!(x > a.roughness && x < c.roughness)) return std::nullopt;
-    return x;
-}
-
-/// How far from the best the fit stays nearly as good.
-double width_of_minimum(const std::vector<Candidate>& tried, std::size_t best) {
-    const double limit = 1.05 * tried[best].fit.error + 5e-4, at = tried[best].roughness;
-    double low = at, high = at;
-    for (std::size_t i = best; i-- > 0 && tried[i].fit.error <= limit;) low = tried[i].roughness;
-    for (std::size_t i = best + 1; i < tried.size() && tried[i].fit.error <= limit; ++i) high = tried[i].roughness;
-    return std::max(at - low, high - at);
-}
-
-Result<LevelAudit> audit_level(const CubeLevel& level, const TexelSample& sample, const Mat3& orientation,
-                               const Exact& exact) {
-    const std::vector<int> turned = turned_texels(sample, orientation);
-    // Where the stated roughness fits as well as any could, only its neighbourhood is searched.
-    const double guess = level.roughness.value_or(0);
-    std::vector<Candidate> tried;
-    if (auto ok = try_roughness(sample, turned, exact, std::span(&guess, 1), tried); !ok) return ok.error();
-    const bool guessed = tried[0].fit.error < k_good_fit;
-    std::vector<double> first =
-        guessed ? std::vector<double>{guess - 0.1, guess - 0.02, guess + 0.02, guess + 0.1} : ladder(sample.size);
-    if (guessed && guess == 0) first = {least_roughness(sample.size), least_roughness(sample.size) + 0.1};
-    std::erase_if(first, [&](double r) { return r == guess || r > 1 || (r != 0 && r < least_roughness(sample.size)); });
-    if (auto ok = try_roughness(sample, turned, exact, first, tried); !ok) return ok.error();
-    double worst = 0;
-    for (const Candidate& c : tried) worst = std::max(worst, c.fit.error);
-    for (int round = guessed ? 1 : 0; round < 2; ++round) {
-        const std::size_t best = best_of(tried);
-        const double low = tried[best > 0 ? best - 1 : 0].roughness, at = tried[best].roughness,
-                     high = tried[std::min(best + 1, tried.size() - 1)].roughness;
-        constexpr int k_between = 2;
-        std::vector<double> finer;
-        for (int i = 1; i <= k_between; ++i) {
-            const double t = double(i) / (k_between + 1);
-            if (low < at) finer.push_back(low + t * (at - low));
-            if (high > at) finer.push_back(at + t * (high - at));
-        }
-        std::erase_if(finer, [&](double r) { return r < least_roughness(sample.size); });
-        if (auto ok = try_roughness(sample, turned, exact, finer, tried); !ok) return ok.error();
-    }
-    std::size_t best = best_of(tried);
-    if (best > 0 && best + 1 < tried.size() && tried[best - 1].roughness > 0)
-        if (const auto x = parabola_minimum(tried[best - 1], tried[best], tried[best + 1])) {
-            if (auto ok = try_roughness(sample, turned, exact, std::span(&*x, 1), tried); !ok) return ok.error();
-            best = best_of(tried);
-        }
-    const Candidate& found = tried[best];
-    LevelAudit audit;
-    audit.size = sample.size;
-    audit.roughness = found.roughness;
-    audit.roughness_within = width_of_minimum(tried, best);
-    audit.roughness_known = worst > 1.05 * found.fit.error + 5e-4;
-    audit.scale = found.fit.scale;
-    audit.error = found.fit.error;
-    audit.relative_rmse = found.fit.relative_rmse;
-    audit.largest = found.fit.largest;
-    audit.energy = found.mean > 0 ? sample.mean / found.mean : 1;
-    audit.stated_roughness = level.roughness;
-    if (level.roughness) {
-        const double r = *level.roughness;
-        const auto ok = exact.levels(sample.size, std::span(&r, 1), [&](int, const Cubemap& cube) {
-            const Fit fit = fit_level(sample, cube, turned, 1);
-            audit.stated_error = fit.error;
-            audit.stated_relative_rmse = fit.relative_rmse;
-        });
-        if (!ok) return ok.error();
-    }
-    return audit;
-}
 
 }  // namespace
 
-std::string orientation_words(const Mat3& m) {
-    const Mat3 identity, mirror_x{{Vec3d{-1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}};
-    if (m == identity) return "as ours";
-    const auto axis_mirrored = [&](int axis) {
-        Mat3 mirror;
-        mirror.row[std::size_t(axis)] = -mirror.row[std::size_t(axis)];
-        return m == mirror;
-    };
-    if (axis_mirrored(0)) return "mirrored in x";
-    if (axis_mirrored(1)) return "mirrored in y (upside down)";
-    if (axis_mirrored(2)) return "mirrored in z";
-    const double determinant = dot(m.row[0], cross(m.row[1], m.row[2]));
-    // theirs(d) = ours(M d); light that was turned by R about +Y has M = R^T, mirrored in x before that: M = mirror
-    // R^T.
-    if (m.row[1] == Vec3d{0, 1, 0}) {
-        const Mat3 turn = (determinant > 0 ? m : mirror_x * m).transposed();
-        for (const int angle : {90, 180, 270}) {
-            const double c = angle == 180 ? -1 : 0, s = angle == 90 ? 1 : angle == 270 ? -1 : 0;
-            if (turn == Mat3{{Vec3d{c, 0, -s}, Vec3d{0, 1, 0}, Vec3d{s, 0, c}}})
-                return fmt::format("{}turned by {} degrees about +Y", determinant > 0 ? "" : "mirrored in x, then ",
-                                   angle);
-        }
-    }
-    std::string text = determinant > 0 ? "turned:" : "mirrored and turned:";
-    const char* names[3] = {"X", "Y", "Z"};
-    for (int column = 0; column < 3; ++column) {
-        const Vec3d d{m.row[0].x * (column == 0) + m.row[0].y * (column == 1) + m.row[0].z * (column == 2),
-                      m.row[1].x * (column == 0) + m.row[1].y * (column == 1) + m.row[1].z * (column == 2),
-                      m.row[2].x * (column == 0) + m.row[2].y * (column == 1) + m.row[2].z * (column == 2)};
-        const int axis = d.x != 0 ? 0 : d.y != 0 ? 1 : 2;
-        text += fmt::format("{} its +{} shows our {}{}", column ? "," : "", names[column],
-                            d.x + d.y + d.z > 0 ? "+" : "-", names[axis]);
-    }
-    return text;
-}
-
 Result<BakeAudit> audit_bake(std::span<const CubeLevel> levels, const AuditSource& source,
                              const AuditOptions& options) {
-    if (levels.empty()) return Error{"no levels to audit", "", ""};
-    const auto tell = [&](double done) { return !options.progress || options.progress("audit", done); };
-    std::vector<TexelSample> samples;
-    for (std::size_t l = 0; l < levels.size(); ++l) {
-        samples.push_back(sample_texels(levels[l].cube, std::max(options.texels, 96)));
-        if (!(samples.back().mean > 0))
-            return Error{fmt::format("level {} is black: nothing can be found out about it", l), "", ""};
-    }
-    const Exact exact(source, options.threads);
-    auto orientation = find_orientation(samples[level_for_orientation(samples)], exact, options.threads);
-    if (!orientation) return orientation.error();
-    BakeAudit audit{std::move(*orientation), {}};
-    for (std::size_t l = 0; l < levels.size(); ++l) {
-        if (!tell(double(l) / double(levels.size()))) return Error{"cancelled", "", ""};
-        auto level = audit_level(levels[l], samples[l], audit.orientation.ours_from_theirs, exact);
-        if (!level) return level.error();
-        audit.levels.push_back(*level);
-    }
-    return audit;
+    return Audit(levels, source, options).run();
 }
 
 }  // namespace domelight

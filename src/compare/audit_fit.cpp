@@ -1,12 +1,13 @@
 #include "compare/audit_fit.h"
 
+#include "domelight/base/parallel.h"
+#include "domelight/base/random.h"
+#include "domelight/filtering/resample/area_resample.h"
 #include "domelight/image/colour.h"
 #include "domelight/projection/projection.h"
-#include "domelight/base/random.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace domelight {
 namespace {
@@ -85,6 +86,56 @@ TexelSample sample_texels(const Cubemap& cube, int most) {
     return sample;
 }
 
+namespace {
+
+/// The solid angle of a texel over that of one at the centre of a face, by the texel's centre.
+double relative_solid_angle(int x, int y, int size) {
+    const double s = (2 * x + 1.0) / size - 1, t = (2 * y + 1.0) / size - 1, square = 1 + s * s + t * t;
+    return 1 / (square * std::sqrt(square));
+}
+
+/// The mean of the finite texels, weighted by solid angle, of a square of `count`^2 texels of a face.
+Vec3f mean_of_square(const Cubemap& cube, int face, int left, int top, int count) {
+    Vec3d sum;
+    double weight = 0;
+    for (int y = top; y < top + count; ++y)
+        for (int x = left; x < left + count; ++x) {
+            const float* p = cube.face(face).at(x, y);
+            const Vec3d value{p[0], p[1], p[2]};
+            if (!std::isfinite(value.x + value.y + value.z)) continue;
+            const double w = relative_solid_angle(x, y, cube.size());
+            sum = sum + value * w;
+            weight += w;
+        }
+    return Vec3f(weight > 0 ? sum / weight : Vec3d{NAN, NAN, NAN});
+}
+
+/// Averages over squares of `count`^2 texels.
+Cubemap reduced(const Cubemap& cube, int count, int threads) {
+    Cubemap out(cube.size() / count);
+    parallel_for(6 * out.size(), threads, [&](int row) {
+        const int face = row / out.size(), y = row % out.size();
+        for (int x = 0; x < out.size(); ++x) {
+            const Vec3f mean = mean_of_square(cube, face, count * x, count * y, count);
+            float* p = out.face(face).at(x, y);
+            p[0] = mean.x, p[1] = mean.y, p[2] = mean.z;
+        }
+    });
+    return out;
+}
+
+}  // namespace
+
+Cubemap averaged_to(const Cubemap& cube, int size, int threads) {
+    if (cube.size() <= size) return cube;
+    if (cube.size() % size == 0) return reduced(cube, cube.size() / size, threads);
+    return area_resample_cube(cube, size, {}, threads);
+}
+
+TexelSample sample_broadly(const Cubemap& cube, int most, int threads) {
+    return sample_texels(averaged_to(cube, k_broad_size, threads), most);
+}
+
 std::vector<int> turned_texels(const TexelSample& sample, const Mat3& m) {
     const int n = sample.size;
     std::vector<int> turned;
@@ -98,27 +149,32 @@ std::vector<int> turned_texels(const TexelSample& sample, const Mat3& m) {
     return turned;
 }
 
-Fit fit_level(const TexelSample& sample, const Cubemap& exact, const std::vector<int>& turned, double scale,
-              bool quick) {
-    const std::size_t count = turned.size();
-    const float* const pixels = exact.pixels().data();
-    const auto truth = [&](std::size_t k) {
-        const float* p = pixels + 3 * std::size_t(turned[k]);
-        return Vec3f{p[0], p[1], p[2]};
-    };
+std::vector<Vec3f> values_at(const Cubemap& cube, std::span<const int> texels) {
+    const float* const pixels = cube.pixels().data();
+    std::vector<Vec3f> values;
+    values.reserve(texels.size());
+    for (const int texel : texels) {
+        const float* p = pixels + 3 * std::size_t(texel);
+        values.push_back({p[0], p[1], p[2]});
+    }
+    return values;
+}
+
+Fit fit_level(const TexelSample& sample, std::span<const Vec3f> exact, double scale, bool quick) {
+    const std::size_t count = exact.size();
     Fit fit;
     if (scale > 0) {
         fit.scale = scale;
     } else if (quick) {
         double logs = 0, weight = 0;
         for (std::size_t k = 0; k < count; ++k)
-            if (const float e = luminance(truth(k)), t = sample.luminance[k]; e > 0 && t > 0)
+            if (const float e = luminance(exact[k]), t = sample.luminance[k]; e > 0 && t > 0)
                 logs += sample.weights[k] * std::log(t / e), weight += sample.weights[k];
         fit.scale = weight > 0 ? std::exp(logs / weight) : 1;
     } else {
         std::vector<Ratio> ratios;
         for (std::size_t k = 0; k < count; ++k)
-            if (const float e = luminance(truth(k)); e > 0)
+            if (const float e = luminance(exact[k]); e > 0)
                 ratios.push_back({sample.luminance[k] / e, sample.weights[k]});
         fit.scale = weighted_median(ratios);
     }
@@ -127,7 +183,7 @@ Fit fit_level(const TexelSample& sample, const Cubemap& exact, const std::vector
     const double floor = 1e-3 * sample.mean;
     double squared = 0, weight = 0, difference = 0, power = 0;
     for (std::size_t k = 0; k < count; ++k) {
-        const Vec3f e = truth(k), t = sample.values[k];
+        const Vec3f e = exact[k], t = sample.values[k];
         const double w = sample.weights[k];
         for (const auto& [a, b] : {std::pair(t.x, e.x), std::pair(t.y, e.y), std::pair(t.z, e.z)}) {
             const double f = fit.scale * b, d = a - f, r = d / (std::max(double(a), f) + floor);

@@ -1,10 +1,10 @@
 #pragma once
 // How well a baked level and an exactly filtered one agree, under one of the 48 orientations of a cube.
 
-#include "domelight/image/image.h"
 #include "domelight/base/vec.h"
+#include "domelight/image/image.h"
 
-#include <array>
+#include <span>
 #include <vector>
 
 namespace domelight {
@@ -24,18 +24,27 @@ struct TexelSample {
 /// All finite texels, or `most` of them, one from each of as many pieces of the strip.
 TexelSample sample_texels(const Cubemap& cube, int most);
 
+/// The same for a cube that is first averaged to faces of at most k_broad_size^2.
+TexelSample sample_broadly(const Cubemap& cube, int most, int threads);
+
+constexpr int k_broad_size = 32;
+/// The cube averaged to faces of at most `size`^2.
+Cubemap averaged_to(const Cubemap& cube, int size, int threads);
+
 /// Mean luminance over the sphere, of the finite texels.
 double mean_luminance(const Cubemap& cube);
 
 /// For each sampled texel, the one of a cube of the same size that lies in direction `m` d.
 std::vector<int> turned_texels(const TexelSample& sample, const Mat3& m);
 
+/// The values of these texels of a cube.
+std::vector<Vec3f> values_at(const Cubemap& cube, std::span<const int> texels);
+
 struct Fit {
     double scale = 1, error = 1, relative_rmse = 0, largest = 0;  ///< as in LevelAudit
 };
-/// Of the sample against `exact` (same size), its texels picked by turned_texels(). `scale` 0: found as the median
-/// ratio; `quick`: as the geometric mean, for choosing among many.
-Fit fit_level(const TexelSample& sample, const Cubemap& exact, const std::vector<int>& turned, double scale = 0,
-              bool quick = false);
+/// Fits `exact`, one value for each texel of the sample, to the sample. `scale` 0: the scale is the median ratio, or
+/// with `quick` the geometric mean of the ratios, which takes no sorting.
+Fit fit_level(const TexelSample& sample, std::span<const Vec3f> exact, double scale = 0, bool quick = false);
 
 }  // namespace domelight

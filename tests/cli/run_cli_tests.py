@@ -1265,6 +1265,26 @@ def test_compare_audits_our_bakes(folder):
     assert "studio.hdr" in run("compare", "--bake", "studio.hdr", "--env", "studio.hdr", folder=folder, code=1).stderr
 
 
+def test_compare_passes_a_verdict_on_bakes(folder):
+    def audit(*words, code=0):
+        return json.loads(run("compare", "--bake", *words, "--json", folder=folder, code=code).stdout)
+
+    run("sky", "-o", "axes.hdr", "--axes", "--height", "64", folder=folder)
+    run("bake", "studio.hdr", "-o", "o", *SMALL, folder=folder)
+    own = audit("o/specular.ktx2", "--env", "studio.hdr", "--within", "0.01")
+    assert own["of_source"] and own["within"] and own["lobe"] == "ggx" and own["verdict"].startswith("a bake of this environment, as ours"), own
+    assert not audit("o/specular.ktx2", "--env", "studio.hdr", "--within", "1e-9", code=1)["within"]
+    other = audit("o/specular.ktx2", "--env", "axes.hdr", code=1)
+    assert not other["of_source"] and other["verdict"].startswith("not a bake of this environment"), other
+    text = run("compare", "--bake", "o/specular.ktx2", "--env", "axes.hdr", folder=folder, code=1).stdout
+    assert "verdict       not a bake of this environment" in text and "cannot tell them apart" not in text, text
+    assert "--within" in run("compare", "--bake", "o/specular.ktx2", "--env", "studio.hdr", "--within", "2", folder=folder, code=2).stderr
+    for lobe, widths in [("phong", ["--exponents", "inf,64,8"]), ("charlie", ["--roughness", "0.4,0.8"])]:
+        run("bake", "studio.hdr", "-o", lobe, *SMALL, "--lobe", lobe, *widths, folder=folder)
+        found = audit(f"{lobe}/specular.ktx2", "--env", "studio.hdr")
+        assert found["lobe"] == lobe and all(level["stated_error"] < 2e-3 for level in found["levels"]), found
+
+
 def test_compare_agrees_with_flip_evaluator(folder):
     """PyPI's flip-evaluator itself, where the interpreter that FLIP_PYTHON names (else this one) has it."""
     python = os.environ.get("FLIP_PYTHON", sys.executable)

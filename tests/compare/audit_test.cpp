@@ -1,10 +1,11 @@
+#include "domelight/base/random.h"
 #include "domelight/compare/bake_audit.h"
 #include "domelight/projection/projection.h"
-#include "domelight/base/random.h"
 
 #include "compare/audit_fit.h"
 #include "test.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -36,14 +37,12 @@ struct Wanted {
     double roughness;
 };
 
-/// A chain baked with the light in direction `m` d of the environment for direction d.
-std::vector<CubeLevel> bake(const ImageF& light, std::vector<Wanted> wanted, const Mat3& m = {}, float scale = 1) {
+std::vector<CubeLevel> bake_levels(const ImageF& light, std::vector<LevelSpec> specs, const Mat3& m = {},
+                                   float scale = 1) {
     FilterOptions options;
     options.world_to_source = m;
     options.sh_bands = 0;
-    for (const Wanted& w : wanted)
-        options.specular.push_back(w.roughness > 0 ? LevelSpec{w.size, false, ZonalKernel::ggx(w.roughness)}
-                                                   : LevelSpec{w.size, true, {}});
+    options.specular = std::move(specs);
     ImageRowSource rows(light.view());
     auto result = prefilter(rows, options);
     REQUIRE(bool(result));
@@ -53,6 +52,15 @@ std::vector<CubeLevel> bake(const ImageF& light, std::vector<Wanted> wanted, con
         levels.push_back({std::move(map.cube), {}});
     }
     return levels;
+}
+
+/// A chain baked with the light in direction `m` d of the environment for direction d.
+std::vector<CubeLevel> bake(const ImageF& light, std::vector<Wanted> wanted, const Mat3& m = {}, float scale = 1) {
+    std::vector<LevelSpec> specs;
+    for (const Wanted& w : wanted)
+        specs.push_back(w.roughness > 0 ? LevelSpec{w.size, false, ZonalKernel::ggx(w.roughness)}
+                                        : LevelSpec{w.size, true, {}});
+    return bake_levels(light, specs, m, scale);
 }
 
 const std::vector<Wanted> k_chain = {{32, 0}, {32, 0.37}, {16, 0.65}, {8, 1}};
@@ -172,6 +180,122 @@ TEST_SUITE("bake") {
         REQUIRE(bool(three));
         CHECK(one->levels[0].roughness == three->levels[0].roughness);
         CHECK(one->levels[0].error == three->levels[0].error);
+    }
+
+    TEST_CASE("audit: a bake of another environment is refused") {
+        const ImageF light = environment(64);
+        ImageF other(light.width(), light.height(), 3);  // the same light, its columns in a shuffled order
+        for (int y = 0; y < other.height(); ++y)
+            for (int x = 0; x < other.width(); ++x)
+                std::copy_n(light.at((13 * x + 5) % other.width(), other.height() - 1 - y), 3, other.at(x, y));
+        std::vector<CubeLevel> levels = bake(other, k_chain);
+        for (const bool stated : {false, true}) {
+            CAPTURE(stated);
+            for (std::size_t l = 0; l < levels.size(); ++l)
+                levels[l].roughness = stated ? std::optional(k_chain[l].roughness) : std::nullopt;
+            const auto audit = audit_bake(levels, source_of(light));
+            REQUIRE(bool(audit));
+            CHECK_FALSE(audit->of_source);
+            CHECK_FALSE(audit->passed());
+            CHECK(audit->verdict.starts_with("not a bake of this environment"));
+            CHECK(audit->levels.size() == levels.size());
+        }
+    }
+
+    TEST_CASE("audit: our own bake passes, also by a limit above its error and not by one below") {
+        const ImageF light = environment();
+        std::vector<CubeLevel> levels = bake(light, k_chain);
+        for (std::size_t l = 0; l < levels.size(); ++l) levels[l].roughness = k_chain[l].roughness;
+        for (float& v : levels[2].cube.pixels()) v *= 1.1F;  // 9.1 % off at scale 1, exact in the fit
+        const auto judged = [&](std::optional<double> within) {
+            const auto audit = audit_bake(levels, source_of(light), {.within = within});
+            REQUIRE(bool(audit));
+            CHECK(audit->of_source);
+            CHECK(audit->verdict.starts_with("a bake of this environment"));
+            return *audit;
+        };
+        CHECK(judged({}).passed());
+        CHECK(judged(0.1).passed());
+        CHECK_FALSE(judged(0.08).passed());
+        CHECK(judged(0.08).verdict.find("level 2") != std::string::npos);
+    }
+
+    TEST_CASE("audit: a Phong chain is audited as Phong, by its exponents") {
+        const ImageF light = environment();
+        const std::vector<double> exponents = {40, 7};
+        std::vector<LevelSpec> specs = {{32, true, {}}};
+        for (const double n : exponents) specs.push_back({16, false, {Lobe::phong_plain, n}});
+        std::vector<CubeLevel> levels = bake_levels(light, specs);
+        const auto audited = [&](Lobe lobe) {
+            const auto audit = audit_bake(levels, source_of(light), {.lobe = lobe});
+            REQUIRE(bool(audit));
+            return *audit;
+        };
+        const BakeAudit found = audited(Lobe::phong_plain);
+        CHECK(std::isinf(found.levels[0].exponent.value()));
+        for (std::size_t l = 0; l < exponents.size(); ++l) {
+            CAPTURE(l);
+            // A few 1e-4 of roughness, as for GGX, is five times as much of the exponent.
+            CHECK(std::abs(found.levels[l + 1].exponent.value() / exponents[l] - 1) < 0.01);
+            CHECK(found.levels[l + 1].error < 1e-3);
+            CHECK(audited(Lobe::ggx).levels[l + 1].error > 5 * found.levels[l + 1].error);
+            levels[l + 1].exponent = exponents[l];
+        }
+        levels[0].exponent = std::numeric_limits<double>::infinity();
+        const BakeAudit stated = audited(Lobe::phong_plain);
+        for (const LevelAudit& level : stated.levels) CHECK(level.stated_error < 1e-5);
+    }
+
+    TEST_CASE("audit: a Charlie chain is audited as Charlie") {
+        const ImageF light = environment();
+        const std::vector<CubeLevel> levels =
+            bake_levels(light, {{32, false, ZonalKernel::charlie(0.4)}, {16, false, ZonalKernel::charlie(0.8)}});
+        const auto audit = audit_bake(levels, source_of(light), {.lobe = Lobe::charlie});
+        REQUIRE(bool(audit));
+        CHECK(audit->of_source);
+        CHECK(std::abs(audit->levels[0].roughness - 0.4) < 2e-3);
+        CHECK(std::abs(audit->levels[1].roughness - 0.8) < 2e-3);
+        for (const LevelAudit& level : audit->levels) CHECK(level.error < 1e-3);
+    }
+
+    TEST_CASE("audit: a source with less detail than the bake is said to be too small") {
+        ImageF large = environment(128);
+        for (int y = 0; y < large.height(); ++y)  // stripes that are lost in the small picture
+            for (int x = 0; x < large.width(); ++x)
+                for (int c = 0; c < 3; ++c) large.at(x, y)[c] *= x % 4 < 2 ? 0.5F : 1.5F;
+        ImageF small(64, 32, 3);
+        for (int y = 0; y < large.height(); ++y)
+            for (int x = 0; x < large.width(); ++x)
+                for (int c = 0; c < 3; ++c) small.at(x / 4, y / 4)[c] += large.at(x, y)[c] / 16;
+        const auto levels = bake(large, {{64, 0}, {16, 0.6}});
+        const auto by_small = audit_bake(levels, source_of(small)), by_large = audit_bake(levels, source_of(large));
+        REQUIRE(bool(by_small));
+        REQUIRE(bool(by_large));
+        CHECK(by_large->notes.empty());
+        CHECK(by_small->of_source);
+        REQUIRE(by_small->notes.size() == 1);
+        CHECK(by_small->notes[0].find("too small for this bake") != std::string::npos);
+    }
+
+    TEST_CASE("audit: progress rises from 0 to 1 in many steps and may cancel") {
+        const ImageF light = environment();
+        const auto levels = bake(light, k_chain);
+        AuditOptions options;
+        double last = 0, widest = 0;
+        options.progress = [&](std::string_view stage, double done) {
+            CHECK(stage == "audit");
+            CHECK(done >= last);
+            widest = std::max(widest, done - last);
+            last = done;
+            return true;
+        };
+        REQUIRE(bool(audit_bake(levels, source_of(light), options)));
+        CHECK(last == 1);
+        CHECK(widest < 0.35);
+        options.progress = [](std::string_view, double done) { return done < 0.3; };
+        const auto cancelled = audit_bake(levels, source_of(light), options);
+        REQUIRE_FALSE(bool(cancelled));
+        CHECK(cancelled.error().what == "cancelled");
     }
 
     TEST_CASE("orientation_words: 48 orientations have 48 different names") {

@@ -1,6 +1,6 @@
 #pragma once
-// Anybody's baked specular cube against the exact filter of its source: which way round it is, how rough each level
-// really is, how bright, how far off.
+// Anybody's baked specular cube against the exact filter of its source: whether it is a bake of that source at all,
+// which way round it is, how rough each level really is, how bright, how far off.
 
 #include "domelight/base/progress.h"
 #include "domelight/base/result.h"
@@ -19,6 +19,7 @@ namespace domelight {
 struct CubeLevel {
     Cubemap cube;                     ///< RGB radiance, faces in the file's order
     std::optional<double> roughness;  ///< what the file or its format says was baked into it, [0, 1]
+    std::optional<double> exponent = {};  ///< the same for a Phong lobe, >= 0; infinity: the environment itself
 };
 
 /// The light that was baked: exactly one of the two.
@@ -33,7 +34,7 @@ struct AuditSource {
 struct CubeOrientation {
     Mat3 ours_from_theirs;  ///< a signed permutation of the axes
     std::string words;      ///< "as ours", "mirrored in x", "turned by 90 degrees about +Y", ...
-    double error = 0;       ///< LevelAudit::error of the level it was found by, [0, 1]
+    double error = 0;       ///< LevelAudit::broad_error of level 0 in this orientation, [0, 1]
     double next_error = 0;  ///< of the best other orientation
     bool certain = true;    ///< false: the light is so even or symmetric that another orientation fits as well
 };
@@ -44,35 +45,51 @@ std::string orientation_words(const Mat3& ours_from_theirs);
 /// found; `scale` times it is the best fit to the level.
 struct LevelAudit {
     int size = 0;
-    double roughness = 0;         ///< of GGX (n = v = r) that fits best; 0: the environment itself
-    double roughness_within = 0;  ///< the fit is less than a twentieth worse (or 0.0005) this far from it
-    bool roughness_known = true;  ///< false: every roughness fits alike
-    double scale = 1;             ///< median over texels of theirs / exact (luminance)
+    double roughness = 0;            ///< of the lobe that fits best; 0: the environment itself
+    std::optional<double> exponent;  ///< of a Phong lobe that fits best; infinity: the environment itself
+    double roughness_within = 0;     ///< the fit is less than a twentieth worse (or 0.0005) this far from it
+    bool roughness_known = true;     ///< false: every roughness fits alike
+    double scale = 1;                ///< median over texels of theirs / exact (luminance)
     double energy = 1;  ///< mean over the sphere of theirs over that of exact (luminance), as their texels sample it
     double error =
         0;  ///< RMS over the sphere of (theirs - fit) / max(theirs, fit), [0, 1]: every direction counts alike
+    double broad_error = 0;    ///< the same with both averaged to faces of at most 32^2, which removes noise and detail
     double relative_rmse = 0;  ///< sqrt(sum (theirs - fit)^2 / sum fit^2): the brightest directions count most
     double largest = 0;        ///< of |theirs - fit| / max(theirs, fit)
     std::optional<double> stated_roughness;
-    /// At the stated roughness and scale 1: what an engine gets that trusts the file.
+    /// At the stated roughness and scale 1: what a consumer gets that trusts the file.
     double stated_error = 0, stated_relative_rmse = 0;
 };
 
 struct BakeAudit {
+    Lobe lobe = Lobe::ggx;
     CubeOrientation orientation;
     std::vector<LevelAudit> levels;
+    bool of_source = true;           ///< a bake of this source: no level's broad error is above AuditOptions::same
+    bool within = true;              ///< every level's error is at most AuditOptions::within
+    std::string verdict;             ///< both in words
+    std::vector<std::string> notes;  ///< whole sentences, such as that the source is too small for the bake
+
+    bool passed() const { return of_source && within; }
 };
 
 struct AuditOptions {
-    int texels = 6144;  ///< looked at in each level, spread over it evenly at random; all of smaller levels
-    int threads = 0;    ///< 0: all
+    Lobe lobe = Lobe::ggx;  ///< with which the levels were filtered
+    int texels = 6144;      ///< compared in each level, spread over it evenly at random; all of smaller levels
+    double same = 0.25;     ///< a level with a larger LevelAudit::broad_error is one of another environment
+    /// The largest error that a level may have, (0, 1]: LevelAudit::stated_error, or LevelAudit::error where the level
+    /// states no roughness. Nothing: any error.
+    std::optional<double> within = {};
+    int threads = 0;  ///< 0: all
     Progress progress = {};
 };
 
-/// Audits a bake. The exact filter is prefilter() at the level's own size, on a ladder of roughnesses that is refined
-/// twice about the best; the 48 exchanges and mirrorings of the axes carry texel centres of a cube to texel centres, so
-/// nothing is interpolated. Errors: no levels; a level without a finite texel above 0; those of prefilter(). NaN and
-/// infinite texels are left out.
+/// Audits a bake. The exact filter is prefilter() at the level's own size; the 48 exchanges and mirrorings of the axes
+/// carry texel centres of a cube to texel centres, so nothing is interpolated. Every run of the filter serves all
+/// levels: one at the stated roughnesses; where these are absent or do not fit, one or two at many roughnesses,
+/// compared on faces averaged to 32^2; and up to four close to the best roughness of each level, which are left out for
+/// a bake of another environment. Errors: no levels; a level without a finite texel above 0; those of prefilter(). NaN
+/// and infinite texels are left out.
 Result<BakeAudit> audit_bake(std::span<const CubeLevel> levels, const AuditSource& source,
                              const AuditOptions& options = {});
 

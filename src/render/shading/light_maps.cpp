@@ -1,5 +1,6 @@
 #include "domelight/engines/engine.h"
 #include "domelight/filtering/brdf/brdf_table.h"
+#include "domelight/filtering/kernel/lobe_names.h"
 #include "domelight/filtering/prefilter.h"
 #include "domelight/projection/projection.h"
 #include "domelight/render/shading/shading.h"
@@ -40,8 +41,7 @@ float matching_roughness(double exponent) {
 }
 
 Result<Lobe> lobe_of(const std::string& name) {
-    for (const Lobe lobe : {Lobe::ggx, Lobe::phong_brdf, Lobe::phong_plain})
-        if (lobe_name(lobe) == name) return lobe;
+    if (const auto lobe = lobe_from_name(name); lobe && *lobe != Lobe::charlie) return *lobe;
     return Error{fmt::format("tells of a chain of lobe \"{}\"", name), "", "Bake with --lobe ggx or --lobe phong."};
 }
 
