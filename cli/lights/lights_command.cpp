@@ -12,6 +12,8 @@
 #include "cli/console/console.h"
 #include "base/sha256.h"
 #include "cli/console/environment_options.h"
+#include "io/file/file_reader.h"
+#include "io/image_reader.h"
 #include "scene/gltf/gltf_lights_writer.h"
 #include "preview/lights_sheet.h"
 
@@ -114,6 +116,11 @@ struct Outcome {
     const Environment& environment;
     const Picture& picture;
     const LightExtraction& found;
+    bool in_openexr_convention = false;  ///< the remainder, as its source was
+
+    /// Whether the remainder is the source's picture, which a reader turns as the source was turned. That of a cube is
+    /// in the world's own orientation.
+    bool keeps_orientation() const { return environment.projection != "cube"; }
 };
 
 Json document(const LightsWords& w, const Outcome& o) {
@@ -162,12 +169,24 @@ Result<void> write_text(const std::filesystem::path& file, const std::string& te
     return write_file_atomically(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-Result<void> write_remainder(const std::filesystem::path& file, const LightExtraction& found, bool hdr, int threads) {
-    if (hdr) return write_hdr(file, found.remainder.view(), threads);
+/// Whether the environment is in OpenEXR's own lat-long convention, because --latlong or the file itself says so. An
+/// .exr file can state it by an attribute, and an .hdr file cannot.
+bool in_openexr_convention(const LightsWords& w) {
+    if (!w.environment.latlong.empty()) return w.environment.latlong == "openexr";
+    if (w.environment_files.size() != 1) return false;
+    auto bytes = FileBytes::open(w.environment_files[0], w.environment.max_bytes);
+    if (!bytes) return false;
+    const auto image = open_image_reader(std::move(*bytes), {});
+    return image && (*image)->facts().envmap == ImageFacts::Envmap::latlong;
+}
+
+Result<void> write_remainder(const std::filesystem::path& file, const Outcome& o, bool hdr, int threads) {
+    if (hdr) return write_hdr(file, o.found.remainder.view(), threads);
     ExrWriteOptions exr;
     exr.half = false;
     exr.threads = threads;
-    return write_exr(file, found.remainder.view(), exr);
+    if (o.in_openexr_convention) exr.envmap = "latlong";
+    return write_exr(file, o.found.remainder.view(), exr);
 }
 
 /// Writes everything into the folder; fills in the remainder's name and hash.
@@ -178,7 +197,7 @@ Result<Json> write_all(const LightsWords& w, Outcome& o) {
     auto staging = Staging::open(w.output);
     if (!staging) return staging.error();
     const auto remainder = staging->stage(o.remainder_file);
-    if (auto ok = write_remainder(remainder, o.found, hdr, threads); !ok) return ok.error();
+    if (auto ok = write_remainder(remainder, o, hdr, threads); !ok) return ok.error();
     auto hash = sha256_file(remainder);
     if (!hash) return hash.error();
     o.remainder_sha256 = *hash;
@@ -187,7 +206,9 @@ Result<Json> write_all(const LightsWords& w, Outcome& o) {
                                          o.picture.world_to_source, o.found.lights, 1600, threads});
         if (auto ok = write_png(staging->stage("preview.png"), sheet.view()); !ok) return ok.error();
     }
-    const std::string gltf = gltf_lights(o.found.lights, w.lux_per_unit, fmt::format("domelight {}", version()));
+    const double turned_deg = o.keeps_orientation() ? w.environment.rotate_y_deg : 0;
+    const std::string gltf =
+        gltf_lights(o.found.lights, w.lux_per_unit, turned_deg, fmt::format("domelight {}", version()));
     if (auto ok = write_text(staging->stage("lights.gltf"), gltf); !ok) return ok.error();
     Json json = document(w, o);
     if (auto ok =
@@ -232,9 +253,14 @@ int run(const LightsWords& w) {
         hash = *computed;
     }
     Outcome outcome{std::filesystem::path(name).filename().string(), hash, "", "", *environment, *picture, *found};
+    outcome.in_openexr_convention = environment->projection == "latlong" && in_openexr_convention(w);
     const auto json = write_all(w, outcome);
     if (!json) return print_error(json.error());
     print_warnings(environment->report->warnings, w.common, name);
+    if (outcome.in_openexr_convention && outcome.remainder_file == "remainder.hdr" && w.environment.latlong.empty())
+        print_warnings({"the remainder is in OpenEXR's lat-long convention, which an .hdr file cannot state: read it "
+                        "with --latlong openexr"},
+                       w.common, name);
     if (found->report.texel_deg > w.options.largest_diameter_deg)
         print_warnings({fmt::format("texels {:.2g} degrees wide are too coarse to hold a light: none was looked for",
                                     found->report.texel_deg)},

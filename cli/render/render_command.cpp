@@ -49,6 +49,12 @@ void declare(Arguments& a, RenderWords& w) {
     a.flag("--resume", w.resume, "keep the frames that exist, draw the others");
     a.group("The light");
     a.texts("--env", "ENV", w.environment_files, "the environment (the built-in sky)");
+    a.texts("--lights", "FILE", w.light_files,
+            "lights that were taken out of the environment: lights.gltf of `domelight lights`, whose remainder is "
+            "--env; they turn with --rotate-y-deg and brighten with --exposure as the environment does");
+    a.number("--lux-per-unit", "LUX", w.lux_per_unit,
+             "what an irradiance of 1 in the environment's unit is in lux, for glTF lights of the scene or of --lights "
+             "whose file does not state it (683)");
     add_environment_options(a, w.environment);
     a.group("How it is computed");
     a.choice("--shading", w.shading, {"reference", "split-sum", "stretched", "phong", "mirror", "refract"},
@@ -176,6 +182,23 @@ Result<RenderResult> draw(const RenderWords& w, const RayScene& scene, const Env
     return render_shaded(scene, *maps, sampler, shading, o);
 }
 
+/// The lights of --lights, turned and brightened as the environment is. Warns of files without lights.
+Result<std::vector<PunctualLight>> environment_lights(const RenderWords& w, const SceneOptions& options) {
+    std::vector<PunctualLight> lights;
+    for (const std::string& file : w.light_files) {
+        const auto found = load_environment_lights(file, options);
+        if (!found) return found.error().at(file);
+        print_warnings(found->warnings, w.common, file);
+        if (found->lights.empty()) print_warnings({"there is no light in it"}, w.common, file);
+        const Mat3 turn = rotation_y((w.environment.rotate_y_deg - found->rotate_y_deg) * k_pi / 180);
+        for (const PunctualLight& light : found->lights) {
+            lights.push_back(turned_light(light, turn));
+            lights.back().intensity = light.intensity * float(std::exp2(w.environment.exposure));
+        }
+    }
+    return lights;
+}
+
 int run_render(const std::vector<std::string>& words) {
     RenderWords w;
     Arguments arguments(
@@ -193,6 +216,7 @@ int run_render(const std::vector<std::string>& words) {
 
     SceneOptions scene_options;
     scene_options.threads = w.threads();
+    scene_options.lux_per_unit = float(w.lux_per_unit);
     const std::string name = w.scene_name();
     const auto built_in = built_in_scene_names();
     std::optional<Scene> scene;
@@ -215,6 +239,9 @@ int run_render(const std::vector<std::string>& words) {
     if (!options) return print_error(options.error());
     auto environment = open();
     if (!environment) return print_error(environment.error());
+    auto lights = environment_lights(w, scene_options);
+    if (!lights) return print_error(lights.error());
+    options->environment_lights = std::move(*lights);
 
     auto traced = RayScene::build(std::move(*scene));
     if (!traced) return print_error(traced.error().at(name));

@@ -17,6 +17,12 @@ Result<std::optional<LightMaps>> maps_for(const RenderWords& w, const Environmen
     return std::optional<LightMaps>(std::move(*maps));
 }
 
+PunctualLight turned_light(PunctualLight light, const Mat3& turn) {
+    light.direction = Vec3f(turn * Vec3d(light.direction));
+    light.position = Vec3f(turn * Vec3d(light.position));
+    return light;
+}
+
 RenderOptions tracing_options(const RenderWords& w, RenderOptions o) {
     // A colour is for the display as it is: it goes behind the picture after the tone map.
     if (w.shadow_catcher || o.background == Background::colour) o.background = Background::transparent;

@@ -17,6 +17,9 @@ Result<std::optional<LightMaps>> maps_for(const RenderWords& words, const Enviro
 Result<RenderResult> draw(const RenderWords& words, const RayScene& scene, const EnvironmentSampler& sampler,
                           const LightMaps* maps, const RenderOptions& options);
 
+/// A light of the environment after the environment has been turned about the origin.
+PunctualLight turned_light(PunctualLight light, const Mat3& turn);
+
 /// A picture as it is written: with the shadow, and the stops for a display.
 struct FinishedPicture {
     RenderResult result;

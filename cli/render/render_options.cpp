@@ -35,6 +35,7 @@ Result<void> check_numbers(const RenderWords& w) {
                   {"--ev", std::isnan(w.ev) ? 0 : w.ev, -100, 100},
                   {"--background-roughness", w.background_roughness, 0, 1},
                   {"--save-every", w.save_every, 0, 1e6},
+                  {"--lux-per-unit", w.lux_per_unit, 1e-12, 1e12},
                   {"--frames", double(w.frames.value_or(60)), 2, 9999},
                   {"--fps", w.fps, 1, 1000}};
     for (const auto& r : ranges)
@@ -101,7 +102,8 @@ Result<void> check_company(const RenderWords& w, const Arguments& a) {
         return Error{"turns the light, and the maps of --maps would stay as they are", "--turn",
                      "Leave --maps out: each frame then bakes its own."};
     if (w.study)
-        for (const char* option : {"--frames", "--shadow-catcher", "--background", "--shading", "--strategy", "--maps"})
+        for (const char* option :
+             {"--frames", "--shadow-catcher", "--background", "--shading", "--strategy", "--maps", "--lights"})
             if (a.given(option)) return Error{"has no meaning with --study, which draws them all", option, ""};
     return {};
 }

@@ -16,14 +16,14 @@ namespace domelight::cli {
 /// The command line of `render`.
 struct RenderWords {
     CommonOptions common;
-    std::vector<std::string> scenes, environment_files, outputs;
+    std::vector<std::string> scenes, environment_files, light_files, outputs;
     EnvironmentOptions environment;
     std::string shading = "reference", strategy = "mis", occlusion = "on", background, maps, tonemap = "agx",
                 irradiance = "cube", lookup = "environment", brdf = "scene", diffuse_weight = "energy";
     std::optional<int> width, height, spp, bounces, seed, lookup_size;
     std::vector<double> camera_position, camera_target;
     std::string camera;
-    double fov_deg = 35, noise = 0, time = 0, save_every = 0;
+    double fov_deg = 35, noise = 0, time = 0, save_every = 0, lux_per_unit = 683;
     double ev = std::numeric_limits<double>::quiet_NaN();
     bool multiple_scattering = false, bent_lookup = false;
 

@@ -94,6 +94,7 @@ class Turntable {
         if (!maps) return maps.error();
         const LightMaps* own = *maps ? &**maps : nullptr;
         o.background_maps = own;
+        for (PunctualLight& l : o.environment_lights) l = turned_light(l, rotation_y(angle));
         return draw_finished(words, scene_, *light, own, o, ev);
     }
 

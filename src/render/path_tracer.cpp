@@ -27,6 +27,7 @@ class Tracer final : public TileTracer {
           scene_(scene.scene()),
           sampler_(sampler),
           options_(options),
+          lights_(all_lights(scene_, options)),
           camera_(options.camera, options.width, options.height),
           passages_(has_passages(scene_)),
           layers_(has_layers(scene_)) {}
@@ -139,7 +140,7 @@ class Tracer final : public TileTracer {
                 const Frame<float> frame(p.surface.normal);
                 p.V = frame.to_local(-p.ray.direction);
                 if (draw) light_up(p, frame, light.direction(i), light.radiance(i), light.pdf(i), bounce, room, rays);
-                for (const PunctualLight& l : scene_.lights) light_up(p, frame, l, bounce, rays);
+                for (const PunctualLight& l : lights_) light_up(p, frame, l, bounce, rays);
                 if (scatter(p, frame, bounce, room)) next.push_back(&p);
             }
             settle(room, bounce, rays);
@@ -411,6 +412,7 @@ class Tracer final : public TileTracer {
     const Scene& scene_;
     const EnvironmentSampler& sampler_;
     const RenderOptions& options_;
+    const std::vector<PunctualLight> lights_;
     CameraRays camera_;
     bool passages_;
     bool layers_;

@@ -1,7 +1,7 @@
 #pragma once
-// A light of the scene's own, as a point receives it.
+// A light without size, as a point receives it.
 
-#include "domelight/scene/scene.h"
+#include "domelight/render/render.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,6 +37,13 @@ inline PunctualArrival arrival_at(const PunctualLight& light, const Vec3f& posit
         a.strength *= edge * edge;
     }
     return a;
+}
+
+/// The scene's own lights, and those that were taken out of the environment.
+inline std::vector<PunctualLight> all_lights(const Scene& scene, const RenderOptions& options) {
+    std::vector<PunctualLight> lights = scene.lights;
+    lights.insert(lights.end(), options.environment_lights.begin(), options.environment_lights.end());
+    return lights;
 }
 
 }  // namespace domelight

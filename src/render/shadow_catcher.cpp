@@ -35,6 +35,7 @@ class ShadowTracer {
           scene_(scene.scene()),
           sampler_(sampler),
           options_(options),
+          lights_(all_lights(scene_, options)),
           height_(catcher.height),
           camera_(options.camera, options.width, options.height),
           passages_(has_passages(scene_)) {}
@@ -82,7 +83,7 @@ class ShadowTracer {
             const float pdf = there.pdf_solid_angle + direction.y / float(k_pi);
             add(direction, there.radiance * (direction.y / pdf), far);
         }
-        for (const PunctualLight& l : scene_.lights) {
+        for (const PunctualLight& l : lights_) {
             const PunctualArrival a = arrival_at(l, p);
             if (a.strength > 0 && a.direction.y > 0)
                 add(a.direction, l.intensity * (a.strength * a.direction.y), a.distance);
@@ -111,6 +112,7 @@ class ShadowTracer {
     const Scene& scene_;
     const EnvironmentSampler& sampler_;
     const RenderOptions& options_;
+    const std::vector<PunctualLight> lights_;
     float height_;
     CameraRays camera_;
     bool passages_;

@@ -4,6 +4,7 @@
 Each function test_... gets a folder of its own, in which small environments lie ready (studio.hdr, evening.hdr).
 """
 
+import base64
 import hashlib
 import json
 import math
@@ -909,6 +910,76 @@ def test_lights_takes_a_cube_and_is_the_same_on_any_number_of_threads(folder):
     assert files_of(folder / "out") == files_of(folder / "more")
 
 
+def matte_light(scene, *words, folder):
+    """The radiance that a matte square about the origin shows from above, without what other surfaces send to it."""
+    view = ["--width", "32", "--height", "16", "--spp", "256", "--bounces", "0", "--camera-position", "0,1,0.001", "--fov-deg", "1"]
+    run("render", scene, "-o", "matte.exr", *view, *words, "--quiet", folder=folder)
+    return json.loads(run("info", "matte.exr", "--json", folder=folder).stdout)["mean_radiance"]
+
+
+def same_light(a, b, tolerance=0.01):
+    """1 %: what docs/lights.md states of lights and remainder, and far above the noise of 131072 samples."""
+    assert all(abs(x - y) <= tolerance * max(x, y) for x, y in zip(a, b)), (a, b)
+
+
+def test_render_of_remainder_and_lights_is_that_of_the_environment(folder):
+    # Matte squares that look up, and up at a slant: their light is 0.8 E / pi.
+    for name, tilt in [("up", 0), ("slanted", math.radians(50))]:
+        (folder / f"{name}.gltf").write_text(json.dumps(make_square(tilt)))
+    run("sky", "-o", "sky.exr", "--exr", "float", "--height", "256", "--sun-elevation-deg", "40", "--sun-azimuth-deg", "30", folder=folder)
+    run("lights", "sky.exr", "-o", "out", "--no-preview", folder=folder)
+
+    def light_of(scene, *words):
+        return matte_light(scene, *words, folder=folder)
+
+    same, lights = same_light, ["--lights", "out/lights.gltf"]
+    for scene in ["up.gltf", "slanted.gltf"]:
+        whole = light_of(scene, "--env", "sky.exr")
+        assert light_of(scene, "--env", "out/remainder.exr")[0] < 0.8 * whole[0], "without the lights much is missing"
+        same(whole, light_of(scene, "--env", "out/remainder.exr", *lights))
+    # Turned and brightened, both are.
+    words = ["--rotate-y-deg", "80", "--exposure", "1"]
+    turned = light_of("slanted.gltf", "--env", "sky.exr", *words)
+    assert abs(turned[0] / whole[0] - 2) > 0.2
+    same(turned, light_of("slanted.gltf", "--env", "out/remainder.exr", *lights, *words))
+    # Taken out of the turned environment, in another unit, or of a cube, whose remainder has been turned already.
+    run("lights", "sky.exr", "-o", "out", "--no-preview", "--rotate-y-deg", "80", "--lux-per-unit", "179", folder=folder)
+    same(whole, light_of("slanted.gltf", "--env", "out/remainder.exr", *lights))
+    same(turned, light_of("slanted.gltf", "--env", "out/remainder.exr", *lights, *words))
+    run("bake", "sky.exr", "-o", "cube", "--size", "128", "--levels", "1", "--irradiance-size", "4", "--brdf-size", "16", "--no-preview", "--encoding", "rgba32f",
+        folder=folder)
+    run("lights", "cube/specular.ktx2", "-o", "out", "--no-preview", "--rotate-y-deg", "80", folder=folder)
+    same(turned, light_of("slanted.gltf", "--env", "out/remainder.exr", *lights, "--exposure", "1"))
+    # In a scene of the user's own the lights keep their unit.
+    scene, taken = make_square(math.radians(50)), json.loads((folder / "out/lights.gltf").read_text())
+    scene["extensions"], scene["extensionsUsed"] = taken["extensions"], taken["extensionsUsed"]
+    scene["nodes"] += taken["nodes"]
+    scene["scenes"] = [{"nodes": list(range(len(scene["nodes"])))}]
+    (folder / "lit.gltf").write_text(json.dumps(scene))
+    same(light_of("slanted.gltf", "--env", "out/remainder.exr", *lights), light_of("lit.gltf", "--env", "out/remainder.exr"))
+    # Engines' shadings draw them too; a file that is none is an error.
+    same(light_of("slanted.gltf", "--env", "out/remainder.exr", *lights), light_of("slanted.gltf", "--env", "out/remainder.exr", *lights, "--shading", "split-sum"))
+    assert "is not a glTF file" in run("render", "up.gltf", "--lights", "out/lights.json", "-o", "no.exr", folder=folder, code=1).stderr
+    assert "no light" in run("render", "up.gltf", "--lights", "up.gltf", "-o", "p.exr", *TINY, folder=folder).stderr
+
+
+def test_lights_of_an_openexr_latlong_are_read_where_they_were(folder):
+    run("sky", "-o", "sky.exr", "--exr", "float", "--height", "64", "--sun-elevation-deg", "40", "--sun-azimuth-deg", "30", folder=folder)
+    run("convert", "sky.exr", "stated.exr", "--to", "latlong/openexr", folder=folder)
+    said = run("lights", "stated.exr", "-o", "out", "--no-preview", folder=folder)
+    assert "warning" not in said.stderr
+    sun, = lights_of(folder / "out")["lights"]
+    assert abs(sun["azimuth_deg"] - 30) < 1 and abs(sun["elevation_deg"] - 40) < 1
+    # The remainder says that it is OpenEXR's too: the glow that is left is where the sun was.
+    (folder / "slanted.gltf").write_text(json.dumps(make_square(math.radians(50))))
+    same_light(matte_light("slanted.gltf", "--env", "stated.exr", folder=folder),
+               matte_light("slanted.gltf", "--env", "out/remainder.exr", "--lights", "out/lights.gltf", folder=folder))
+    assert matte_light("slanted.gltf", "--env", "out/remainder.exr", folder=folder) != matte_light(
+        "slanted.gltf", "--env", "out/remainder.exr", "--latlong", "default", folder=folder)
+    said = run("lights", "stated.exr", "-o", "out", "--no-preview", "--format", "hdr", folder=folder)
+    assert "read it with --latlong openexr" in said.stderr
+
+
 def test_lights_without_a_light(folder):
     run("sky", "-o", "grey.hdr", "--no-sun-disc", "--height", "64", folder=folder)
     result = run("lights", "grey.hdr", "-o", "out", folder=folder)
@@ -1137,6 +1208,22 @@ def make_glb():
     text += b" " * (-len(text) % 4)
     chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(buffer), 0x004E4942) + buffer
     return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
+def make_square(tilt):
+    """A glTF document of a matte square of side 20 about the origin that looks up, tilted about X towards +Z by `tilt` radians. Its albedo is 0.8."""
+    corners = [(-10, 0, 10), (10, 0, 10), (10, 0, -10), (-10, 0, -10)]
+    buffer = b"".join(struct.pack("<3f", *c) for c in corners) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
+    return {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0, "rotation": [math.sin(tilt / 2), 0, 0, math.cos(tilt / 2)]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.8, 0.8, 1]}, "extras": {"lambert": True}}],
+        "buffers": [{"byteLength": len(buffer), "uri": "data:application/octet-stream;base64," + base64.b64encode(buffer).decode()}],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-10, 0, -10], "max": [10, 0, 10]},
+                      {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
+    }
 
 
 def test_pictures_for_a_screen_may_be_jpeg(folder):

@@ -164,6 +164,21 @@ TEST_CASE("render: a directional light and a point light on a matte floor") {
     CHECK(r.radiance.at(0, 0)[0] == doctest::Approx(a * (2 * std::sqrt(0.5) + 3 / 4.0)).epsilon(1e-4));
 }
 
+TEST_CASE("render: lights of the environment light a scene as its own do") {
+    Scene scene = one(floor_mesh(10, 0), lambert_material(0.5f));
+    PunctualLight sun;
+    sun.direction = normalize(Vec3f{0, -1, -1});
+    sun.intensity = {2, 1, 0};
+    RenderOptions o = view(2, 4), with_lights = o;
+    o.camera = with_lights.camera = look_at({0, 3, 0.01f}, {0, 0, 0}, 0.1f);
+    with_lights.environment_lights = {sun};
+    const RenderResult apart = render(trace(scene), ImageF(16, 8, 3), with_lights);
+    CHECK(apart.radiance.at(0, 0)[0] == doctest::Approx(0.5 / k_pi * 2 * std::sqrt(0.5)).epsilon(1e-4));
+    scene.lights = {sun};
+    const RenderResult own = render(trace(scene), ImageF(16, 8, 3), o);
+    CHECK(std::ranges::equal(apart.radiance.pixels(), own.radiance.pixels()));
+}
+
 TEST_CASE("render: masked and blended surfaces let light through, in the picture and in shadows") {
     const auto picture = [](Material::AlphaMode mode, float opacity) {
         // A black veil between the camera and a white floor that an even sky lights through the veil.

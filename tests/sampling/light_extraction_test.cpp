@@ -537,12 +537,14 @@ TEST_CASE("gltf_lights: colour times intensity is the irradiance in lux, and no 
     add_disc(image, at_angles(70, 40), 4, {800, 400, 200});
     const LightExtraction found = extract(image);
     REQUIRE(found.lights.size() == 1);
-    const auto json = nlohmann::json::parse(gltf_lights(found.lights, 179, "test"));
+    const auto json = nlohmann::json::parse(gltf_lights(found.lights, 179, 30, "test"));
     CHECK(json["asset"]["version"] == "2.0");
     CHECK(json["asset"]["extras"]["lux_per_unit"] == 179);
+    CHECK(json["asset"]["extras"]["rotate_y_deg"] == 30);
     CHECK(json["extensionsUsed"][0] == "KHR_lights_punctual");
     const auto& light = json["extensions"]["KHR_lights_punctual"]["lights"][0];
     CHECK(light["type"] == "directional");
+    CHECK(light["extras"]["lux_per_unit"] == 179);
     const Vec3d& e = found.lights[0].irradiance;
     CHECK(light["intensity"].get<double>() * light["color"][0].get<double>() == doctest::Approx(179 * e.x));
     CHECK(light["intensity"].get<double>() * light["color"][2].get<double>() == doctest::Approx(179 * e.z));
@@ -551,7 +553,7 @@ TEST_CASE("gltf_lights: colour times intensity is the irradiance in lux, and no 
     const auto q = node["rotation"].get<std::array<double, 4>>();
     CHECK(q == turn_from_minus_z(-found.lights[0].direction));
 
-    const auto empty = nlohmann::json::parse(gltf_lights({}, 1, "test"));
+    const auto empty = nlohmann::json::parse(gltf_lights({}, 1, 0, "test"));
     CHECK_FALSE(empty.contains("nodes"));
     CHECK_FALSE(empty.contains("extensionsUsed"));
     CHECK(empty["scenes"].size() == 1);

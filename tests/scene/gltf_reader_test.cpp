@@ -5,6 +5,7 @@
 #include <meshoptimizer.h>
 
 #include <cmath>
+#include <fstream>
 
 using namespace domelight;
 using namespace domelight::test;
@@ -301,6 +302,79 @@ TEST_CASE("gltf: cameras and lights stand where their nodes are, without scale")
     CHECK(scene->lights[1].range == 7);
     CHECK(scene->lights[1].cos_inner == doctest::Approx(std::cos(0.1)));
     CHECK(scene->lights[1].cos_outer == doctest::Approx(std::cos(0.2)));
+}
+
+namespace {
+
+/// A triangle and a directional light of 100 lux that shines along -z.
+GltfSample lit_triangle() {
+    GltfSample sample;
+    sample.show(sample.triangle());
+    sample.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "directional"}, {"intensity", 100}}};
+    sample.add("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    return sample;
+}
+
+float intensity_in(GltfSample& sample, const SceneOptions& options = {}) {
+    const auto scene = sample.load(options);
+    REQUIRE_MESSAGE(scene, error_of(scene));
+    REQUIRE(scene->lights.size() == 1);
+    return scene->lights[0].intensity.y;
+}
+
+}  // namespace
+
+TEST_CASE("gltf: the file says what one unit of irradiance is in lux, else the options, else it is 1 W/m^2") {
+    GltfSample sample = lit_triangle();
+    SceneOptions options;
+    options.lux_per_unit = 50;
+    CHECK(intensity_in(sample) == doctest::Approx(100 / 683.0));
+    CHECK(intensity_in(sample, options) == doctest::Approx(2));
+    sample.json["asset"]["extras"]["lux_per_unit"] = 10;
+    CHECK(intensity_in(sample, options) == doctest::Approx(10));
+    Json& light = sample.json["extensions"]["KHR_lights_punctual"]["lights"][0];
+    light["extras"]["lux_per_unit"] = 1;
+    CHECK(intensity_in(sample, options) == doctest::Approx(100));
+    // Extras may hold anything: what is no scale is as good as missing.
+    for (const Json& other : {Json("bright"), Json(0), Json(-1), Json(nullptr), Json::array({1})}) {
+        light["extras"]["lux_per_unit"] = other;
+        CHECK(intensity_in(sample, options) == doctest::Approx(10));
+    }
+    light["extras"] = "none";
+    CHECK(intensity_in(sample, options) == doctest::Approx(10));
+}
+
+TEST_CASE("load_environment_lights: lights of a file with or without triangles, and how far their environment was turned") {
+    const TemporaryFolder folder;
+    const auto load = [&](GltfSample& sample, const char* name = "lights.gltf") {
+        std::ofstream(folder / name) << sample.text();
+        return load_environment_lights(folder / name);
+    };
+    GltfSample sample = lit_triangle();
+    sample.json["asset"]["extras"] = {{"lux_per_unit", 1}, {"rotate_y_deg", 30}};
+    for (const bool triangles : {true, false}) {
+        INFO("with triangles: " << triangles);
+        if (!triangles) {
+            for (const char* part : {"meshes", "accessors", "bufferViews", "buffers"}) sample.json.erase(part);
+            sample.data.clear();
+            sample.json["nodes"].erase(sample.json["nodes"].begin());
+        }
+        const auto found = load(sample);
+        REQUIRE(found);
+        REQUIRE(found->lights.size() == 1);
+        CHECK(found->lights[0].intensity.x == 100);
+        CHECK(near(found->lights[0].direction, {0, 0, -1}));
+        CHECK(found->rotate_y_deg == 30);
+        CHECK(found->warnings.empty());
+    }
+    GltfSample none;
+    const auto empty = load(none);
+    REQUIRE(empty);
+    CHECK(empty->lights.empty());
+    std::ofstream(folder / "lights.json") << "{}";
+    CHECK(contains(load_environment_lights(folder / "lights.json").error().format(), "is not a glTF file"));
+    std::ofstream(folder / "broken.gltf") << "{";
+    CHECK(contains(load_environment_lights(folder / "broken.gltf").error().format(), "broken.gltf"));
 }
 
 TEST_CASE("gltf: Draco gives the triangles that were packed") {

@@ -85,6 +85,8 @@ struct RenderOptions {
     Vec3f background_colour;                     ///< linear radiance
     float background_roughness = 0.35f;          ///< blurred: of the level that shows
     const LightMaps* background_maps = nullptr;  ///< blurred: must be set, and outlive the call
+    /// Lights that were taken out of the environment (load_environment_lights): they light the scene beside its own.
+    std::vector<PunctualLight> environment_lights;
     std::uint64_t seed = 0;
     int threads = 0;
     Progress progress;

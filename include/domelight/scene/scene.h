@@ -169,8 +169,11 @@ struct Scene {
 
 struct SceneOptions {
     std::int64_t max_bytes = std::int64_t(4) << 30;  ///< refuses a scene that would need more memory than this
-    float lumens_per_watt = 683;  ///< KHR_lights_punctual speaks of lux and candela: intensities are divided by this
-    int threads = 0;              ///< for decoding textures; 0: all
+    /// KHR_lights_punctual speaks of lux and candela: intensities are divided by this, unless the file says what one
+    /// unit of its environment's irradiance is in lux (extras.lux_per_unit of the light or of the asset, as
+    /// `domelight lights` writes it).
+    float lux_per_unit = 683;
+    int threads = 0;  ///< for decoding textures; 0: all
 };
 
 /// Reads glTF 2.0 (.gltf, .glb), .obj or .ply. Errors name the file and what is wrong in it: broken JSON, missing
@@ -178,6 +181,15 @@ struct SceneOptions {
 /// that are required and unknown, no triangles. Mended with a warning: NaN vertices and degenerate triangles (left
 /// out), normals of no length (recomputed).
 Result<Scene> load_scene(const std::filesystem::path& file, const SceneOptions& options = {});
+
+/// Lights that were taken out of an environment: what `domelight lights` writes as lights.gltf.
+struct EnvironmentLights {
+    std::vector<PunctualLight> lights;  ///< in the environment's unit, in the world that it had when they were taken out
+    double rotate_y_deg = 0;            ///< how far the environment was turned about +Y then
+    std::vector<std::string> warnings;
+};
+/// Reads the lights of a glTF 2.0 file, with or without triangles. Errors: as load_scene, and a file that is not glTF.
+Result<EnvironmentLights> load_environment_lights(const std::filesystem::path& file, const SceneOptions& options = {});
 
 /// Scenes for when there is none: "spheres" (roughness from left to right, metal above dielectric), "ball" (a material
 /// ball on a plinth), "furnace" (one white sphere). Errors: another name.

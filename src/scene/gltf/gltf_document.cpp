@@ -226,14 +226,22 @@ void DocumentParser::read_cameras() {
 }
 
 void DocumentParser::read_lights() {
-    const float watts = 1 / options_.lumens_per_watt;
+    const JsonFields asset = root_.object("asset");
+    // Extras may hold anything: what is no scale of intensities counts as missing.
+    const auto stated = [](const JsonFields& fields) {
+        const std::optional<float> lux = fields.number_in("extras", "lux_per_unit");
+        return lux && *lux >= 1e-20f && *lux <= 1e20f ? lux : std::nullopt;
+    };
+    const float lux_per_unit = stated(asset).value_or(options_.lux_per_unit);
+    document_.rotate_y_deg = asset.number_in("extras", "rotate_y_deg").value_or(0);
     for (JsonFields& fields : root_.extension("KHR_lights_punctual").array("lights")) {
         PunctualLight light;
         light.name = fields.text("name");
         const std::vector<float> c = fields.numbers("color", 3);
         const Vec3f colour =
             c.empty() ? Vec3f{1, 1, 1} : Vec3f{std::max(c[0], 0.0f), std::max(c[1], 0.0f), std::max(c[2], 0.0f)};
-        light.intensity = colour * (fields.number("intensity", 1, 0, 1e15f) * watts);
+        light.intensity =
+            colour * (fields.number("intensity", 1, 0, 1e15f) / stated(fields).value_or(lux_per_unit));
         if (const float range = fields.number("range", 0); range > 0) light.range = range;
         const std::string type = fields.require("type").text("type");
         if (type == "directional") {

@@ -124,6 +124,7 @@ struct GltfDocument {
     std::vector<Material> materials;  ///< their textures name `images`
     std::vector<Camera> cameras;      ///< without a place
     std::vector<PunctualLight> lights;
+    float rotate_y_deg = 0;  ///< asset.extras: how far the environment was turned whose lights these are
     std::vector<int> roots;  ///< of the scene to show
     std::vector<std::string> warnings;
 };

@@ -22,6 +22,7 @@ Json light_json(const ExtractedLight& light, int number, double lux_per_unit) {
             {"intensity", lux_per_unit * largest},
             {"extras",
              {{"irradiance", array(light.irradiance)},
+              {"lux_per_unit", lux_per_unit},
               {"angular_diameter_deg", light.angular_diameter_deg},
               {"resolved", light.resolved},
               {"share", light.share}}}};
@@ -38,8 +39,12 @@ std::array<double, 4> turn_from_minus_z(const Vec3d& d) {
     return {d.y * scale, -d.x * scale, 0, w * scale};
 }
 
-std::string gltf_lights(std::span<const ExtractedLight> lights, double lux_per_unit, const std::string& generator) {
-    Json json{{"asset", {{"version", "2.0"}, {"generator", generator}, {"extras", {{"lux_per_unit", lux_per_unit}}}}}};
+std::string gltf_lights(std::span<const ExtractedLight> lights, double lux_per_unit, double rotate_y_deg,
+                        const std::string& generator) {
+    Json json{{"asset",
+               {{"version", "2.0"},
+                {"generator", generator},
+                {"extras", {{"lux_per_unit", lux_per_unit}, {"rotate_y_deg", rotate_y_deg}}}}}};
     Json scene{{"name", "lights"}}, nodes = Json::array(), definitions = Json::array(), children = Json::array();
     for (std::size_t i = 0; i < lights.size(); ++i) {
         definitions.push_back(light_json(lights[i], int(i) + 1, lux_per_unit));

@@ -20,8 +20,11 @@ std::array<double, 4> turn_from_minus_z(const Vec3d& direction);
 /// irradiance over that channel.
 ///
 /// lux_per_unit  lux for an irradiance of 1 in the environment's unit: 1 where that is photometric (cd / m^2) or
-/// relative; lm / W where it is
-///               in watts. It is written into the document's extras, as are diameter and irradiance of each light
-std::string gltf_lights(std::span<const ExtractedLight> lights, double lux_per_unit, const std::string& generator);
+///               relative; lm / W where it is in watts. It is written into the extras of the asset and of each light,
+///               beside that light's diameter and irradiance, so that a reader finds the environment's unit again
+/// rotate_y_deg  how far the environment was turned about +Y when the lights were found; it is written into the extras
+///               of the asset, so that a reader that turns the environment by another angle can turn the lights too
+std::string gltf_lights(std::span<const ExtractedLight> lights, double lux_per_unit, double rotate_y_deg,
+                        const std::string& generator);
 
 }  // namespace domelight

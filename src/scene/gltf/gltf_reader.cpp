@@ -268,6 +268,14 @@ Result<Scene> SceneBuilder::build() {
     return std::move(scene_);
 }
 
+Result<Scene> build_scene(GltfDocument& document, const GltfChunks& chunks, const std::filesystem::path& folder,
+                          const SceneOptions& options) {
+    ByteBudget budget(options.max_bytes);
+    auto data = GltfData::open(document, chunks.binary, folder, budget);
+    if (!data) return data.error();
+    return SceneBuilder(document, *data, budget, options).build();
+}
+
 }  // namespace
 
 Result<Scene> read_gltf(std::shared_ptr<const FileBytes> bytes, const std::filesystem::path& folder,
@@ -276,10 +284,22 @@ Result<Scene> read_gltf(std::shared_ptr<const FileBytes> bytes, const std::files
     if (!chunks) return chunks.error();
     auto document = parse_gltf_document(chunks->json, options);
     if (!document) return document.error();
-    ByteBudget budget(options.max_bytes);
-    auto data = GltfData::open(*document, chunks->binary, folder, budget);
-    if (!data) return data.error();
-    return SceneBuilder(*document, *data, budget, options).build();
+    return build_scene(*document, *chunks, folder, options);
+}
+
+Result<EnvironmentLights> read_gltf_lights(std::shared_ptr<const FileBytes> bytes, const std::filesystem::path& folder,
+                                           const SceneOptions& options) {
+    const auto chunks = split_gltf(bytes->bytes());
+    if (!chunks) return chunks.error();
+    auto document = parse_gltf_document(chunks->json, options);
+    if (!document) return document.error();
+    // Only lights are wanted: meshes, and the data that they are made of, are not read.
+    for (GltfNode& node : document->nodes) node.mesh = -1;
+    document->materials.clear();
+    document->buffers.clear();
+    auto scene = build_scene(*document, *chunks, folder, options);
+    if (!scene) return scene.error();
+    return EnvironmentLights{std::move(scene->lights), document->rotate_y_deg, std::move(scene->warnings)};
 }
 
 }  // namespace domelight

@@ -41,6 +41,7 @@ const babylon = {
 /// tolerance, furnace of the balls' means under the sky; of white in white light
 /// plastics           false where the engine's plastics are nobody else's
 /// theirs             a bake by the engine's own tool, in DOMELIGHT_DATA, of a picture that we bake too: it must be turned and as bright alike
+/// lights             whether its page loads the lights that `domelight lights` takes out of an environment
 /// axesOnly, slow     only its directions are tested; only with --all
 export const entries = [
     {
@@ -55,7 +56,7 @@ export const entries = [
         name: 'three', page: 'three', engine: 'three', picks: names => find(names, '.pmrem.ktx2'),
         files: (url, names) => ({pmrem: url + find(names, '.pmrem.ktx2')}),
         chain: names => find(names, '.pmrem.ktx2'), repaint: repaintUastcHdr,
-        level: quadratic,
+        level: quadratic, lights: true,
         // It widens roughness by the normal's change across the pixel, against sparkling.
         roughness: (roughness, step) => Math.min(1, Math.max(roughness, 0.045) + step),
         // What single scattering loses comes back as diffuse light, which is the last level.

@@ -174,6 +174,31 @@ async function testBrightness(entry, page) {
     }
 }
 
+/// Takes the sun out of a sky: its lights and what is left of the sky must light matte balls as the whole sky does.
+async function testLights(entry, page) {
+    const sky = path.join(work, 'sunny.hdr'), folder = path.join(work, 'lights'), dimmed = ['--exposure', -8];
+    domelight('sky', '--sun-elevation-deg', 40, '--sun-azimuth-deg', 60, '--height', 256, '-o', sky, '--quiet');
+    domelight('lights', sky, ...dimmed, '-o', folder, '--no-preview', '--quiet');
+    const {lights} = JSON.parse(fs.readFileSync(path.join(folder, 'lights.json')));
+    const remainder = bake('lights/remainder.hdr', entry.engine, entry.options);
+    await call(page, 'load', entry.files(`/files/${remainder.folder}/`, remainder.names));
+    const loaded = await call(page, 'loadLights', '/files/lights/lights.gltf');
+    const off = Math.max(...lights.flatMap((light, k) => light.irradiance.map((e, c) => Math.abs(loaded[k].color[c] * loaded[k].intensity / e - 1))));
+    claim(`${entry.name}: the intensity of a light is its irradiance in the environment's unit`,
+          loaded.length === lights.length && off < 1e-4 ? [] : [`${JSON.stringify(loaded)} for ${JSON.stringify(lights.map(l => l.irradiance))}`],
+          `off by ${percent(off)}`);
+    const picture = await shot(page, ballsScene), file = path.join(work, 'sunny-reference.hdr');
+    keep(`${entry.name}-lights`, picture);
+    domelight('render', path.join(work, ballsScene.file), '--env', sky, ...dimmed, '--occlusion', 'off', '--background', 'transparent', '--width', ballsScene.width,
+              '--height', ballsScene.height, '--camera-position', ballsScene.eye.join(), '--fov-deg', ballsScene.fovDeg, '--spp', 64, '--quiet', '-o', file);
+    const whole = readHdr(file), rgba = new Float32Array(4 * whole.width * whole.height);
+    for (let k = 0; k < whole.width * whole.height; ++k) rgba.set(whole.rgb.subarray(3 * k, 3 * k + 3), 4 * k);
+    const seen = ballMeans(ballsScene, picture, 0.9).lambert, expected = ballMeans(ballsScene, {...whole, rgba}, 0.9).lambert;
+    const error = Math.max(...seen.map((v, c) => Math.abs(v / expected[c] - 1)));
+    claim(`${entry.name}: lights and remainder light a matte ball as the whole sky does within ${percent(entry.tolerance)}`,
+          error <= entry.tolerance ? [] : [`it is ${seen.map(v => v.toFixed(4))} and not ${expected.map(v => v.toFixed(4))}`], `off by ${percent(error)}`);
+}
+
 /// The engine's own tool baked a photograph, and so do we: both must light the mirror ball alike.
 async function testTheirs(entry, page) {
     const data = process.env.DOMELIGHT_DATA && path.join(process.env.DOMELIGHT_DATA, 'reference/symmetrical_garden');
@@ -217,6 +242,7 @@ async function testEngine(entry, browser, server, log, axesImage) {
     await lit('sky.hdr');
     await testBrightness(entry, page);
     if (entry.theirs) await testTheirs(entry, page);
+    if (entry.lights) await testLights(entry, page);
     await page.close();
 }
 

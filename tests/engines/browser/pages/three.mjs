@@ -33,6 +33,17 @@ async function loadLatlong(url) {
     // end
 }
 
+// Lights beside the environment that they were taken out of. Resolves to their names, colours and intensities as three.js has them.
+export async function loadLights(url) {
+    // docs/engines/three.md, the lights
+    const lights = (await new GLTFLoader().loadAsync(url)).scene;
+    scene.add(lights);
+    // end
+    const found = [];
+    lights.traverse(light => light.isDirectionalLight && found.push({color: light.color.toArray(), intensity: light.intensity}));
+    return found;
+}
+
 const models = new Map();
 
 export async function draw({model, eye, target, fovDeg, width, height}) {
