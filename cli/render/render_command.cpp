@@ -90,12 +90,15 @@ void declare(Arguments& a, RenderWords& w) {
 }
 
 void print_result(const RenderWords& w, const Scene& scene, const RenderResult& r, const RenderOptions& o, double ev) {
+    const std::vector<std::string> lost = non_finite_warning(r.non_finite_samples);
+    print_warnings(lost, w.common, w.scene_name());
     if (w.common.json) {
         Json json{
             {"version", version()},      {"files", w.outputs},   {"width", o.width},
             {"height", o.height},        {"shading", w.shading}, {"triangles", scene.triangle_count()},
             {"samples", r.sample_count}, {"seconds", r.seconds}, {"ev", ev}};
         if (w.reference()) json["noise"] = r.noise, json["rays"] = r.rays;
+        json["non_finite_samples"] = r.non_finite_samples;
         json["warnings"] = scene.warnings;
         fmt::print("{}\n", json.dump(2));
     } else if (!w.common.quiet) {

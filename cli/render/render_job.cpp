@@ -2,6 +2,8 @@
 
 #include "cli/render/render_outputs.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -21,6 +23,12 @@ PunctualLight turned_light(PunctualLight light, const Mat3& turn) {
     light.direction = Vec3f(turn * Vec3d(light.direction));
     light.position = Vec3f(turn * Vec3d(light.position));
     return light;
+}
+
+std::vector<std::string> non_finite_warning(std::int64_t samples) {
+    if (samples == 0) return {};
+    return {fmt::format("{} sample{} infinite or not a number, and count as black", samples,
+                        samples == 1 ? " was" : "s were")};
 }
 
 RenderOptions tracing_options(const RenderWords& w, RenderOptions o) {

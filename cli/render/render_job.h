@@ -20,6 +20,9 @@ Result<RenderResult> draw(const RenderWords& words, const RayScene& scene, const
 /// A light of the environment after the environment has been turned about the origin.
 PunctualLight turned_light(PunctualLight light, const Mat3& turn);
 
+/// A warning where samples were lost because their radiance was not finite, and else nothing.
+std::vector<std::string> non_finite_warning(std::int64_t samples);
+
 /// A picture as it is written: with the shadow, and the stops for a display.
 struct FinishedPicture {
     RenderResult result;

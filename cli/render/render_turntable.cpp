@@ -134,17 +134,20 @@ std::string existing(const Turntable& turntable) {
 
 struct Tally {
     int drawn = 0, kept = 0;
+    std::int64_t non_finite_samples = 0;
     double seconds = 0;
 };
 
 void print_turntable(const RenderWords& w, const RenderOptions& o, const Turntable& turntable, const Tally& tally,
                      const std::vector<std::string>& animations, double ev) {
+    print_warnings(non_finite_warning(tally.non_finite_samples), w.common, w.scene_name());
     if (w.common.json) {
         Json json{{"version", version()}, {"width", o.width}, {"height", o.height},
                                     {"shading", w.shading}, {"ev", ev},         {"turn", w.turn}};
         auto& frames = json["frames"] = Json::array();
         for (int i = 1; i <= turntable.frames(); ++i) frames.push_back(turntable.files(i));
         json["drawn"] = tally.drawn, json["kept"] = tally.kept;
+        json["non_finite_samples"] = tally.non_finite_samples;
         json["animations"] = animations, json["fps"] = w.fps, json["seconds"] = tally.seconds;
         fmt::print("{}\n", json.dump(2));
     } else if (!w.common.quiet) {
@@ -201,6 +204,7 @@ int run_turntable(const RenderWords& w, const RayScene& scene, const Environment
             if (auto ok = write_pictures(turntable.files(i), *picture, scene.scene(), w); !ok)
                 return print_error(ok.error());
             ++tally.drawn;
+            tally.non_finite_samples += picture->result.non_finite_samples;
             if (Interruption::wanted()) return stop();
         }
     }

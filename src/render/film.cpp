@@ -75,6 +75,7 @@ RenderResult develop(const Film& film, int width, int height) {
             *out.samples.at(x, y) = float(s.count);
             noise += s.count > 1 ? s.noise() * s.noise() : 0;
             out.sample_count = std::max(out.sample_count, s.count);
+            out.non_finite_samples += s.non_finite;
         }
     out.noise = std::sqrt(noise / (double(width) * height));
     return out;

@@ -18,7 +18,15 @@ struct PixelSums {
     float covered = 0;
     float object = 0;
     int count = 0;
+    int non_finite = 0;  ///< of `count`: samples that added nothing, because their radiance was not finite
 
+    /// Whether a sample of this radiance may be added. If it is not finite, it is counted as black instead.
+    bool accepts(const Vec3d& sample) {
+        if (std::isfinite(sample.x) && std::isfinite(sample.y) && std::isfinite(sample.z)) return true;
+        ++count;
+        ++non_finite;
+        return false;
+    }
     /// Standard error of L / (1 + L), by its slope.
     double noise() const;
     Vec3d variance_of_mean() const;

@@ -388,10 +388,7 @@ class Tracer final : public TileTracer {
 
     static void store(const Path& p, PixelSums& s) {
         const Vec3d r(p.radiance);
-        if (!(std::isfinite(r.x) && std::isfinite(r.y) && std::isfinite(r.z))) {
-            ++s.count;
-            return;
-        }
+        if (!s.accepts(r)) return;
         s.radiance = s.radiance + r;
         s.squares = s.squares + Vec3d{r.x * r.x, r.y * r.y, r.z * r.z};
         s.direct = s.direct + p.direct;

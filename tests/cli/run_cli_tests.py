@@ -1226,6 +1226,22 @@ def make_square(tilt):
     }
 
 
+def test_render_tells_of_samples_that_are_not_finite(folder):
+    scene = make_square(0)
+    scene["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 1e15, "color": [1e30, 1, 1]}]}}
+    scene["nodes"].append({"rotation": [-math.sqrt(0.5), 0, 0, math.sqrt(0.5)], "extensions": {"KHR_lights_punctual": {"light": 0}}})
+    scene["scenes"] = [{"nodes": [0, 1]}]
+    (folder / "glare.gltf").write_text(json.dumps(scene))
+    for words in [[], ["--shading", "split-sum"], ["--frames", "2"]]:
+        result = run("render", "glare.gltf", "-o", "p.exr", *TINY, "--camera-position", "0,1,0.001", "--json", *words, folder=folder)
+        samples = 16 * 12 * 4 * (2 if "--frames" in words else 1)
+        assert json.loads(result.stdout)["non_finite_samples"] == samples
+        assert f"{samples} samples were infinite or not a number" in result.stderr
+    (folder / "square.gltf").write_text(json.dumps(make_square(0)))
+    result = run("render", "square.gltf", "-o", "p.exr", *TINY, "--json", folder=folder)
+    assert json.loads(result.stdout)["non_finite_samples"] == 0 and "infinite" not in result.stderr
+
+
 def test_pictures_for_a_screen_may_be_jpeg(folder):
     run("render", "ball", "-o", "r.jpg,r.png", *TINY, "--frames", "2", folder=folder)
     run("sky", "--axes", "-o", "axes.jpeg", "--height", "32", folder=folder)

@@ -179,6 +179,22 @@ TEST_CASE("render: lights of the environment light a scene as its own do") {
     CHECK(std::ranges::equal(apart.radiance.pixels(), own.radiance.pixels()));
 }
 
+TEST_CASE("render: samples that are not finite are counted, and count as black") {
+    Scene scene = one(floor_mesh(10, 0), lambert_material(0.5f));
+    RenderOptions o = view(4, 8);
+    o.camera = look_at({0, 3, 0.01f}, {0, 0, 0}, 0.1f);
+    const ImageF sky(16, 8, 3, 1.f);
+    CHECK(render(trace(scene), sky, o).non_finite_samples == 0);
+    for (const float wrong : {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+        Scene bad = scene;
+        bad.materials[0].emission = {wrong, 0, 0};
+        const RenderResult r = render(trace(bad), sky, o);
+        // NaN may vanish in a comparison on its way; infinity does not.
+        if (std::isinf(wrong)) CHECK(r.non_finite_samples == 4 * 4 * 8);
+        for (const float p : r.radiance.pixels()) CHECK(std::isfinite(p));
+    }
+}
+
 TEST_CASE("render: masked and blended surfaces let light through, in the picture and in shadows") {
     const auto picture = [](Material::AlphaMode mode, float opacity) {
         // A black veil between the camera and a white floor that an even sky lights through the veil.

@@ -115,6 +115,8 @@ struct RenderResult {
     double seconds = 0;  ///< by the clock
     std::int64_t rays = 0;
     int sample_count = 0;  ///< the most of any pixel
+    /// Samples whose radiance is infinite or not a number. They count as black: their pixels are too dark.
+    std::int64_t non_finite_samples = 0;
 };
 
 /// The sampler's options that suit the strategy: a bilinear density, with MIS compensation where the BRDF covers what

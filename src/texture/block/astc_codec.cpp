@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstdlib>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <vector>
 
 namespace domelight {
@@ -51,8 +51,8 @@ Context make_context(const Purpose& purpose) {
                             purpose.encodes ? 0 : ASTCENC_FLG_DECOMPRESS_ONLY, &config);
     astcenc_context* context = nullptr;
     if (error == ASTCENC_SUCCESS) error = astcenc_context_alloc(&config, 1, &context);
-    // The arguments are valid: only memory can be lacking, which nothing in the library survives.
-    if (error != ASTCENC_SUCCESS) std::abort();
+    // The arguments are valid: only memory can be lacking.
+    if (error != ASTCENC_SUCCESS) throw std::bad_alloc();
     return Context(context);
 }
 
