@@ -11,6 +11,9 @@
 #include "render/shapes.h"
 #include "test.h"
 
+#include <algorithm>
+#include <limits>
+
 using namespace domelight;
 using namespace domelight::test;
 
@@ -304,4 +307,83 @@ TEST_CASE("light maps: what bake wrote to a folder lights like what was baked in
     environment = open_environment({folder / "sky.hdr"});
     REQUIRE(bake(*environment, options, folder / "sheen"));
     CHECK(!LightMaps::load(folder / "sheen"));
+}
+
+namespace {
+
+/// A sun from the upper right, a red lamp on the left, a green spot from the viewer's side.
+std::vector<PunctualLight> three_lights() {
+    PunctualLight sun, lamp, spot;
+    sun.direction = normalize(Vec3f{-1, -1, -1});
+    sun.intensity = {2, 2, 2};
+    lamp.kind = PunctualLight::Kind::point;
+    lamp.position = {-3, 0, 2};
+    lamp.intensity = {20, 0, 0};
+    spot.kind = PunctualLight::Kind::spot;
+    spot.position = {0, 0, 4};
+    spot.intensity = {0, 10, 0};
+    return {sun, lamp, spot};
+}
+
+}  // namespace
+
+TEST_CASE("shading: punctual lights light each model under a black sky, as they do without shadows in truth") {
+    const ImageF black(16, 8, 3);
+    const Light light(black);
+    auto phong_maps = LightMaps::bake(black, {}, 0, Lobe::phong_brdf);
+    REQUIRE(phong_maps);
+    Material glossy;
+    glossy.metalness = 0;
+    glossy.roughness = 0.4f;
+    glossy.base_color = {0.5f, 0.5f, 0.5f};
+    Material phong = glossy;
+    phong.phong = true;
+    const struct {
+        ShadingModel model;
+        Material drawn, truth;
+        bool exact;
+    } cases[] = {{ShadingModel::split_sum, lambert_material(0.7f), lambert_material(0.7f), true},
+                 {ShadingModel::split_sum, metal_material(0.3f), metal_material(0.3f), true},
+                 {ShadingModel::split_sum, glossy, glossy, true},
+                 {ShadingModel::stretched, glossy, glossy, true},
+                 {ShadingModel::phong, glossy, phong, true},
+                 {ShadingModel::mirror, glossy, metal_material(0.045f), true},
+                 {ShadingModel::refract, glossy, glossy, false}};
+    for (const auto& c : cases) {
+        INFO(shading_model_name(c.model));
+        const auto lit_by = [&](const Material& material, bool own) {
+            Scene scene;
+            add(scene, sphere_mesh(64), material);
+            if (own) scene.lights = three_lights();
+            auto traced = RayScene::build(std::move(scene));
+            REQUIRE(traced);
+            return std::move(*traced);
+        };
+        ShadingOptions shading;
+        shading.model = c.model;
+        const LightMaps& maps = c.model == ShadingModel::phong ? *phong_maps : *light.maps;
+        auto drawn = render_shaded(lit_by(c.drawn, true), maps, *light.sampler, shading, view());
+        REQUIRE(drawn);
+        CHECK(mean_inside(*drawn) > 1e-3);
+        // Given with the environment instead, they are the same.
+        RenderOptions with_lights = view();
+        with_lights.environment_lights = three_lights();
+        auto given = render_shaded(lit_by(c.drawn, false), maps, *light.sampler, shading, with_lights);
+        REQUIRE(given);
+        CHECK(std::ranges::equal(given->radiance.pixels(), drawn->radiance.pixels()));
+        if (!c.exact) continue;
+        auto truth = render_reference(lit_by(c.truth, true), *light.sampler, view());
+        REQUIRE(truth);
+        for (int channel = 0; channel < 3; ++channel)
+            CHECK(mean_inside(*drawn, channel) == doctest::Approx(mean_inside(*truth, channel)).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("shading: samples that are not finite are counted, and count as black") {
+    const Light light(ImageF(16, 8, 3, 1.f));
+    Material wrong = lambert_material(0.5f);
+    wrong.emission = {std::numeric_limits<float>::infinity(), 0, 0};
+    const RenderResult r = light.shade(sphere(wrong), {});
+    CHECK(r.non_finite_samples > 0);
+    for (const float p : r.radiance.pixels()) CHECK(std::isfinite(p));
 }

@@ -6,6 +6,7 @@
 #include "render/background.h"
 #include "render/camera.h"
 #include "render/film.h"
+#include "render/punctual.h"
 #include "render/shading/shading_models.h"
 
 #include <fmt/core.h>
@@ -28,6 +29,7 @@ class ShadedTracer {
           reflected_(environment, shading.lookup, shading.lookup_size, options.threads),
           shading_(shading),
           options_(options),
+          lights_(all_lights(scene_, options)),
           camera_(options.camera, options.width, options.height) {}
 
     void sample(int x, int y, std::uint32_t index, PixelSums& sums) const {
@@ -36,7 +38,7 @@ class ShadedTracer {
         Ray ray = camera_.through(x, y, sobol_owen(derive_key(key, 0), index));
         Vec3f light, diffuse, specular;
         float rest = 1;  // what the surfaces so far let through
-        bool covered = false;
+        FirstSurface first;
         constexpr int most_layers = 16;
         for (int layer = 0; layer < most_layers && rest > 0; ++layer) {
             const Hit hit = rays_.intersect(ray, true);
@@ -51,19 +53,14 @@ class ShadedTracer {
                 diffuse = diffuse + shaded.diffuse * part;
                 specular = specular + shaded.specular * part;
                 light = light + (shaded.diffuse + shaded.specular + s.emission) * part;
-                if (!covered) {
-                    covered = true;
-                    sums.albedo = sums.albedo + s.albedo;
-                    sums.normal = sums.normal + s.normal;
-                    sums.depth += hit.distance;
-                    sums.covered += 1;
-                    if (sums.count == 0) sums.object = float(hit.instance + 1);
-                }
+                if (!first.covered) first = {true, s.albedo, s.normal, hit.distance, float(hit.instance + 1)};
                 rest -= part;
             }
             pass(ray, hit);
         }
         const Vec3d r(light);
+        if (!sums.accepts(r)) return;
+        if (first.covered) add_surface(first, sums);
         sums.radiance = sums.radiance + r;
         sums.squares = sums.squares + Vec3d{r.x * r.x, r.y * r.y, r.z * r.z};
         sums.diffuse = sums.diffuse + diffuse;
@@ -73,7 +70,29 @@ class ShadedTracer {
     }
 
   private:
+    /// What the layers of geometry hold of a sample.
+    struct FirstSurface {
+        bool covered = false;
+        Vec3f albedo, normal;
+        float depth = 0, object = 0;
+    };
+
+    static void add_surface(const FirstSurface& first, PixelSums& sums) {
+        sums.albedo = sums.albedo + first.albedo;
+        sums.normal = sums.normal + first.normal;
+        sums.depth += first.depth;
+        sums.covered += 1;
+        if (sums.count == 0) sums.object = first.object;
+    }
+
     ShadedLight shade(const SurfacePoint& s, const Hit& hit, const Vec3f& V) const {
+        const float ior = scene_.materials[scene_.meshes[scene_.instances[hit.instance].mesh].material].ior;
+        const ShadedLight maps = shade_by_maps(s, hit, V, ior),
+                          lights = shade_lights(shading_.model, s, V, ior, lights_);
+        return {maps.diffuse + lights.diffuse, maps.specular + lights.specular};
+    }
+
+    ShadedLight shade_by_maps(const SurfacePoint& s, const Hit& hit, const Vec3f& V, float ior) const {
         const float occlusion = shading_.occlusion ? occlusion_at(scene_, hit) : 1;
         switch (shading_.model) {
             case ShadingModel::split_sum:
@@ -87,8 +106,7 @@ class ShadedTracer {
             case ShadingModel::refract:
                 break;
         }
-        return shade_refract(s, V, scene_.materials[scene_.meshes[scene_.instances[hit.instance].mesh].material].ior,
-                             reflected_);
+        return shade_refract(s, V, ior, reflected_);
     }
 
     const RayScene::Impl& rays_;
@@ -98,6 +116,7 @@ class ShadedTracer {
     const EnvironmentMap reflected_;  ///< what mirror and refract read
     const ShadingOptions& shading_;
     const RenderOptions& options_;
+    const std::vector<PunctualLight> lights_;
     CameraRays camera_;
 };
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace domelight {
 
@@ -25,6 +26,12 @@ ShadedLight shade_phong(const SurfacePoint& s, const Vec3f& V, float occlusion, 
                         const ShadingOptions& options);
 ShadedLight shade_mirror(const SurfacePoint& s, const Vec3f& V, const EnvironmentMap& environment);
 ShadedLight shade_refract(const SurfacePoint& s, const Vec3f& V, float ior, const EnvironmentMap& environment);
+
+/// The light of punctual lights, which every model adds to that of its maps: the sum over the lights of f E cos. f is
+/// the material's BRDF; of phong its Phong lobe; of mirror and refract a narrow GGX highlight, with the reflectance 1
+/// and that of `ior`. Occlusion textures have no say: they are about light from all around.
+ShadedLight shade_lights(ShadingModel model, const SurfacePoint& s, const Vec3f& V, float ior,
+                         std::span<const PunctualLight> lights);
 
 // What several of them share:
 

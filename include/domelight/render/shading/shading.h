@@ -96,7 +96,8 @@ Lobe shading_lobe(ShadingModel model);
 
 /// Draws with one of them: the same camera, samples and layers (radiance, opacity, diffuse, specular, albedo, normal,
 /// depth, object) as render_reference. No shadows: compare with RenderOptions::occlusion = false. `environment` is the
-/// background and what mirror and refract read. Errors: maps of another lobe than the model's; "cancelled".
+/// background and what mirror and refract read. The scene's lights and RenderOptions::environment_lights are added with
+/// the material's BRDF; mirror and refract show each as a narrow highlight. Errors: maps of another lobe than the model's; "cancelled".
 Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment,
                                    const ShadingOptions& shading, const RenderOptions& options);
 
