@@ -107,7 +107,7 @@ void print_result(const RenderWords& w, const Scene& scene, const RenderResult& 
         if (w.reference())
             fmt::print(", noise {:.4f} of L/(1+L), {:.2f} million rays a second", r.noise,
                        double(r.rays) / r.seconds * 1e-6);
-        fmt::print("\n");
+        fmt::print("{}\n", exposure_text(w, ev));
     }
 }
 

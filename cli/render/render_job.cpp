@@ -41,7 +41,11 @@ Result<FinishedPicture> finish(const RenderWords& w, const RayScene& scene, cons
                                const RenderOptions& options, RenderResult traced, double ev) {
     FinishedPicture out{std::move(traced), ev};
     const RenderOptions tracing = tracing_options(w, options);
-    if (std::isnan(ev)) out.ev = automatic_ev(out.result, tracing.background != Background::transparent);
+    if (std::isnan(ev)) {
+        ExposureMeter meter;
+        meter.add(out.result, tracing.background != Background::transparent);
+        out.ev = meter.ev();
+    }
     if (!w.shadow_catcher) return out;
     RenderOptions o = options;
     if (o.background == Background::colour) o.background = Background::transparent;

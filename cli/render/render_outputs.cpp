@@ -6,30 +6,66 @@
 
 #include "preview/tonemap.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
 namespace domelight::cli {
 
-double automatic_ev(const RenderResult& r, bool background_shows) {
+void ExposureMeter::add(const RenderResult& r, bool background_shows) {
+    for (int y = 0; y < r.radiance.height(); ++y)
+        for (int x = 0; x < r.radiance.width(); ++x) {
+            const double opacity = *r.opacity.at(x, y), shown = luminance(r.radiance.at(x, y));
+            if (!std::isfinite(shown)) continue;
+            // Behind a part of the pixel nothing shows, so the rest of it shone the brighter.
+            if (opacity > 0)
+                surfaces_.push_back({background_shows ? shown : shown / opacity, opacity});
+            else
+                background_.push_back({shown, 1});
+        }
+    pixels_ += double(r.radiance.width()) * r.radiance.height();
+}
+
+double ExposureMeter::mean(const std::vector<Shown>& shown) {
+    double sum = 0, weights = 0;
+    for (const Shown& s : shown) sum += s.weight * s.luminance, weights += s.weight;
+    return weights > 0 ? sum / weights : 0;
+}
+
+/// The luminance that `part` of what is brighter than `darkest` lies below; 0 where nothing is brighter.
+double ExposureMeter::quantile(std::vector<Shown> shown, double part, double darkest) {
+    std::erase_if(shown, [&](const Shown& s) { return !(s.luminance > darkest); });
+    if (shown.empty()) return 0;
+    std::ranges::sort(shown, {}, &Shown::luminance);
+    double weights = 0, below = 0;
+    for (const Shown& s : shown) weights += s.weight;
+    for (const Shown& s : shown)
+        if ((below += s.weight) >= part * weights) return s.luminance;
+    return shown.back().luminance;
+}
+
+double ExposureMeter::ev() const {
     double covered = 0;
-    for (const float o : r.opacity.pixels()) covered += o;
-    const bool any = covered > 1e-4 * double(r.opacity.pixels().size());
-    const auto each = [&](const auto& use) {
-        for (int y = 0; y < r.radiance.height(); ++y)
-            for (int x = 0; x < r.radiance.width(); ++x) {
-                const double opacity = *r.opacity.at(x, y), weight = any ? opacity : 1;
-                if (weight <= 0) continue;
-                // Behind a part of the pixel nothing shows, so the rest of it shone the brighter.
-                use(luminance(r.radiance.at(x, y)) / (any && !background_shows ? opacity : 1), weight);
-            }
-    };
-    double mean = 0, weights = 0, sum = 0;
-    each([&](double l, double w) { mean += w * l, weights += w; });
-    if (!(mean > 0)) return 0;
-    const double floor = 1e-3 * mean / weights;
-    each([&](double l, double w) { sum += w * std::log(std::max(floor, l)); });
-    return std::log2(0.18 / std::exp(sum / weights));
+    for (const Shown& s : surfaces_) covered += s.weight;
+    const bool any = covered > 1e-4 * pixels_;
+    const std::vector<Shown>& shown = any ? surfaces_ : background_;
+    const double average = mean(shown);
+    if (!(average > 0)) return 0;
+    const double floor = 1e-3 * average;
+    double sum = 0, weights = 0;
+    for (const Shown& s : shown) sum += s.weight * std::log(std::max(floor, s.luminance)), weights += s.weight;
+    double exposure = 0.18 / std::exp(sum / weights);
+    constexpr double most_shown = 4;
+    if (const double bright = quantile(shown, 0.95, floor); bright > 0)
+        exposure = std::min(exposure, most_shown / bright);
+    if (const double behind = quantile(background_, 0.5, 0); any && behind > 0)
+        exposure = std::min(exposure, most_shown / behind);
+    return std::log2(exposure);
+}
+
+std::string exposure_text(const RenderWords& w, double ev) {
+    return std::ranges::any_of(w.outputs, is_screen_picture) ? fmt::format(", exposure {:+.2f} EV", ev) : "";
 }
 
 namespace {

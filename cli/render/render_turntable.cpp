@@ -53,7 +53,8 @@ class Turntable {
         return std::all_of(names.begin(), names.end(), [](const auto& f) { return fs::is_regular_file(f); });
     }
 
-    /// One exposure for all frames, whichever of them exist already: the mean of what four small views ask for.
+    /// One exposure for all frames, whichever of them exist already: the one that suits four small views together, so
+    /// that a view of the dark side does not burn the others.
     Result<double> exposure() const {
         if (!std::isnan(words_.ev)) return words_.ev;
         RenderOptions o = options_;
@@ -62,15 +63,16 @@ class Turntable {
         o.samples = 16;
         o.noise = o.seconds = 0;
         constexpr int views = 4;
-        double sum = 0;
         RenderWords words = words_;
         words.shadow_catcher = false;
+        const bool background_shows = tracing_options(words, o).background != Background::transparent;
+        ExposureMeter meter;
         for (int i = 0; i < views; ++i) {
             const auto picture = draw_at(words, o, double(i) / views, words_.ev);
             if (!picture) return picture.error();
-            sum += picture->ev;
+            meter.add(picture->result, background_shows);
         }
-        return sum / views;
+        return meter.ev();
     }
 
     Result<FinishedPicture> draw(int frame, const RenderOptions& options, double ev) const {
@@ -151,9 +153,9 @@ void print_turntable(const RenderWords& w, const RenderOptions& o, const Turntab
         json["animations"] = animations, json["fps"] = w.fps, json["seconds"] = tally.seconds;
         fmt::print("{}\n", json.dump(2));
     } else if (!w.common.quiet) {
-        fmt::print("{} to {}: {} x {}, {} frames ({} drawn, {} kept), {:.2f} s\n", turntable.files(1).front(),
+        fmt::print("{} to {}: {} x {}, {} frames ({} drawn, {} kept), {:.2f} s{}\n", turntable.files(1).front(),
                    turntable.files(turntable.frames()).front(), o.width, o.height, turntable.frames(), tally.drawn,
-                   tally.kept, tally.seconds);
+                   tally.kept, tally.seconds, exposure_text(w, ev));
         for (const std::string& a : animations)
             fmt::print("{}: {:.2f} s, {:g} frames a second\n", a, turntable.frames() / w.fps, w.fps);
     }

@@ -1226,6 +1226,33 @@ def make_square(tilt):
     }
 
 
+def write_even(file, mantissa, exponent):
+    """An even environment as Radiance HDR: every texel has these RGBE bytes, so the radiance mantissa 2^(exponent - 136)."""
+    file.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n" + bytes([mantissa] * 3 + [exponent]) * 32)
+
+
+def test_render_exposes_a_dark_picture_for_what_is_lit(folder):
+    # A spot that lights a part of a large square in the dark.
+    write_even(folder / "black.hdr", 0, 0)
+    scene = make_square(math.pi / 2)
+    scene["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "spot", "intensity": 683, "spot": {"innerConeAngle": 0.29, "outerConeAngle": 0.3}}]}}
+    scene["nodes"].append({"translation": [0, 0, 5], "extensions": {"KHR_lights_punctual": {"light": 0}}})
+    scene["scenes"] = [{"nodes": [0, 1]}]
+    (folder / "spot.gltf").write_text(json.dumps(scene))
+    words = ["render", "spot.gltf", "--env", "black.hdr", "--width", "64", "--height", "64", "--camera-position", "0,0,8", "--spp", "4"]
+    brightest = 0.8 / math.pi / 25  # E = 1 / 5^2 in the middle of the spot
+    for shading in ["reference", "split-sum"]:
+        said = json.loads(run(*words, "--shading", shading, "-o", "p.png", "--json", folder=folder).stdout)
+        assert 0.18 < brightest * 2 ** said["ev"] <= 4.1, said["ev"]
+    assert f"exposure {said['ev']:+.2f} EV" in run(*words, "--shading", "split-sum", "-o", "p.png", folder=folder).stdout
+    assert "exposure" not in run(*words, "-o", "p.exr", folder=folder).stdout
+    # Of a turn, the views of the dark back do not burn the front: 2^-14 of radiance all around asks for twelve stops.
+    write_even(folder / "dim.hdr", 128, 115)
+    turn = ["--frames", "2", "--width", "32", "--height", "32", "-o", "t.png", "--camera-position", "0,0,8", "--spp", "4"]
+    said = json.loads(run("render", "spot.gltf", "--env", "dim.hdr", *turn, "--json", folder=folder).stdout)
+    assert 0.18 < brightest * 2 ** said["ev"] < 5, said["ev"]
+
+
 def test_render_tells_of_samples_that_are_not_finite(folder):
     scene = make_square(0)
     scene["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 1e15, "color": [1e30, 1, 1]}]}}
