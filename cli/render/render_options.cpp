@@ -197,9 +197,10 @@ Result<RenderOptions> render_options(const RenderWords& w, const Scene& scene) {
     const auto vector = [](const std::vector<double>& v) {
         return v.empty() ? Vec3f{} : Vec3f(Vec3d{v[0], v[1], v[2]});
     };
-    o.camera = own ? *own
+    const float shape = float(o.width) / float(o.height);
+    o.camera = own ? camera_for(*own, shape)
                : w.camera_position.empty()
-                   ? default_camera(scene, float(o.width) / float(o.height))
+                   ? default_camera(scene, shape)
                    : look_at(vector(w.camera_position), vector(w.camera_target), float(w.fov_deg * k_pi / 180));
     o.strategy = w.strategy == "env"    ? LightStrategy::environment
                  : w.strategy == "brdf" ? LightStrategy::brdf

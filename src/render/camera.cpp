@@ -1,6 +1,7 @@
 #include "render/camera.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace domelight {
@@ -31,13 +32,70 @@ Camera look_at(const Vec3f& eye, const Vec3f& target, float fov_y) {
     return camera;
 }
 
+Camera camera_for(Camera camera, float aspect) {
+    // A wider picture has the same height, and shows more at the sides.
+    const float taller = camera.aspect / aspect;
+    if (!(taller > 1)) return camera;
+    camera.fov_y = 2 * std::atan(std::tan(0.5f * camera.fov_y) * taller);
+    camera.half_height *= taller;
+    camera.aspect = aspect;
+    return camera;
+}
+
+namespace {
+
+constexpr int k_slices = 64;
+
+/// What a scene sweeps when it is turned about the vertical axis through its middle, in slices of equal height: how far
+/// from the axis each slice reaches.
+struct Sweep {
+    float low = 0, height = 0;  ///< above the middle
+    std::array<float, k_slices> radius{};
+};
+
+Sweep sweep_of(const Scene& scene, const Scene::Box& box, const Vec3f& middle) {
+    Sweep sweep{box.low.y - middle.y, box.high.y - box.low.y};
+    for (const Instance& instance : scene.instances)
+        for (const Vec3f& position : scene.meshes[std::size_t(instance.mesh)].positions) {
+            const Vec3f p = instance.to_world.point(position) - middle;
+            const float part = sweep.height > 0 ? (p.y - sweep.low) / sweep.height : 0;
+            float& radius = sweep.radius[std::size_t(std::clamp(int(part * k_slices), 0, k_slices - 1))];
+            radius = std::max(radius, std::hypot(p.x, p.z));
+        }
+    return sweep;
+}
+
+/// How far from a scene's middle a camera with these axes must stand to see all of its sweep, and so the whole scene in
+/// every frame of a turntable.
+///
+/// tan_x, tan_y  half the width and height of the picture at distance 1
+float framing_distance(const Affine& frame, const Sweep& sweep, float tan_x, float tan_y) {
+    constexpr int k_angles = 64;
+    float distance = 0;
+    for (int slice = 0; slice < k_slices; ++slice)
+        for (int edge = slice; edge <= slice + 1; ++edge)
+            for (int i = 0; i < k_angles; ++i) {
+                const float angle = float(2 * k_pi * i / k_angles), radius = sweep.radius[std::size_t(slice)];
+                const Vec3f p{radius * std::cos(angle), sweep.low + sweep.height * float(edge) / k_slices,
+                              radius * std::sin(angle)};
+                const float across = std::abs(dot(p, frame.x)) / tan_x, up = std::abs(dot(p, frame.y)) / tan_y;
+                distance = std::max(distance, dot(p, frame.z) + std::max(across, up));
+            }
+    return distance;
+}
+
+}  // namespace
+
 Camera default_camera(const Scene& scene, float aspect) {
-    if (!scene.cameras.empty()) return scene.cameras.front();
-    const auto [low, high] = scene.bounds();
-    const Vec3f middle = (low + high) * 0.5f;
-    const float radius = 0.5f * std::max(1e-6f, length(high - low)), fov_y = float(35 * k_pi / 180);
-    const float half = std::min(0.5f * fov_y, std::atan(std::tan(0.5f * fov_y) * aspect));
-    return look_at(middle + normalize(Vec3f{0.25f, 0.2f, 1}) * (radius / std::sin(half)), middle, fov_y);
+    if (!scene.cameras.empty()) return camera_for(scene.cameras.front(), aspect);
+    constexpr float margin = 1.05f;  // of the picture around the scene
+    const Scene::Box box = scene.bounds();
+    const Vec3f middle = (box.low + box.high) * 0.5f;
+    const float fov_y = float(35 * k_pi / 180), tan_y = std::tan(0.5f * fov_y) / margin;
+    const Vec3f back = normalize(Vec3f{0.25f, 0.2f, 1});
+    const float distance = framing_distance(look_at(middle + back, middle, fov_y).to_world,
+                                            sweep_of(scene, box, middle), tan_y * aspect, tan_y);
+    return look_at(middle + back * std::max(1e-6f, distance), middle, fov_y);
 }
 
 }  // namespace domelight

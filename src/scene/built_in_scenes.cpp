@@ -97,7 +97,7 @@ void add_camera(Scene& scene, const Vec3f& eye, const Vec3f& target, float fov_y
     scene.cameras.push_back(std::move(camera));
 }
 
-/// Gold above red plastic; roughness 0 to 1 from left to right. All of it is in a square picture.
+/// Gold above red plastic; roughness 0 to 1 from left to right.
 Scene spheres() {
     constexpr int columns = 7;
     constexpr float radius = 0.46f;
@@ -115,7 +115,8 @@ Scene spheres() {
                 {{radius, 0, 0}, {0, radius, 0}, {0, 0, radius}, {float(column) - 3.0f, metal ? 0.5f : -0.5f, 0}});
         }
     // Far away, so that all spheres are seen nearly alike.
-    add_camera(scene, {0, 0, 20}, {}, 2 * std::atan(3.65f / 20), 1);
+    constexpr float half_width = 3.65f, aspect = 2;
+    add_camera(scene, {0, 0, 20}, {}, 2 * std::atan(half_width / aspect / 20), aspect);
     return scene;
 }
 

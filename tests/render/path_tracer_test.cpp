@@ -195,6 +195,68 @@ TEST_CASE("render: samples that are not finite are counted, and count as black")
     }
 }
 
+TEST_CASE("default_camera: the whole scene is in the picture and fills it, from every side of a turntable") {
+    for (const std::string& name : built_in_scene_names())
+        for (const float aspect : {0.5f, 1.f, 2.f}) {
+            INFO(name << " in a picture of aspect " << aspect);
+            auto scene = built_in_scene(name);
+            REQUIRE(scene);
+            scene->cameras.clear();
+            const Camera camera = default_camera(*scene, aspect);
+            const auto [low, high] = scene->bounds();
+            const float tan_y = std::tan(0.5f * camera.fov_y);
+            const auto farthest_after = [&](double turn) {
+                double most = 0;
+                for (const Instance& instance : scene->instances)
+                    for (const Vec3f& local : scene->meshes[std::size_t(instance.mesh)].positions) {
+                        const Vec3f middle = (low + high) * 0.5f,
+                                    p = Vec3f(rotation_y(turn) * Vec3d(instance.to_world.point(local) - middle)) +
+                                        middle - camera.to_world.translation;
+                        const float depth = -dot(p, camera.to_world.z);
+                        REQUIRE(depth > 0);
+                        most = std::max<double>({most, std::abs(dot(p, camera.to_world.x)) / (depth * tan_y * aspect),
+                                                 std::abs(dot(p, camera.to_world.y)) / (depth * tan_y)});
+                    }
+                return most;
+            };
+            double most = 0;
+            for (int i = 0; i < 8; ++i) most = std::max(most, farthest_after(i * k_pi / 4));
+            CHECK(most <= 1);
+            CHECK(most > 0.9);
+        }
+}
+
+TEST_CASE("camera_for: what a camera was made to show stays in pictures of other shapes") {
+    Camera made;
+    made.fov_y = 0.5f;
+    made.aspect = 2;
+    made.half_height = 3;
+    const auto tan_x = [](const Camera& c, float aspect) { return std::tan(0.5f * c.fov_y) * aspect; };
+    for (const float aspect : {0.5f, 1.f, 1.9f, 2.f, 3.f}) {
+        INFO("a picture of aspect " << aspect);
+        const Camera c = camera_for(made, aspect);
+        CHECK(c.fov_y >= made.fov_y);
+        CHECK(tan_x(c, aspect) >= tan_x(made, 2) * 0.9999f);
+        CHECK((c.fov_y == made.fov_y || tan_x(c, aspect) == doctest::Approx(tan_x(made, 2))));
+        CHECK(c.half_height == doctest::Approx(aspect < 2 ? 3 * 2 / aspect : 3));
+    }
+    made.aspect = 0;
+    CHECK(camera_for(made, 0.5f).fov_y == made.fov_y);
+    // The spheres span the picture of the first example.
+    const auto spheres = built_in_scene("spheres");
+    REQUIRE(spheres);
+    RenderOptions o;
+    o.width = 64, o.height = 32, o.samples = 4, o.background = Background::transparent;
+    o.camera = camera_for(spheres->cameras.front(), 2);
+    const RenderResult r = render(trace(*spheres), ImageF(16, 8, 3, 1.f), o);
+    int first = 64, last = -1;
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 64; ++x)
+            if (*r.opacity.at(x, y) > 0) first = std::min(first, x), last = std::max(last, x);
+    CHECK(first < 4);
+    CHECK(last >= 60);
+}
+
 TEST_CASE("render: masked and blended surfaces let light through, in the picture and in shadows") {
     const auto picture = [](Material::AlphaMode mode, float opacity) {
         // A black veil between the camera and a white floor that an even sky lights through the veil.

@@ -147,7 +147,11 @@ std::vector<std::string> not_rendered(const Scene& scene);
 
 /// A camera that looks from `eye` at `target`, +Y up.
 Camera look_at(const Vec3f& eye, const Vec3f& target, float fov_y);
-/// The scene's own camera if it has one, else one that frames it all from the front, a little above.
+/// The camera for a picture of another shape, width / height, than it was made for: what it was made to show stays in the
+/// picture, which shows more at the sides, or above and below. A camera without a shape stays as it is.
+Camera camera_for(Camera camera, float aspect);
+/// The scene's own camera if it has one, else one that looks from the front, a little above, and frames the scene
+/// however it is turned about the vertical axis through its middle.
 Camera default_camera(const Scene& scene, float aspect);
 
 }  // namespace domelight
