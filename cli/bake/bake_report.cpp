@@ -21,8 +21,8 @@ std::string percent(double part) {
 
 void print_map(const BakedMap& map) {
     const int size = map.levels.front().size;
-    const std::string shape =
-        map.layout == Layout::cube ? fmt::format("6 x {}^2", size) : fmt::format("{} x {}", 2 * size, size);
+    const std::string shape = map.layout == Layout::cube ? fmt::format("6 x {}^2", size)
+                                                         : fmt::format("{} x {}", map.levels.front().width, size);
     std::string line = fmt::format("  {:<28} {}: {}, {}", shown_name(map), map.role, shape, map.encoding);
     if (map.widened) line += fmt::format(" ({})", k_why_float_channels);
     if (map.levels.size() > 1) line += fmt::format(", {} levels to {}", map.levels.size(), map.levels.back().size);

@@ -87,12 +87,13 @@ std::map<std::string, std::string> map_metadata(const EnginePlan& plan, const Ba
     return metadata;
 }
 
-std::vector<BakedLevel> baked_levels(const std::vector<LevelPlan>& plans) {
+std::vector<BakedLevel> baked_levels(const std::vector<LevelPlan>& plans, Layout layout) {
     std::vector<BakedLevel> levels;
     for (const LevelPlan& plan : plans) {
         BakedLevel level;
         level.level = int(levels.size());
         level.size = plan.spec.size;
+        level.width = layout == Layout::cube ? plan.spec.size : 2 * plan.spec.size;
         level.mirror = plan.spec.mirror;
         level.roughness = plan.roughness;
         level.alpha = plan.alpha;
@@ -156,7 +157,7 @@ class EngineBake {
   private:
     void write_light(FilterJob::Maps& maps) {
         if (engine_.environment_only) {
-            write_panorama(engine_.specular_file, maps.specular.front().latlong);
+            write_panorama(engine_.specular_file, maps.panorama);
         } else {
             write("specular", engine_.specular_file, plan_.lobe, Quantity::radiance, plan_.specular, maps.specular,
                   plan_.encoding, &maps.irradiance_over_pi);
@@ -190,7 +191,7 @@ class EngineBake {
         map.lobe = lobe;
         map.quantity = quantity;
         map.layout = plan_.layout;
-        map.levels = baked_levels(levels);
+        map.levels = baked_levels(levels, plan_.layout);
         MapFormat format = map_format(name, encoding);
         format.mirror = engine_.mirror;
         format.latlong_quarters = plan_.latlong_quarters;
@@ -202,21 +203,21 @@ class EngineBake {
     }
 
     /// The environment as one image, in the engine's projection.
-    void write_panorama(const std::string& name, const ImageF& latlong) {
+    void write_panorama(const std::string& name, ImageF& panorama) {
         BakedMap& map = report_.maps.emplace_back();
         map.role = "environment";
         map.layout = Layout::latlong;
-        map.projection = engine_.panorama;
-        const std::vector<LevelPlan> level{LevelPlan{LevelSpec{plan_.panorama_size, true, {}}}};
-        map.levels = baked_levels(level);
-        auto projected = project_panorama(latlong, engine_.panorama, plan_.panorama_size, options_.threads);
-        if (!projected) return background_.done(projected.error());
+        map.projection = plan_.panorama->projection;
+        const std::vector<LevelPlan> level{LevelPlan{LevelSpec{plan_.panorama->height, true, {}}}};
+        map.levels = baked_levels(level, Layout::latlong);
+        map.levels.front().width = plan_.panorama->width;
         FilteredMap image;
-        image.latlong = *std::move(projected);
+        image.latlong = std::move(panorama);
         MapFormat format = map_format(name, engine_.environment_only ? plan_.encoding : Encoding::rgba16f);
         if (!engine_.environment_only) format.container = Container::exr;
         format.metadata = map_metadata(plan_, map, level);
         write_map(map, {&image, 1}, format, options_, staging_, background_);
+        panorama = std::move(image.latlong);  // back, for the picture and the next engine
     }
 
     MapFormat map_format(const std::string& name, Encoding encoding) const {
@@ -319,10 +320,10 @@ std::string stem_of(const std::vector<std::filesystem::path>& files) {
     return files.empty() ? "sky" : files.front().stem().string();
 }
 
-Result<std::vector<EnginePlan>> plan_all(const BakeOptions& options) {
+Result<std::vector<EnginePlan>> plan_all(const BakeOptions& options, const Environment* environment) {
     if (auto ok = check_bake_options(options); !ok) return ok.error();
     std::vector<EnginePlan> plans;
-    for (const std::string& name : options.engines) plans.push_back(*plan_engine(**find_engine(name), options));
+    for (const std::string& name : options.engines) plans.push_back(*plan_engine(**find_engine(name), options, environment));
     return plans;
 }
 
@@ -354,7 +355,7 @@ void add_warnings(BakeReport& report, const Environment& environment, const Bake
 }  // namespace
 
 Result<BakeReport> bake(Environment& environment, const BakeOptions& options, const std::filesystem::path& folder) {
-    auto plans = plan_all(options);
+    auto plans = plan_all(options, &environment);
     if (!plans) return plans.error();
     if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
         return Error{"is a file, not a folder", folder.string(), "Name a folder for the results."};
@@ -406,7 +407,7 @@ Result<BakeReport> bake(Environment& environment, const BakeOptions& options, co
 
 bool bake_is_up_to_date(const std::vector<std::filesystem::path>& files, const BakeOptions& options,
                         const std::filesystem::path& folder) {
-    const auto plans = plan_all(options);
+    const auto plans = plan_all(options, nullptr);
     if (!plans) return false;
     for (const EnginePlan& plan : *plans)
         if (!std::filesystem::exists(engine_folder(folder, options, *plan.engine) / "manifest.json")) return false;

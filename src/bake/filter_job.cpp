@@ -5,6 +5,7 @@
 
 #include "bake/tap.h"
 #include "base/sha256.h"
+#include "io/environment/convert_rows.h"
 
 #include <algorithm>
 
@@ -35,6 +36,11 @@ Result<FilterResult> filter(RowSource& rows, const FilterOptions& filter, const 
     return prefilter_reference(*image, filter, reference_options(options));
 }
 
+ImageF reprojected(const ProjectedImage& source, const PanoramaSpec& spec, const BakeOptions& options) {
+    return std::move(
+        reproject(source, *projection_from_name(spec.projection), spec.width, spec.height, options.threads).pixels);
+}
+
 template <typename T>
 std::size_t index_of(std::vector<T>& values, const T& value) {
     const auto at = std::find(values.begin(), values.end(), value);
@@ -63,9 +69,8 @@ FilterJob::FilterJob(const std::vector<EnginePlan>& plans) : engines_(plans.size
     for (std::size_t e = 0; e < plans.size(); ++e) {
         const EnginePlan& plan = plans[e];
         Indices& indices = engines_[e];
-        if (plan.panorama_rows) indices.panorama = index_of(panorama_rows_, plan.panorama_rows);
-        indices.panorama_is_level = plan.engine->environment_only;
-        if (indices.panorama_is_level) continue;
+        if (plan.panorama) indices.panorama = index_of(panorama_specs_, *plan.panorama);
+        if (plan.engine->environment_only) continue;
         indices.run = run_of(plan.layout);
         for (const LevelPlan& level : plan.specular) indices.specular.push_back(runs_[indices.run].add(level.spec));
         for (const LevelPlan& level : plan.sheen) indices.sheen.push_back(runs_[indices.run].add(level.spec));
@@ -99,22 +104,24 @@ void FilterJob::Run::sort_out() {
 }
 
 Result<void> FilterJob::read_rows(Environment& environment, const BakeOptions& options) {
-    std::vector<std::unique_ptr<AreaResampler>> resamplers;
-    const int width = environment.latlong->width(), height = environment.latlong->height();
-    for (const int rows : panorama_rows_)
-        resamplers.push_back(
-            area_resample_to_latlong(width, height, rows, environment.world_to_source, options.threads));
+    std::vector<RowConversion> conversions;
+    for (const PanoramaSpec& spec : panorama_specs_)
+        conversions.push_back(convert_rows(environment.latlong->width(), environment.latlong->height(),
+                                           *projection_from_name(spec.projection), spec.width, spec.height,
+                                           environment.world_to_source, options.threads));
+    const bool whole = std::any_of(conversions.begin(), conversions.end(), [](const auto& c) { return !c.rows; });
     Sha256 hash;
     const bool hash_rows = environment.file.empty() && options.hashes;
     TapRowSource tap(*environment.latlong, [&](ImageView<const float> rows) {
-        for (auto& resampler : resamplers) resampler->add_rows(rows);
+        for (const RowConversion& conversion : conversions)
+            if (conversion.rows) conversion.rows->add_rows(rows);
         for (int y = 0; hash_rows && y < rows.height; ++y)
             hash.add({reinterpret_cast<const std::uint8_t*>(rows.row(y)),
                       std::size_t(rows.width) * rows.channels * sizeof(float)});
     });
-    // The rows come once: where there are several runs, all of them are kept.
+    // The rows come once: where something needs them again, all of them are kept.
     ImageF kept;
-    if (runs_.size() > 1) {
+    if (runs_.size() > 1 || whole) {
         auto image = read_latlong(tap);
         if (!image) return image.error();
         kept = *std::move(image);
@@ -126,7 +133,10 @@ Result<void> FilterJob::read_rows(Environment& environment, const BakeOptions& o
         if (!result) return result.error();
         run.result = *std::move(result);
     }
-    for (auto& resampler : resamplers) panoramas_.push_back(resampler->finish());
+    const ProjectedImage source{projection_from_name("latlong")->turned(environment.world_to_source), std::move(kept)};
+    for (std::size_t i = 0; i < conversions.size(); ++i)
+        panoramas_.push_back(conversions[i].rows ? conversions[i].rows->finish()
+                                                 : reprojected(source, panorama_specs_[i], options));
     if (hash_rows) rows_sha256_ = hash.finish();
     return {};
 }
@@ -147,9 +157,12 @@ Result<void> FilterJob::filter_cube(Environment& environment, const BakeOptions&
         if (!result) return result.error();
         run.result = *std::move(result);
     }
-    for (const int rows : panorama_rows_)
-        panoramas_.push_back(
-            area_resample_cube_to_latlong(environment.cube, rows, environment.world_to_source, options.threads));
+    if (panorama_specs_.empty()) return {};
+    const ImageView<const float> strip = std::as_const(environment.cube).strip();
+    ImageF pixels(strip.width, strip.height, 3);
+    std::copy_n(strip.data, pixels.pixels().size(), pixels.pixels().begin());
+    const ProjectedImage source{projection_from_name("cube")->turned(environment.world_to_source), std::move(pixels)};
+    for (const PanoramaSpec& spec : panorama_specs_) panoramas_.push_back(reprojected(source, spec, options));
     return {};
 }
 
@@ -191,20 +204,14 @@ FilterJob::Maps FilterJob::take(std::size_t engine) {
     maps.sheen = take(run, indices.sheen);
     maps.irradiance_over_pi = std::move(run.irradiance[indices.irradiance]);
     if (!indices.panorama) return maps;
-    ImageF panorama = std::move(panoramas_[*indices.panorama]);
-    if (indices.panorama_is_level)
-        maps.specular.emplace_back().latlong = std::move(panorama);
-    else
-        maps.panorama = std::move(panorama);
+    maps.panorama = std::move(panoramas_[*indices.panorama]);
     return maps;
 }
 
 void FilterJob::give_back(std::size_t engine, Maps maps) {
     const Indices& indices = engines_[engine];
     Run& run = runs_[indices.run];
-    if (indices.panorama)
-        panoramas_[*indices.panorama] =
-            std::move(indices.panorama_is_level ? maps.specular.front().latlong : maps.panorama);
+    if (indices.panorama) panoramas_[*indices.panorama] = std::move(maps.panorama);
     give_back(run, indices.specular, std::move(maps.specular));
     give_back(run, indices.sheen, std::move(maps.sheen));
     run.irradiance[indices.irradiance] = std::move(maps.irradiance_over_pi);

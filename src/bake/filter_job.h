@@ -22,7 +22,7 @@ class FilterJob {
     struct Maps {
         std::vector<FilteredMap> specular, sheen;
         FilteredMap irradiance_over_pi;
-        ImageF panorama;  ///< the environment, lat-long in the default convention
+        ImageF panorama;  ///< the environment as one image, in the engine's projection
     };
     Maps take(std::size_t engine);
     void give_back(std::size_t engine, Maps maps);
@@ -40,7 +40,6 @@ class FilterJob {
         std::vector<std::size_t> specular, sheen;
         std::size_t irradiance = 0;
         std::optional<std::size_t> panorama;
-        bool panorama_is_level = false;  ///< it is the only level, of an engine that wants nothing else
     };
     /// All maps of one layout: one analysis of the environment.
     struct Run {
@@ -62,8 +61,8 @@ class FilterJob {
 
     std::vector<Run> runs_;
     std::vector<Indices> engines_;
-    std::vector<int> panorama_rows_;  ///< distinct heights
-    std::vector<ImageF> panoramas_;
+    std::vector<PanoramaSpec> panorama_specs_;  ///< distinct ones
+    std::vector<ImageF> panoramas_;             ///< one for each of panorama_specs_
     std::string rows_sha256_;
 };
 

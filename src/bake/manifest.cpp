@@ -69,6 +69,7 @@ Json options_json(const EnginePlan& plan, const BakeOptions& o) {
               {"size", plan.specular.front().spec.size},
               {"levels", plan.specular.size()},
               {"lobe", lobe_name(plan.lobe)}};
+    if (plan.size_of_source) json["size_of_source"] = true;
     Json widths = Json::array();
     const bool phong = plan.lobe == Lobe::phong_brdf || plan.lobe == Lobe::phong_plain;
     for (const LevelPlan& level : plan.specular)
@@ -256,10 +257,13 @@ bool manifest_matches(const std::filesystem::path& folder, const EnginePlan& pla
         return false;
     if (json["version"] != Json(version()) || !json["source"].is_object() || !json["source"].contains("sha256"))
         return false;
+    if (json["source"]["sha256"] != Json(source_sha256)) return false;
+    Json wanted = options_json(plan, options);
+    // The plan was made without opening the source, whose size is the stored one: its hash is the same.
+    if (plan.size_of_source && json["options"].is_object() && json["options"].contains("size"))
+        wanted["size"] = json["options"]["size"];
     // By their text, in which they were stored.
-    if (json_text(json["options"]) != json_text(options_json(plan, options)) ||
-        json["source"]["sha256"] != Json(source_sha256))
-        return false;
+    if (json_text(json["options"]) != json_text(wanted)) return false;
     for (const auto& [key, value] : json.items())
         if (key != "source" && !files_match(value, folder)) return false;
     return true;

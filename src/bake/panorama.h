@@ -1,21 +1,28 @@
 #pragma once
 // The environment as one image, for engines that filter or sample it themselves.
 
-#include "domelight/base/result.h"
+#include "domelight/environment/environment.h"
 #include "domelight/image/image.h"
 
 #include <string>
 
 namespace domelight {
 
-/// Height of the lat-long image in the default convention from which project_panorama() makes an image `size` texels
-/// high: the same where texels only change their columns, else finer.
-int panorama_rows(const std::string& projection, int size);
+/// What such an image is: its size in texels, and its projection with convention as projections.h names them.
+struct PanoramaSpec {
+    std::string projection;
+    int width = 0, height = 0;
+    bool operator==(const PanoramaSpec&) const = default;
+};
 
-/// A lat-long image in the default convention in another projection (a name and convention as projections.h has them),
-/// `size` texels high. Power is kept; lat-long images that are only turned keep their texels.
-/// Errors: no such projection.
-Result<ImageF> project_panorama(const ImageF& latlong, const std::string& projection, int size, int threads);
+/// An image of that projection, `height` texels high. The projection is one of projections.h with a single chart.
+PanoramaSpec panorama_spec(const std::string& projection, int height);
+
+/// The same, as fine as the environment: its own size where that is a lat-long image and the projection too.
+PanoramaSpec panorama_like(const Environment& environment, const std::string& projection);
+
+/// The image as a lat-long one in the default convention, at most `height` texels high, for looking at.
+ImageF panorama_as_latlong(const ImageF& image, const std::string& projection, int height, int threads);
 
 /// Where a projection's centre, right and top look, in one line: "lat-long, centre +X, right +Z, up +Y".
 std::string projection_convention(const std::string& projection);

@@ -153,7 +153,18 @@ Result<void> plan_encoding(EnginePlan& plan, const BakeOptions& o) {
     return {};
 }
 
-Result<void> plan_environment_only(EnginePlan& plan, const BakeOptions& o) {
+/// Height of a lat-long image where the source's own is not known yet. Nothing that a plan checks depends on it.
+constexpr int k_unknown_height = 1024;
+
+/// The environment as one image: `height` texels high, or as large as the source where no height is given.
+PanoramaSpec plan_panorama(const Engine& engine, std::optional<int> height, const Environment* environment) {
+    if (height) return panorama_spec(engine.panorama, *height);
+    if (!environment) return panorama_spec(engine.panorama, k_unknown_height);
+    const PanoramaSpec own = panorama_like(*environment, engine.panorama);
+    return panorama_spec(engine.panorama, std::min(own.height, k_max_size));
+}
+
+Result<void> plan_environment_only(EnginePlan& plan, const BakeOptions& o, const Environment* environment) {
     const std::string& name = plan.engine->name;
     const auto refuse = [&](const char* option) {
         return option_error(option, "does not apply to --for " + name,
@@ -164,9 +175,11 @@ Result<void> plan_environment_only(EnginePlan& plan, const BakeOptions& o) {
     if (o.lobe) return refuse("--lobe");
     if (o.layout && *o.layout == Layout::cube) return refuse("--layout cube");
     plan.layout = Layout::latlong;
-    plan.panorama_size = o.size.value_or(2 * plan.engine->size);
-    plan.panorama_rows = panorama_rows(plan.engine->panorama, plan.panorama_size);
-    plan.specular = {glossy_level(Lobe::ggx, plan.panorama_size, 0)};
+    std::optional<int> height = o.size;
+    if (!height && plan.engine->size) height = 2 * plan.engine->size;
+    plan.panorama = plan_panorama(*plan.engine, height, environment);
+    plan.size_of_source = !height;
+    plan.specular = {glossy_level(Lobe::ggx, plan.panorama->height, 0)};
     return {};
 }
 
@@ -200,7 +213,7 @@ int quarters_of(const std::string& convention) {
 
 }  // namespace
 
-Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& o) {
+Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& o, const Environment* environment) {
     if (auto ok = check_values(o); !ok) return ok.error();
     EnginePlan plan;
     plan.engine = &engine;
@@ -209,7 +222,7 @@ Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& o) {
     plan.brdf_size = o.brdf_size.value_or(engine.brdf_size);
     if (auto ok = plan_encoding(plan, o); !ok) return ok.error();
     if (engine.environment_only) {
-        if (auto ok = plan_environment_only(plan, o); !ok) return ok.error();
+        if (auto ok = plan_environment_only(plan, o, environment); !ok) return ok.error();
     } else {
         plan.layout = o.layout.value_or(engine.layout);
         const int scale =
@@ -230,8 +243,8 @@ Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& o) {
     plan.irradiance_size =
         o.irradiance_size.value_or(engine.irradiance_size) * (plan.layout == Layout::latlong ? 2 : 1);
     if (!engine.panorama_file.empty()) {
-        plan.panorama_size = 4 * plan.specular.front().spec.size / (plan.layout == Layout::latlong ? 2 : 1);
-        plan.panorama_rows = panorama_rows(engine.panorama, plan.panorama_size);
+        const int size = 4 * plan.specular.front().spec.size / (plan.layout == Layout::latlong ? 2 : 1);
+        plan.panorama = panorama_spec(engine.panorama, size);
     }
     if (const auto ok = check_own_container(plan, o); !ok) return ok.error();
     plan.latlong_quarters = quarters_of(engine.latlong);
@@ -253,7 +266,7 @@ Result<void> check_bake_options(const BakeOptions& options) {
         if (!engine) return engine.error().at("--for");
         if (std::count(options.engines.begin(), options.engines.end(), name) > 1)
             return option_error("--for", name + " is given twice");
-        if (auto plan = plan_engine(**engine, options); !plan) return plan.error();
+        if (auto plan = plan_engine(**engine, options, nullptr); !plan) return plan.error();
     }
     return {};
 }

@@ -2,6 +2,8 @@
 
 #include "domelight/bake/bake.h"
 
+#include "bake/panorama.h"
+
 #include <vector>
 
 namespace domelight {
@@ -25,13 +27,14 @@ struct EnginePlan {
     int irradiance_size = 0;  ///< of the map that is computed: cube face, or height
     int brdf_size = 0;
     BrdfForm brdf_form = BrdfForm::none;
-    /// Of the environment as one image (0: none): `panorama_size` is the height of that image, `panorama_rows` of the
-    /// lat-long image in the default convention that it is made from.
-    int panorama_size = 0, panorama_rows = 0;
+    std::optional<PanoramaSpec> panorama;  ///< the environment as one image, where the engine takes it
+    bool size_of_source = false;           ///< the only map is a panorama, as large as the environment
     int latlong_quarters = 0;  ///< how far the engine's lat-long maps are turned: turn_latlong() of bake/mirror.h
 };
 
 /// What to make for an engine. Errors: options that contradict each other or the engine; `where` is the option.
-Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& options);
+///
+/// environment   null before it is opened: an image that is to be as large as the source then has some other size
+Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& options, const Environment* environment);
 
 }  // namespace domelight

@@ -21,6 +21,11 @@ Image<std::uint8_t> draw_preview(const EnginePlan& plan, const FilterJob::Maps& 
     PreviewInput input;
     input.title = title;
     input.subtitle = fmt::format("{} · {} · {}", lobe_name(plan.lobe), report.maps.front().encoding, plan.engine->name);
+    FilteredMap panorama;  // stands for the first level where there are none
+    if (plan.engine->environment_only) {
+        panorama.latlong = panorama_as_latlong(maps.panorama, plan.panorama->projection, 512, threads);
+        input.specular.push_back({&panorama, 0, 0, {}});
+    }
     for (std::size_t l = 0; l < maps.specular.size(); ++l) {
         const LevelPlan& level = plan.specular[l];
         input.specular.push_back({&maps.specular[l], level.roughness, level.alpha, level_detail(plan, level)});

@@ -9,7 +9,10 @@
 #include "oriented.h"
 #include "test.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
+#include <tuple>
 
 using namespace domelight;
 using namespace domelight::test;
@@ -31,32 +34,20 @@ double worst_of(const ImageF& image, const char* name) {
 
 }  // namespace
 
-TEST_CASE("project_panorama: every direction lies where the projection says, and turned pictures keep their texels") {
+TEST_CASE("panorama_spec: width follows from the projection; panorama_like keeps a lat-long source's size") {
+    CHECK(panorama_spec("latlong/usd", 64) == PanoramaSpec{"latlong/usd", 128, 64});
+    CHECK(panorama_spec("pbrt", 64) == PanoramaSpec{"pbrt", 64, 64});
     const ImageF image = direction_image(64);
-    for (const char* name : {"latlong", "latlong/usd", "latlong/materialx", "latlong/mod"}) {
-        CHECK(panorama_rows(name, 64) == 64);
-        const auto turned = project_panorama(image, name, 64, 1);
-        REQUIRE(turned);
-        CHECK(worst_of(*turned, name) < 1e-6);
-    }
-    for (const char* name : {"latlong/mitsuba", "latlong/openexr", "pbrt", "octahedral"}) {
-        CHECK(panorama_rows(name, 32) == 64);
-        const auto projected = project_panorama(image, name, 32, 1);
-        REQUIRE(projected);
-        CHECK(projected->height() == 32);
-        CHECK(worst_of(*projected, name) < 0.06);  // means over texels 0.1 wide, against their middles
-    }
-    CHECK_FALSE(project_panorama(image, "cone", 64, 1));
+    const Environment environment = environment_of(image);
+    CHECK(panorama_like(environment, "latlong/mitsuba") == PanoramaSpec{"latlong/mitsuba", 128, 64});
 }
 
-TEST_CASE("project_panorama: a constant stays constant, power is kept") {
-    ImageF constant(64, 32, 3);
-    std::fill(constant.pixels().begin(), constant.pixels().end(), 2.5f);
-    for (const char* name : {"latlong/usd", "latlong/mitsuba", "pbrt"}) {
-        const auto projected = project_panorama(constant, name, 16, 1);
-        REQUIRE(projected);
-        for (const float v : projected->pixels()) CHECK(v == doctest::Approx(2.5f).epsilon(1e-5));
-    }
+TEST_CASE("panorama_as_latlong: every direction lies where the default convention says, and no finer than asked for") {
+    const ImageF image = direction_image(64);
+    const ImageF shown = panorama_as_latlong(image, "latlong", 32, 1);
+    CHECK(shown.height() == 32);
+    CHECK(worst_of(shown, "latlong") < 0.06);  // means over texels 0.1 wide, against their middles
+    CHECK(panorama_as_latlong(image, "latlong", 512, 1).height() == 64);
 }
 
 TEST_CASE("projection_convention: says where the picture's centre, right and top look") {
@@ -134,6 +125,55 @@ TEST_CASE("bake: engines that take the environment alone get it in their own con
     }
 }
 
+TEST_CASE("bake: an image for an engine that filters by itself is as large as its source") {
+    const std::tuple<const char*, const char*, int> engines[] = {
+        {"blender", "default", 2}, {"godot", "usd", 2}, {"usd", "usd", 2}, {"mitsuba", "mitsuba", 2}, {"pbrt", "pbrt", 1}};
+    for (const int height : {24, 512})
+        for (const auto& [engine, convention, aspect] : engines) {
+            CAPTURE(engine);
+            const TemporaryFolder folder;
+            const ImageF image = direction_image(height);
+            Environment environment = environment_of(image);
+            BakeOptions options;
+            options.engines = {engine};
+            options.irradiance_size = 8;
+            options.preview = false;
+            const auto report = bake(environment, options, folder.path());
+            REQUIRE(report);
+            const auto opened = open_environment({folder / "sky.exr"}, {.latlong = convention});
+            REQUIRE(opened);
+            CHECK(opened->width == opened->height * aspect);
+            if (aspect == 2) CHECK(opened->height == height);
+            if (aspect == 1) CHECK(std::abs(opened->height - 1.5 * height) < 0.5 * height);
+            const BakedLevel& level = report->engines[0].maps[0].levels.front();
+            CHECK(level.size == opened->height);
+            CHECK(level.width == opened->width);
+            CHECK(report->engines[0].manifest.find("\"size_of_source\": true") != std::string::npos);
+            CHECK(report->engines[0].manifest.find(fmt::format("\"size\": {}", opened->height)) != std::string::npos);
+        }
+}
+
+TEST_CASE("bake: an image that only changes its convention keeps its texels") {
+    const ImageF image = direction_image(32);
+    for (const char* convention : {"default", "usd"}) {
+        const TemporaryFolder folder;
+        Environment environment = environment_of(image);
+        BakeOptions options;
+        options.engines = {std::string(convention) == "usd" ? "usd" : "blender"};
+        options.encoding = Encoding::rgba32f;
+        options.irradiance_size = 8;
+        options.preview = false;
+        REQUIRE(bake(environment, options, folder.path()));
+        const auto opened = open_environment({folder / "sky.exr"}, {.latlong = convention});
+        REQUIRE(opened);
+        const auto read = read_latlong(*opened->latlong);
+        REQUIRE(read);
+        const int quarter = std::string(convention) == "usd" ? 16 : 0;  // columns from +X to +Z
+        for (int y = 0; y < 32; ++y)
+            for (int x = 0; x < 64; ++x) CHECK(read->at(x, y)[0] == image.at((x + quarter) % 64, y)[0]);
+    }
+}
+
 TEST_CASE("bake: unity and unreal get a cube as they look it up, and a lat-long image for their importers") {
     const ImageF image = direction_image(64);
     for (const char* engine : {"unity", "unreal"}) {
@@ -155,7 +195,7 @@ TEST_CASE("bake: unity and unreal get a cube as they look it up, and a lat-long 
               }) < 0.01);
         auto opened = open_environment({folder / "sky_latlong.exr"}, {.latlong = unity ? "usd" : "materialx"});
         REQUIRE(opened);
-        CHECK(opened->width == 256);
+        CHECK(opened->width == 256);  // 4 N texels round for faces of N^2
         const auto read = read_latlong(*opened->latlong);
         REQUIRE(read);
         const UV uv = latlong_uv(opened->world_to_source * Vec3d{1, 0.2, 0.1});

@@ -12,7 +12,7 @@ using namespace domelight;
 namespace {
 
 EnginePlan plan_of(const char* name, const BakeOptions& options = {}) {
-    const auto plan = plan_engine(**find_engine(name), options);
+    const auto plan = plan_engine(**find_engine(name), options, nullptr);
     REQUIRE(plan);
     return *plan;
 }

@@ -75,7 +75,9 @@ struct BakedFile {
 };
 
 struct BakedLevel {
-    int level = 0, size = 0;
+    int level = 0;
+    int size = 0;                     ///< of a cube's face, or the image's height
+    int width = 0;                    ///< of a cube's face, or the image's width
     bool mirror = false;              ///< the environment itself
     double roughness = 0, alpha = 0;  ///< ggx and charlie
     double exponent = 0;              ///< phong

@@ -47,7 +47,7 @@ struct Engine {
     std::string loads;  ///< one line for lists: what the engine is, and what is made for it
     std::string note;   ///< what the engine does itself, or what a later version will write; may be empty
 
-    int size = 512;    ///< face size of level 0
+    int size = 512;    ///< face size of level 0; 0 (only with `environment_only`): the image is as large as the source
     int smallest = 8;  ///< by default levels go down to this face size
     RoughnessCurve roughness = nullptr;
     Layout layout = Layout::cube;  ///< of the maps, unless asked otherwise
@@ -56,8 +56,8 @@ struct Engine {
     Encoding encoding = Encoding::rgba16f;
     Container container = Container::ktx2;
     bool zstd = false;
-    /// The engine filters by itself: only the environment is written, as one image of the projection `panorama`: a
-    /// lat-long one 4 size x 2 size, else 2 size x 2 size.
+    /// The engine filters by itself: only the environment is written, as one image of the projection `panorama`. A
+    /// lat-long image is 4 size x 2 size, another 2 size x 2 size; where `size` is 0 it is as fine as the source.
     bool environment_only = false;
     std::string panorama = "latlong";  ///< name and convention, as projections.h takes them
 

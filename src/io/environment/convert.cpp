@@ -4,8 +4,7 @@
 #include "domelight/filtering/resample/area_resample.h"
 #include "domelight/base/parallel.h"
 
-#include "filtering/resample/area_resample_aligned.h"
-#include "filtering/resample/area_resample_latlong.h"
+#include "io/environment/convert_rows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +12,6 @@
 namespace domelight {
 
 namespace {
-
-/// Between latlong_direction's frame (x at the centre, z to the right) and a picture's (z at the centre, x to the
-/// right); its own inverse.
-constexpr Mat3 k_swap{{Vec3d{0, 0, 1}, Vec3d{0, 1, 0}, Vec3d{1, 0, 0}}};
 
 /// Rows on their way, with their power and how far they are noted.
 class MeasuredRows {
@@ -69,28 +64,6 @@ Result<ImageF> stream(RowSource& rows, AreaResampler& resampler, const ConvertOp
     return resampler.finish();
 }
 
-/// The whole columns by which a lat-long image of `width` moves under the matrix, if it is such a turn about its axis.
-std::optional<int> column_shift(const Mat3& m, int width) {
-    if (std::abs(m.row[1].y - 1) > 1e-12 || std::abs(m.row[0].x - m.row[2].z) > 1e-12) return std::nullopt;
-    const double columns = std::atan2(m.row[2].x, m.row[0].x) / (2 * k_pi) * width;
-    if (std::abs(columns - std::round(columns)) > 1e-6) return std::nullopt;
-    return int(std::round(columns));
-}
-
-Result<ImageF> shift_columns(RowSource& rows, int shift, const ConvertOptions& options, Vec3d& power) {
-    const int w = rows.width(), h = rows.height(), first = (shift % w + w) % w;
-    ImageF out(w, h, 3);
-    MeasuredRows measured(rows, options.progress);
-    const int block = block_rows(options.threads);
-    for (int y = 0; y < h; y += block) {
-        const ImageView<float> view = out.view().rows(y, std::min(block, h - y));
-        if (const auto read = measured.read(view, options.threads); !read) return read.error();
-        for (int r = 0; r < view.height; ++r) std::rotate(view.row(r), view.row(r) + 3 * first, view.row(r) + 3 * w);
-    }
-    power = measured.power();
-    return out;
-}
-
 bool permutes_axes(const Mat3& m) {
     for (const Vec3d& r : m.row)
         for (const double e : {r.x, r.y, r.z})
@@ -99,29 +72,15 @@ bool permutes_axes(const Mat3& m) {
 }
 
 /// Straight from the rows where that goes: the image, or nothing.
-Result<std::optional<ImageF>> by_rows(Environment& environment, const Projection& target, const Mat3& picture_to_source,
+Result<std::optional<ImageF>> by_rows(Environment& environment, const Projection& target, const Mat3& world_to_source,
                                       const ConvertOptions& o, Conversion& result) {
     RowSource& rows = *environment.latlong;
-    if (target.grid() != SampleGrid::centres) return std::optional<ImageF>();
-    std::unique_ptr<AreaResampler> resampler;
-    if (target.name() == "cube" && !o.sharp && area::align(picture_to_source)) {
-        resampler = area_resample_to_cube(rows.width(), rows.height(), o.height, picture_to_source, o.threads);
-    } else if (target.name() == "latlong" && o.width == 2 * o.height) {
-        const Mat3 m = picture_to_source * k_swap;  // both in latlong_direction's frame
-        if (const auto shift = column_shift(m, rows.width());
-            shift && o.width == rows.width() && o.height == rows.height()) {
-            auto image = shift_columns(rows, *shift, o, result.power_before);
-            if (!image) return image.error();
-            result.method = "copy";
-            return std::optional<ImageF>(*std::move(image));
-        }
-        if (const auto aligned = area::align(m); !o.sharp && aligned && area::keeps_polar_axis(*aligned))
-            resampler = area_resample_to_latlong(rows.width(), rows.height(), o.height, m, o.threads);
-    }
-    if (!resampler) return std::optional<ImageF>();
-    auto image = stream(rows, *resampler, o, result.power_before);
+    const RowConversion conversion =
+        convert_rows(rows.width(), rows.height(), target, o.width, o.height, world_to_source, o.threads, o.sharp);
+    if (!conversion.rows) return std::optional<ImageF>();
+    auto image = stream(rows, *conversion.rows, o, result.power_before);
     if (!image) return image.error();
-    result.method = "exact";
+    result.method = conversion.copies ? "copy" : "exact";
     return std::optional<ImageF>(*std::move(image));
 }
 
@@ -131,7 +90,7 @@ Result<Conversion> convert(Environment& environment, const Projection& target, c
     Conversion result{{target, {}}, {}, {}, "conservative"};
     const Mat3 world_to_source = environment.world_to_source * o.turn.transposed();
     if (environment.latlong) {
-        auto image = by_rows(environment, target, world_to_source * target.world_to_picture().transposed(), o, result);
+        auto image = by_rows(environment, target, world_to_source, o, result);
         if (!image) return image.error();
         if (*image) {
             result.image.pixels = **std::move(image);
