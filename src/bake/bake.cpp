@@ -148,8 +148,9 @@ class EngineBake {
         return background_.wait();
     }
 
-    Result<void> commit(const SourceReport& source, const BakeReport& bake) {
-        report_.manifest = manifest_json(report_, plan_, options_, source, bake);
+    /// mean_radiance   of the source
+    Result<void> commit(const SourceReport& source, const Vec3d& mean_radiance) {
+        report_.manifest = manifest_json(report_, plan_, options_, source, mean_radiance);
         if (auto ok = write_text("manifest.json", report_.manifest); !ok) return ok;
         return staging_.commit("manifest.json");
     }
@@ -217,7 +218,7 @@ class EngineBake {
         if (!engine_.environment_only) format.container = Container::exr;
         format.metadata = map_metadata(plan_, map, level);
         write_map(map, {&image, 1}, format, options_, staging_, background_);
-        panorama = std::move(image.latlong);  // back, for the picture and the next engine
+        panorama = std::move(image.latlong);  // the preview and the next engine need it again
     }
 
     MapFormat map_format(const std::string& name, Encoding encoding) const {
@@ -251,6 +252,7 @@ class EngineBake {
 
     void write_brdf() {
         brdf_ = brdf_image();
+        if (plan_.brdf_form == BrdfForm::multiscatter) brdf_ = brdf_table_multiscatter(brdf_);
         if (plan_.brdf_form == BrdfForm::none) return;
         BrdfReport& brdf = report_.brdf;
         brdf.form = plan_.brdf_form;
@@ -261,8 +263,7 @@ class EngineBake {
                                                       : (three ? Encoding::rgba16f : Encoding::rg16f);
         brdf.encoding = encoding_name(encoding);
         brdf.file.file = fmt::format("{}.ktx2", engine_.brdf_file.empty() ? "brdf" : engine_.brdf_file);
-        Texture texture =
-            encode_table(plan_.brdf_form == BrdfForm::multiscatter ? brdf_table_multiscatter(brdf_) : brdf_, encoding);
+        Texture texture = encode_table(brdf_, encoding);
         texture.metadata = {
             {"domelight.version", version()},
             {"domelight.quantity", fmt::format("brdf {}", brdf_form_name(plan_.brdf_form))},
@@ -290,7 +291,7 @@ class EngineBake {
     const BakeOptions& options_;
     const std::string& stem_;
     Staging staging_;
-    ImageF brdf_;
+    ImageF brdf_;  ///< as it is stored, with a third channel in any case
     Image<std::uint8_t> preview_;
     Background background_;  // last: it waits for its tasks before the rest goes
 };
@@ -320,10 +321,12 @@ std::string stem_of(const std::vector<std::filesystem::path>& files) {
     return files.empty() ? "sky" : files.front().stem().string();
 }
 
+/// environment   null before it is opened: plan_engine()
 Result<std::vector<EnginePlan>> plan_all(const BakeOptions& options, const Environment* environment) {
     if (auto ok = check_bake_options(options); !ok) return ok.error();
     std::vector<EnginePlan> plans;
-    for (const std::string& name : options.engines) plans.push_back(*plan_engine(**find_engine(name), options, environment));
+    for (const std::string& name : options.engines)
+        plans.push_back(*plan_engine(**find_engine(name), options, environment));
     return plans;
 }
 
@@ -368,7 +371,7 @@ Result<BakeReport> bake(Environment& environment, const BakeOptions& options, co
     std::jthread hashing;
     if (options.hashes && !files.empty()) hashing = std::jthread([&] { source_hash = sha256_files(files); });
 
-    FilterJob job(*plans);
+    FilterJob job(*plans, environment, options);
     {
         const StageClock clock(report.stages, "filter");
         if (auto ok = job.run(environment, options); !ok) return ok.error().at(environment.file.string());
@@ -399,8 +402,8 @@ Result<BakeReport> bake(Environment& environment, const BakeOptions& options, co
         if (!source_hash) return source_hash.error();
         source.sha256 = report.source_sha256 = files.empty() ? job.rows_sha256() : *source_hash;
     }
-    for (auto& engine : bakes)
-        if (auto ok = engine->commit(source, report); !ok) return ok.error();
+    for (std::size_t e = 0; e < bakes.size(); ++e)
+        if (auto ok = bakes[e]->commit(source, job.result(e).mean); !ok) return ok.error();
     add_warnings(report, environment, options);
     return report;
 }

@@ -5,9 +5,13 @@
 
 #include "bake/tap.h"
 #include "base/sha256.h"
+#include "filtering/prefilter_runs.h"
 #include "io/environment/convert_rows.h"
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
+#include <span>
 
 namespace domelight {
 namespace {
@@ -15,6 +19,27 @@ namespace {
 bool same_level(const LevelSpec& a, const LevelSpec& b) {
     return a.size == b.size && a.mirror == b.mirror &&
            (a.mirror || (a.kernel.lobe == b.kernel.lobe && a.kernel.width == b.kernel.width));
+}
+
+/// Of two runs over one environment.
+bool same_run(const FilterOptions& a, const FilterOptions& b) {
+    return a.layout == b.layout && a.irradiance_size == b.irradiance_size &&
+           std::equal(a.specular.begin(), a.specular.end(), b.specular.begin(), b.specular.end(), same_level);
+}
+
+FilterOptions filter_options(const EnginePlan& plan, const Environment& environment, const BakeOptions& options) {
+    FilterOptions filter;
+    if (!plan.engine->environment_only) {
+        filter.layout = plan.layout;
+        for (const LevelPlan& level : plan.specular) filter.specular.push_back(level.spec);
+        for (const LevelPlan& level : plan.sheen) filter.specular.push_back(level.spec);
+    }
+    filter.irradiance_size = plan.irradiance_size;  // the harmonics' error is measured against it in any case
+    filter.sh_bands = options.sh_bands;
+    filter.world_to_source = environment.world_to_source;
+    filter.threads = options.threads;
+    filter.progress = options.progress;
+    return filter;
 }
 
 ReferenceOptions reference_options(const BakeOptions& o) {
@@ -28,12 +53,16 @@ ReferenceOptions reference_options(const BakeOptions& o) {
     return r;
 }
 
-/// The maps of one run from rows.
-Result<FilterResult> filter(RowSource& rows, const FilterOptions& filter, const BakeOptions& options) {
-    if (options.method == BakeMethod::exact) return prefilter(rows, filter);
-    const auto image = read_latlong(rows);
-    if (!image) return image.error();
-    return prefilter_reference(*image, filter, reference_options(options));
+/// All runs by one of the plain methods, which need the whole image.
+Result<std::vector<FilterResult>> filter_plainly(const ImageF& image, std::span<const FilterOptions> runs,
+                                                 const BakeOptions& options) {
+    std::vector<FilterResult> results;
+    for (const FilterOptions& run : runs) {
+        auto result = prefilter_reference(image, run, reference_options(options));
+        if (!result) return result.error();
+        results.push_back(*std::move(result));
+    }
+    return results;
 }
 
 ImageF reprojected(const ProjectedImage& source, const PanoramaSpec& spec, const BakeOptions& options) {
@@ -41,66 +70,24 @@ ImageF reprojected(const ProjectedImage& source, const PanoramaSpec& spec, const
         reproject(source, *projection_from_name(spec.projection), spec.width, spec.height, options.threads).pixels);
 }
 
-template <typename T>
-std::size_t index_of(std::vector<T>& values, const T& value) {
-    const auto at = std::find(values.begin(), values.end(), value);
+/// The index of the element that is `same` as `value`, which is added if there is none.
+template <typename T, typename Same>
+std::size_t index_of(std::vector<T>& values, T value, const Same& same) {
+    const auto at = std::find_if(values.begin(), values.end(), [&](const T& v) { return same(v, value); });
     if (at != values.end()) return std::size_t(at - values.begin());
-    values.push_back(value);
+    values.push_back(std::move(value));
     return values.size() - 1;
 }
 
 }  // namespace
 
-std::size_t FilterJob::Run::add(const LevelSpec& spec) {
-    const auto at = std::find_if(specs.begin(), specs.end(), [&](const LevelSpec& s) { return same_level(s, spec); });
-    if (at != specs.end()) return std::size_t(at - specs.begin());
-    specs.push_back(spec);
-    return specs.size() - 1;
-}
-
-std::size_t FilterJob::run_of(Layout layout) {
-    const auto at = std::find_if(runs_.begin(), runs_.end(), [&](const Run& r) { return r.layout == layout; });
-    if (at != runs_.end()) return std::size_t(at - runs_.begin());
-    runs_.emplace_back().layout = layout;
-    return runs_.size() - 1;
-}
-
-FilterJob::FilterJob(const std::vector<EnginePlan>& plans) : engines_(plans.size()) {
-    for (std::size_t e = 0; e < plans.size(); ++e) {
-        const EnginePlan& plan = plans[e];
-        Indices& indices = engines_[e];
-        if (plan.panorama) indices.panorama = index_of(panorama_specs_, *plan.panorama);
-        if (plan.engine->environment_only) continue;
-        indices.run = run_of(plan.layout);
-        for (const LevelPlan& level : plan.specular) indices.specular.push_back(runs_[indices.run].add(level.spec));
-        for (const LevelPlan& level : plan.sheen) indices.sheen.push_back(runs_[indices.run].add(level.spec));
+FilterJob::FilterJob(const std::vector<EnginePlan>& plans, const Environment& environment, const BakeOptions& options) {
+    for (const EnginePlan& plan : plans) {
+        Indices& indices = engines_.emplace_back();
+        indices.run = index_of(runs_, filter_options(plan, environment, options), same_run);
+        if (!plan.engine->environment_only) indices.specular_count = plan.specular.size();
+        if (plan.panorama) indices.panorama = index_of(panorama_specs_, *plan.panorama, std::equal_to());
     }
-    // Where an engine only wants the environment, the irradiance serves the harmonics' error alone: its layout does not
-    // matter.
-    if (runs_.empty()) runs_.emplace_back();
-    for (std::size_t e = 0; e < plans.size(); ++e)
-        engines_[e].irradiance = index_of(runs_[engines_[e].run].irradiance_sizes, plans[e].irradiance_size);
-}
-
-FilterOptions FilterJob::Run::options(const Environment& environment, const BakeOptions& options) const {
-    FilterOptions filter;
-    filter.layout = layout;
-    filter.specular = specs;
-    filter.irradiance_size = irradiance_sizes.front();
-    for (std::size_t i = 1; i < irradiance_sizes.size(); ++i)
-        filter.specular.push_back({irradiance_sizes[i], false, ZonalKernel::cosine()});
-    filter.sh_bands = options.sh_bands;
-    filter.world_to_source = environment.world_to_source;
-    filter.threads = options.threads;
-    filter.progress = options.progress;
-    return filter;
-}
-
-void FilterJob::Run::sort_out() {
-    irradiance.push_back(std::move(result.irradiance_over_pi));
-    for (std::size_t i = specs.size(); i < result.specular.size(); ++i)
-        irradiance.push_back(std::move(result.specular[i]));
-    result.specular.resize(specs.size());
 }
 
 Result<void> FilterJob::read_rows(Environment& environment, const BakeOptions& options) {
@@ -119,20 +106,19 @@ Result<void> FilterJob::read_rows(Environment& environment, const BakeOptions& o
             hash.add({reinterpret_cast<const std::uint8_t*>(rows.row(y)),
                       std::size_t(rows.width) * rows.channels * sizeof(float)});
     });
-    // The rows come once: where something needs them again, all of them are kept.
+    // The rows come once: where something needs the whole image, all of them are kept.
+    const bool plain = options.method != BakeMethod::exact;
     ImageF kept;
-    if (runs_.size() > 1 || whole) {
+    if (plain || whole) {
         auto image = read_latlong(tap);
         if (!image) return image.error();
         kept = *std::move(image);
     }
-    for (Run& run : runs_) {
-        ImageRowSource memory(kept.view());
-        RowSource& rows = kept.empty() ? static_cast<RowSource&>(tap) : memory;
-        auto result = filter(rows, run.options(environment, options), options);
-        if (!result) return result.error();
-        run.result = *std::move(result);
-    }
+    ImageRowSource memory(kept.view());
+    RowSource& rows = kept.empty() ? static_cast<RowSource&>(tap) : memory;
+    auto results = plain ? filter_plainly(kept, runs_, options) : prefilter(rows, runs_);
+    if (!results) return results.error();
+    results_ = *std::move(results);
     const ProjectedImage source{projection_from_name("latlong")->turned(environment.world_to_source), std::move(kept)};
     for (std::size_t i = 0; i < conversions.size(); ++i)
         panoramas_.push_back(conversions[i].rows ? conversions[i].rows->finish()
@@ -142,20 +128,19 @@ Result<void> FilterJob::read_rows(Environment& environment, const BakeOptions& o
 }
 
 Result<void> FilterJob::filter_cube(Environment& environment, const BakeOptions& options) {
-    for (Run& run : runs_) {
-        const FilterOptions filter_options = run.options(environment, options);
-        if (options.method == BakeMethod::exact) {
-            auto result = prefilter(environment.cube, filter_options);
+    if (options.method == BakeMethod::exact) {
+        for (const FilterOptions& run : runs_) {
+            auto result = prefilter(environment.cube, run);
             if (!result) return result.error();
-            run.result = *std::move(result);
-            continue;
+            results_.push_back(*std::move(result));
         }
+    } else {
         // The plain methods read lat-long images: the cube as one, in its own frame.
         const ImageF image =
             area_resample_cube_to_latlong(environment.cube, 2 * environment.cube.size(), Mat3{}, options.threads);
-        auto result = prefilter_reference(image, filter_options, reference_options(options));
-        if (!result) return result.error();
-        run.result = *std::move(result);
+        auto results = filter_plainly(image, runs_, options);
+        if (!results) return results.error();
+        results_ = *std::move(results);
     }
     if (panorama_specs_.empty()) return {};
     const ImageView<const float> strip = std::as_const(environment.cube).strip();
@@ -167,54 +152,41 @@ Result<void> FilterJob::filter_cube(Environment& environment, const BakeOptions&
 }
 
 Result<void> FilterJob::run(Environment& environment, const BakeOptions& options) {
-    const auto done = environment.latlong ? read_rows(environment, options) : filter_cube(environment, options);
-    if (!done) return done;
-    for (Run& run : runs_) run.sort_out();
-    return {};
+    return environment.latlong ? read_rows(environment, options) : filter_cube(environment, options);
 }
 
 std::int64_t FilterJob::clamped() const {
     std::int64_t count = 0;
-    for (const Run& run : runs_) count += run.result.clamped;
+    for (const FilterResult& result : results_) count += result.clamped;
     return count;
 }
 
 int FilterJob::band_limit() const {
     int limit = 0;
-    for (const Run& run : runs_) limit = std::max(limit, run.result.band_limit);
+    for (const FilterResult& result : results_) limit = std::max(limit, result.band_limit);
     return limit;
-}
-
-std::vector<FilteredMap> FilterJob::take(Run& run, const std::vector<std::size_t>& indices) {
-    std::vector<FilteredMap> maps;
-    for (const std::size_t i : indices)
-        maps.push_back(std::move(run.result.specular[i]));  // the levels of a chain differ in size
-    return maps;
-}
-
-void FilterJob::give_back(Run& run, const std::vector<std::size_t>& indices, std::vector<FilteredMap> maps) {
-    for (std::size_t i = 0; i < indices.size(); ++i) run.result.specular[indices[i]] = std::move(maps[i]);
 }
 
 FilterJob::Maps FilterJob::take(std::size_t engine) {
     const Indices& indices = engines_[engine];
-    Run& run = runs_[indices.run];
+    FilterResult& result = results_[indices.run];
+    const auto begin = std::make_move_iterator(result.specular.begin()),
+               end = std::make_move_iterator(result.specular.end());
     Maps maps;
-    maps.specular = take(run, indices.specular);
-    maps.sheen = take(run, indices.sheen);
-    maps.irradiance_over_pi = std::move(run.irradiance[indices.irradiance]);
-    if (!indices.panorama) return maps;
-    maps.panorama = std::move(panoramas_[*indices.panorama]);
+    maps.specular.assign(begin, begin + std::ptrdiff_t(indices.specular_count));
+    maps.sheen.assign(begin + std::ptrdiff_t(indices.specular_count), end);
+    maps.irradiance_over_pi = std::move(result.irradiance_over_pi);
+    if (indices.panorama) maps.panorama = std::move(panoramas_[*indices.panorama]);
     return maps;
 }
 
 void FilterJob::give_back(std::size_t engine, Maps maps) {
     const Indices& indices = engines_[engine];
-    Run& run = runs_[indices.run];
+    FilterResult& result = results_[indices.run];
+    const auto sheen = std::move(maps.specular.begin(), maps.specular.end(), result.specular.begin());
+    std::move(maps.sheen.begin(), maps.sheen.end(), sheen);
+    result.irradiance_over_pi = std::move(maps.irradiance_over_pi);
     if (indices.panorama) panoramas_[*indices.panorama] = std::move(maps.panorama);
-    give_back(run, indices.specular, std::move(maps.specular));
-    give_back(run, indices.sheen, std::move(maps.sheen));
-    run.irradiance[indices.irradiance] = std::move(maps.irradiance_over_pi);
 }
 
 }  // namespace domelight

@@ -10,10 +10,11 @@
 
 namespace domelight {
 
-/// The maps of several engines as one filter run: what two engines share is computed once.
+/// The maps of several engines from one reading of the environment. Each engine's maps have the same bits as when it is
+/// baked alone. Engines that want the same levels share one filter run.
 class FilterJob {
   public:
-    explicit FilterJob(const std::vector<EnginePlan>& plans);
+    FilterJob(const std::vector<EnginePlan>& plans, const Environment& environment, const BakeOptions& options);
 
     /// Reads the environment once, to its last row, and computes everything.
     Result<void> run(Environment& environment, const BakeOptions& options);
@@ -28,7 +29,7 @@ class FilterJob {
     void give_back(std::size_t engine, Maps maps);
 
     /// Of the run that made an engine's maps.
-    const FilterResult& result(std::size_t engine) const { return runs_[engines_[engine].run].result; }
+    const FilterResult& result(std::size_t engine) const { return results_[engines_[engine].run]; }
     std::int64_t clamped() const;
     int band_limit() const;
     /// SHA-256 of the rows that were read, as float32: what stands for the source's hash where there is no file.
@@ -37,29 +38,14 @@ class FilterJob {
   private:
     struct Indices {
         std::size_t run = 0;
-        std::vector<std::size_t> specular, sheen;
-        std::size_t irradiance = 0;
+        std::size_t specular_count = 0;  ///< the run's levels are the specular ones, then those of the sheen
         std::optional<std::size_t> panorama;
     };
-    /// All maps of one layout: one analysis of the environment.
-    struct Run {
-        Layout layout = Layout::cube;
-        std::vector<LevelSpec> specs;         ///< distinct levels
-        std::vector<int> irradiance_sizes;    ///< distinct sizes
-        FilterResult result;                  ///< specular: one for each of specs
-        std::vector<FilteredMap> irradiance;  ///< E / pi, one for each of irradiance_sizes
-        std::size_t add(const LevelSpec& spec);
-        FilterOptions options(const Environment& environment, const BakeOptions& options) const;
-        /// Moves E / pi out of the result's levels, where all sizes but the first were computed.
-        void sort_out();
-    };
-    std::size_t run_of(Layout layout);
     Result<void> read_rows(Environment& environment, const BakeOptions& options);
     Result<void> filter_cube(Environment& environment, const BakeOptions& options);
-    static std::vector<FilteredMap> take(Run& run, const std::vector<std::size_t>& indices);
-    static void give_back(Run& run, const std::vector<std::size_t>& indices, std::vector<FilteredMap> maps);
 
-    std::vector<Run> runs_;
+    std::vector<FilterOptions> runs_;    ///< distinct ones
+    std::vector<FilterResult> results_;  ///< one for each of runs_
     std::vector<Indices> engines_;
     std::vector<PanoramaSpec> panorama_specs_;  ///< distinct ones
     std::vector<ImageF> panoramas_;             ///< one for each of panorama_specs_

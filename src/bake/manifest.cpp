@@ -61,10 +61,7 @@ Json environment_json(const EnvironmentOptions& e) {
 
 /// Every option that has a say in the bytes, resolved: two bakes with equal options of equal sources are equal.
 Json options_json(const EnginePlan& plan, const BakeOptions& o) {
-    // The engines of one run share its analysis, whose band limit is the widest that any of their levels needs: the
-    // last digits of a map depend on its company.
     Json json{{"for", plan.engine->name},
-              {"engines", o.engines},
               {"layout", plan.layout == Layout::cube ? "cube" : "latlong"},
               {"size", plan.specular.front().spec.size},
               {"levels", plan.specular.size()},
@@ -200,7 +197,7 @@ bool files_match(const Json& json, const std::filesystem::path& folder, int dept
 }  // namespace
 
 std::string manifest_json(const EngineReport& report, const EnginePlan& plan, const BakeOptions& options,
-                          const SourceReport& source, const BakeReport& bake) {
+                          const SourceReport& source, const Vec3d& mean_radiance) {
     Json json{{"version", version()}};
     json["source"] = {{"file", source.file},
                       {"sha256", hash_json(source.sha256)},
@@ -208,7 +205,7 @@ std::string manifest_json(const EngineReport& report, const EnginePlan& plan, co
                       {"width", source.width},
                       {"height", source.height},
                       {"projection", source.projection},
-                      {"mean_radiance", {bake.mean_radiance.x, bake.mean_radiance.y, bake.mean_radiance.z}},
+                      {"mean_radiance", {mean_radiance.x, mean_radiance.y, mean_radiance.z}},
                       {"repaired",
                        {{"not_a_number", source.repaired.not_a_number},
                         {"infinite", source.repaired.infinite},
@@ -259,7 +256,7 @@ bool manifest_matches(const std::filesystem::path& folder, const EnginePlan& pla
         return false;
     if (json["source"]["sha256"] != Json(source_sha256)) return false;
     Json wanted = options_json(plan, options);
-    // The plan was made without opening the source, whose size is the stored one: its hash is the same.
+    // This plan was made without opening the source. The hashes are equal, so the source's size is the stored one.
     if (plan.size_of_source && json["options"].is_object() && json["options"].contains("size"))
         wanted["size"] = json["options"]["size"];
     // By their text, in which they were stored.

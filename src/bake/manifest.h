@@ -19,9 +19,9 @@ struct SourceReport {
     RepairReport repaired;
 };
 
-/// manifest.json of one engine: no times, nothing that depends on the machine.
+/// manifest.json of one engine: no times, nothing that depends on the machine or on the engines baked with it.
 std::string manifest_json(const EngineReport& report, const EnginePlan& plan, const BakeOptions& options,
-                          const SourceReport& source, const BakeReport& bake);
+                          const SourceReport& source, const Vec3d& mean_radiance);
 
 /// sh.json: radiance and irradiance coefficients with the convention spelled out, and their error.
 std::string sh_json(const ShReport& sh);

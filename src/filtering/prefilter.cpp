@@ -1,4 +1,4 @@
-#include "domelight/filtering/prefilter.h"
+#include "filtering/prefilter_runs.h"
 
 #include "domelight/filtering/resample/area_resample.h"
 #include "domelight/base/parallel.h"
@@ -12,6 +12,7 @@
 #include "filtering/harmonic/spectrum_evaluate.h"
 
 #include <cmath>
+#include <deque>
 #include <memory>
 
 namespace domelight {
@@ -22,19 +23,6 @@ constexpr int k_chunk_rows = 64;
 
 const Error k_cancelled{"cancelled", "", ""};
 
-std::vector<std::unique_ptr<AreaResampler>> make_mirrors(const FilterOptions& options, int width, int height) {
-    std::vector<std::unique_ptr<AreaResampler>> mirrors(options.specular.size());
-    for (std::size_t l = 0; l < mirrors.size(); ++l) {
-        const LevelSpec& level = options.specular[l];
-        if (!level.mirror) continue;
-        mirrors[l] =
-            options.layout == Layout::cube
-                ? area_resample_to_cube(width, height, level.size, options.world_to_source, options.threads)
-                : area_resample_to_latlong(width, height, level.size, options.world_to_source, options.threads);
-    }
-    return mirrors;
-}
-
 FilteredMap as_map(Layout layout, ImageF image) {
     FilteredMap map;
     if (layout == Layout::latlong) {
@@ -44,6 +32,63 @@ FilteredMap as_map(Layout layout, ImageF image) {
     }
     return map;
 }
+
+/// The levels that are the environment itself, made while its rows pass by. Runs that want the same level share it.
+class MirrorLevels {
+  public:
+    MirrorLevels(int width, int height, std::span<const FilterOptions> runs) {
+        for (const FilterOptions& run : runs) {
+            auto& mirrors = of_run_.emplace_back();
+            for (const LevelSpec& level : run.specular)
+                mirrors.push_back(level.mirror ? find_or_make(width, height, run, level.size) : -1);
+        }
+    }
+
+    void add_rows(ImageView<const float> rows) {
+        for (Mirror& mirror : mirrors_) mirror.resampler->add_rows(rows);
+    }
+
+    /// After the last row: fills the mirror levels of each run's result.
+    void finish(std::span<FilterResult> results) {
+        for (Mirror& mirror : mirrors_) {
+            mirror.map = as_map(mirror.layout, mirror.resampler->finish());
+            mirror.resampler.reset();
+        }
+        for (std::size_t r = 0; r < results.size(); ++r)
+            for (std::size_t l = 0; l < of_run_[r].size(); ++l) {
+                if (of_run_[r][l] < 0) continue;
+                Mirror& mirror = mirrors_[std::size_t(of_run_[r][l])];
+                results[r].specular[l] = --mirror.users ? mirror.map : std::move(mirror.map);
+            }
+    }
+
+  private:
+    struct Mirror {
+        Layout layout;
+        int size;
+        Mat3 world_to_source;
+        int users;
+        std::unique_ptr<AreaResampler> resampler;
+        FilteredMap map;
+    };
+
+    int find_or_make(int width, int height, const FilterOptions& run, int size) {
+        const Mat3& turn = run.world_to_source;
+        for (std::size_t i = 0; i < mirrors_.size(); ++i) {
+            Mirror& m = mirrors_[i];
+            if (m.layout != run.layout || m.size != size || m.world_to_source != turn) continue;
+            ++m.users;
+            return int(i);
+        }
+        auto resampler = run.layout == Layout::cube ? area_resample_to_cube(width, height, size, turn, run.threads)
+                                                    : area_resample_to_latlong(width, height, size, turn, run.threads);
+        mirrors_.push_back({run.layout, size, turn, 1, std::move(resampler), {}});
+        return int(mirrors_.size()) - 1;
+    }
+
+    std::vector<Mirror> mirrors_;
+    std::vector<std::vector<int>> of_run_;  ///< for each level of each run an index of mirrors_, or -1
+};
 
 Vec3d mean_radiance(const Spectrum& spectrum) {
     const double y00 = 1 / std::sqrt(4 * k_pi);
@@ -141,9 +186,9 @@ class Synthesis {
 };
 
 /// Everything that follows from the spectrum.
-Result<void> finish(const Spectrum& spectrum, const Spectrum* narrow, const BrightSplit* split,
-                    Synthesis::Bright bright, const FilterPlan& plan, const FilterOptions& options,
-                    FilterResult& result) {
+Result<void> make_levels(const Spectrum& spectrum, const Spectrum* narrow, const BrightSplit* split,
+                         Synthesis::Bright bright, const FilterPlan& plan, const FilterOptions& options,
+                         FilterResult& result) {
     result.band_limit = plan.band_limit;
     result.mean = mean_radiance(spectrum);
     if (auto done = Synthesis(spectrum, narrow, split, std::move(bright), options, result).run(plan); !done)
@@ -152,52 +197,96 @@ Result<void> finish(const Spectrum& spectrum, const Spectrum* narrow, const Brig
     return {};
 }
 
+/// One filter run over the rows of a lat-long image, but for its mirror levels.
+class RowPrefilter {
+  public:
+    RowPrefilter(int width, int height, const FilterOptions& options)
+        : options_(options),
+          plan_(make_filter_plan(options)),
+          analysis_(width, height, plan_.band_limit, options.threads),
+          bright_(width, height),
+          split_(width, height) {}
+
+    /// Whether add_rows() sets texels of the rows to 0.
+    bool changes_rows() const { return plan_.split; }
+
+    /// The next rows, with simd::summarize of each.
+    void add_rows(ImageView<float> rows, std::span<const simd::Summary> summaries) {
+        bright_.add_rows(rows, summaries);
+        if (plan_.split) split_.take_from(rows, summaries);
+        analysis_.add_rows(rows);
+    }
+
+    /// After the last row.
+    Result<void> finish(FilterResult& result) {
+        const Spectrum spectrum = analysis_.finish();
+        const auto points = [&](int band_limit) { return bright_.points(result.mean, band_limit); };
+        if (split_.empty()) return make_levels(spectrum, nullptr, nullptr, points, plan_, options_, result);
+        Spectrum whole = split_.spectrum(plan_.wide_band_limit, options_.threads);
+        whole.add(spectrum);
+        return make_levels(whole, &spectrum, &split_, points, plan_, options_, result);
+    }
+
+  private:
+    FilterOptions options_;
+    FilterPlan plan_;
+    ShAnalysis analysis_;
+    BrightTexels bright_;
+    BrightSplit split_;
+};
+
+/// The options of run `i` of `count`, whose progress goes on from where the run before it ended.
+FilterOptions with_shared_progress(const FilterOptions& options, std::size_t i, std::size_t count) {
+    FilterOptions shared = options;
+    if (options.progress && count > 1)
+        shared.progress = [progress = options.progress, i, count](std::string_view stage, double done) {
+            return progress(stage, (double(i) + done) / double(count));
+        };
+    return shared;
+}
+
 }  // namespace
 
-Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) {
-    const int width = source.width(), height = source.height();
-    const FilterPlan plan = make_filter_plan(options);
-    ShAnalysis analysis(width, height, plan.band_limit, options.threads);
-    BrightTexels bright(width, height);
-    BrightSplit split(width, height);
-    auto mirrors = make_mirrors(options, width, height);
+Result<std::vector<FilterResult>> prefilter(RowSource& source, std::span<const FilterOptions> runs) {
+    const int width = source.width(), height = source.height(), threads = runs.front().threads;
+    std::deque<RowPrefilter> prefilters;
+    for (std::size_t i = 0; i < runs.size(); ++i)
+        prefilters.emplace_back(width, height, with_shared_progress(runs[i], i, runs.size()));
+    MirrorLevels mirrors(width, height, runs);
 
-    ImageF rows(width, std::min(k_chunk_rows, height), 3);
+    ImageF rows(width, std::min(k_chunk_rows, height), 3), copy;
     std::vector<simd::Summary> summaries(k_chunk_rows);
     for (int y = 0; y < height; y += k_chunk_rows) {
         const auto chunk = rows.view().rows(0, std::min(k_chunk_rows, height - y));
         if (auto read = source.read(chunk); !read) return read.error();
-        for (auto& mirror : mirrors)
-            if (mirror) mirror->add_rows(chunk);
-        parallel_ranges(chunk.height, 8, options.threads, [&](int begin, int end) {
+        mirrors.add_rows(chunk);
+        parallel_ranges(chunk.height, 8, threads, [&](int begin, int end) {
             for (int k = begin; k < end; ++k) summaries[std::size_t(k)] = simd::summarize(chunk.row(k), 3 * width);
         });
-        bright.add_rows(chunk, summaries);
-        if (plan.split) split.take_from(chunk, summaries);
-        analysis.add_rows(chunk);
-        if (options.progress && !options.progress("read", double(y + chunk.height) / height)) return k_cancelled;
+        for (RowPrefilter& prefilter : prefilters) {
+            const bool copies = prefilter.changes_rows() && &prefilter != &prefilters.back();
+            if (copies) copy = rows;
+            prefilter.add_rows(copies ? copy.view().rows(0, chunk.height) : chunk, summaries);
+        }
+        const Progress& progress = runs.front().progress;
+        if (progress && !progress("read", double(y + chunk.height) / height)) return k_cancelled;
     }
-    rows = {};
+    rows = copy = {};
 
-    FilterResult result;
-    result.specular.resize(options.specular.size());
-    for (std::size_t l = 0; l < mirrors.size(); ++l) {
-        if (!mirrors[l]) continue;
-        result.specular[l] = as_map(options.layout, mirrors[l]->finish());
-        mirrors[l].reset();
+    std::vector<FilterResult> results(runs.size());
+    for (std::size_t i = 0; i < runs.size(); ++i) results[i].specular.resize(runs[i].specular.size());
+    mirrors.finish(results);
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        if (auto done = prefilters.front().finish(results[i]); !done) return done.error();
+        prefilters.pop_front();  // its memory is no longer needed
     }
-    const Spectrum spectrum = analysis.finish();
-    const auto points = [&](int band_limit) { return bright.points(result.mean, band_limit); };
-    Result<void> done;
-    if (split.empty()) {
-        done = finish(spectrum, nullptr, nullptr, points, plan, options, result);
-    } else {
-        Spectrum whole = split.spectrum(plan.wide_band_limit, options.threads);
-        whole.add(spectrum);
-        done = finish(whole, &spectrum, &split, points, plan, options, result);
-    }
-    if (!done) return done.error();
-    return result;
+    return results;
+}
+
+Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) {
+    auto results = prefilter(source, {&options, 1});
+    if (!results) return results.error();
+    return std::move(results->front());
 }
 
 Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& options) {
@@ -217,7 +306,7 @@ Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& optio
     const BorderedCube cube(source);
     const Spectrum spectrum = analyse_cube(cube, plan.band_limit, options.threads);
     const auto points = [&](int band_limit) { return bright_points(cube, result.mean, band_limit); };
-    if (auto done = finish(spectrum, nullptr, nullptr, points, plan, options, result); !done) return done.error();
+    if (auto done = make_levels(spectrum, nullptr, nullptr, points, plan, options, result); !done) return done.error();
     return result;
 }
 

@@ -116,7 +116,9 @@ class Sheet {
   private:
     void header();
     void environment_row();
-    void level_grid();
+    void level_grid(const std::vector<PreviewLevel>& levels, const std::vector<PreviewMap>& maps, const char* name,
+                    bool with_table);
+    void level_caption(int x, int y, int width, const PreviewLevel& level, const std::string& name);
     void footer();
 
     // Each draws a picture with its top left corner at (x, y).
@@ -125,6 +127,7 @@ class Sheet {
     void ball_panel(int x, int y, int size, const PreviewMap& map, bool chrome, int samples);
     std::shared_ptr<const Ball> ball(bool cube, int size, bool chrome, int samples);
     void brdf_panel(int x, int y, int size);
+    void brdf_caption(int x, int y, int width);
     void axis_names(int x, int y, int width);
     void text(int x, int baseline, std::string s, Colour8 colour = k_text, Align align = Align::left,
               FontSize size = FontSize::small) {
@@ -140,7 +143,7 @@ class Sheet {
     double sh_difference_ = 0;
     AgxDisplay look_{1};
     PreviewMap environment_, irradiance_, sh_;
-    std::vector<PreviewMap> levels_;
+    std::vector<PreviewMap> levels_, sheen_;
     std::vector<std::shared_ptr<const Ball>> balls_;
     std::vector<Panel> panels_;
     std::vector<Text> texts_;
@@ -157,9 +160,11 @@ std::string size_text(const FilteredMap& map) {
 
 Sheet::Sheet(const PreviewInput& input) : in_(input), width_(std::max(input.width, 800)) {
     levels_.resize(in_.specular.size());
+    sheen_.resize(in_.sheen.size());
     const int s = (width_ - 2 * k_margin - 60) / 5;
     // What the panels look up, made small first; each on its own.
-    parallel_for(int(levels_.size()) + 3, in_.threads, [&](int i) {
+    const std::size_t levels = levels_.size();
+    parallel_for(int(levels + sheen_.size()) + 3, in_.threads, [&](int i) {
         if (i == 0) {
             if (in_.environment.data) environment_ = PreviewMap(in_.environment, (3 * s + 20) / 4, in_.world_to_source);
         } else if (i == 1) {
@@ -167,8 +172,10 @@ Sheet::Sheet(const PreviewInput& input) : in_(input), width_(std::max(input.widt
         } else if (i == 2) {
             if (in_.sh.empty()) return;
             sh_ = PreviewMap(irradiance_picture(in_.sh), 128);
+        } else if (const auto l = std::size_t(i - 3); l < levels) {
+            levels_[l] = PreviewMap(*in_.specular[l].map, 128);
         } else {
-            levels_[i - 3] = PreviewMap(*in_.specular[i - 3].map, 128);
+            sheen_[l - levels] = PreviewMap(*in_.sheen[l - levels].map, 128);
         }
     });
     // The exposure: from the source, else from its mirror-sharp level.
@@ -191,12 +198,14 @@ Sheet::Sheet(const PreviewInput& input) : in_(input), width_(std::max(input.widt
     // From here on the maps are for showing only.
     std::vector<PreviewMap*> maps{&environment_, &irradiance_, &sh_};
     for (PreviewMap& level : levels_) maps.push_back(&level);
+    for (PreviewMap& level : sheen_) maps.push_back(&level);
     parallel_for(int(maps.size()), in_.threads, [&](int i) {
         maps[std::size_t(i)]->transform([&](const Texel4& radiance) { return look_.primaries(radiance); });
     });
     header();
     environment_row();
-    level_grid();
+    level_grid(in_.specular, levels_, "level", in_.brdf.data != nullptr);
+    level_grid(in_.sheen, sheen_, "sheen level", false);
     footer();
 }
 
@@ -253,7 +262,8 @@ void Sheet::environment_row() {
     if (!irradiance_.empty()) {
         ball_panel(x, y_, s, irradiance_, false, 1);
         latlong_panel(x, y_ + s + 10, s, irradiance_);
-        caption(x, y_ + height, s, "irradiance / π", size_text(*in_.irradiance_over_pi));
+        caption(x, y_ + height, s, "irradiance / π",
+                in_.irradiance_detail.empty() ? size_text(*in_.irradiance_over_pi) : in_.irradiance_detail);
     }
     x += s + k_gap;
     if (!sh_.empty()) {
@@ -266,43 +276,54 @@ void Sheet::environment_row() {
     y_ += height + 2 * k_line + 34;
 }
 
-void Sheet::level_grid() {
-    const bool table = in_.brdf.data != nullptr;
-    const int cells = int(levels_.size()) + table;
+/// Levels side by side in one or several rows, and behind the last one the BRDF table where asked for.
+void Sheet::level_grid(const std::vector<PreviewLevel>& levels, const std::vector<PreviewMap>& maps, const char* name,
+                       bool with_table) {
+    const int count = int(levels.size()), cells = count + with_table;
     if (cells == 0) return;
     const int rows = (cells + 7) / 8, columns = (cells + rows - 1) / rows;
     const int content = width_ - 2 * k_margin, cell = std::min((content - (columns - 1) * k_gap) / columns, 300);
-    const bool cube = levels_.empty() || levels_[0].is_cube();
+    const bool cube = maps.empty() || maps[0].is_cube();
     const int unfolded = cube ? cell * 3 / 4 : cell / 2, height = cell + 10 + unfolded + 3 * k_line + 8;
     for (int i = 0; i < cells; ++i) {
         const int x = k_margin + i % columns * (cell + k_gap), y = y_ + i / columns * (height + 24);
-        if (i == int(levels_.size())) {
+        if (i == count) {
             brdf_panel(x, y, cell);
-            const int below = y + cell + 10;
-            text(x, below + 14,
-                 fit_text(fmt::format("BRDF table, {} × {}", in_.brdf.width, in_.brdf.height), FontSize::small, cell));
-            text(x, below + 14 + k_line, fit_text("red scale, green bias", FontSize::small, cell), k_quiet);
-            text(x, below + 14 + 2 * k_line, fit_text("→ N·V  ↓ roughness", FontSize::small, cell), k_quiet);
+            brdf_caption(x, y + cell + 10, cell);
             continue;
         }
-        const PreviewLevel& level = in_.specular[i];
+        const PreviewLevel& level = levels[std::size_t(i)];
+        const PreviewMap& map = maps[std::size_t(i)];
         // Where a rough lobe has smoothed the level, one look-up a pixel shows all there is.
         const bool fine = map_size(*level.map) > 64 && level.alpha < k_smooth_alpha;
-        ball_panel(x, y, cell, levels_[i], true, fine ? 2 : 1);
-        if (levels_[i].is_cube())
-            cross_panel(x, y + cell + 10, cell, levels_[i]);
+        ball_panel(x, y, cell, map, true, fine ? 2 : 1);
+        if (map.is_cube())
+            cross_panel(x, y + cell + 10, cell, map);
         else
-            latlong_panel(x, y + cell + 10, cell / 2 * 2, levels_[i]);
-        const int below = y + cell + 10 + unfolded;
-        text(x, below + 20, fit_text(fmt::format("level {} · {}", i, size_text(*level.map)), FontSize::small, cell));
-        if (level.detail.empty()) {
-            text(x, below + 20 + k_line, "roughness " + number(level.roughness), k_quiet);
-            text(x, below + 20 + 2 * k_line, "α " + number(level.alpha), k_quiet);
-        } else {
-            text(x, below + 20 + k_line, fit_text(level.detail, FontSize::small, cell), k_quiet);
-        }
+            latlong_panel(x, y + cell + 10, cell / 2 * 2, map);
+        level_caption(x, y + cell + 10 + unfolded, cell, level,
+                      level.name.empty() ? fmt::format("{} {} · {}", name, i, size_text(*level.map)) : level.name);
     }
     y_ += rows * (height + 24);
+}
+
+void Sheet::level_caption(int x, int y, int width, const PreviewLevel& level, const std::string& name) {
+    text(x, y + 20, fit_text(name, FontSize::small, width));
+    if (level.detail.empty()) {
+        text(x, y + 20 + k_line, "roughness " + number(level.roughness), k_quiet);
+        text(x, y + 20 + 2 * k_line, "α " + number(level.alpha), k_quiet);
+    } else {
+        text(x, y + 20 + k_line, fit_text(level.detail, FontSize::small, width), k_quiet);
+    }
+}
+
+void Sheet::brdf_caption(int x, int y, int width) {
+    const auto line = [&](int i, const std::string& words, Colour8 colour) {
+        text(x, y + 14 + i * k_line, fit_text(words, FontSize::small, width), colour);
+    };
+    line(0, fmt::format("BRDF table, {} × {}", in_.brdf.width, in_.brdf.height), k_text);
+    line(1, in_.brdf_detail, k_quiet);
+    line(2, "→ N·V  ↓ roughness", k_quiet);
 }
 
 void Sheet::footer() {
@@ -415,15 +436,14 @@ void Sheet::brdf_panel(int x, int y, int size) {
                  const float fx = place(i, t.width);
                  const int k = std::min(int(fx), std::max(t.width - 2, 0)), k1 = std::min(k + 1, t.width - 1);
                  const auto value = [&](int c) {
-                     if (c >= t.channels) return 0.0f;
+                     if (c >= std::min(t.channels, in_.brdf_channels)) return 0.0f;
                      const float a = t.at(k, j)[c] * (1 - (fx - k)) + t.at(k1, j)[c] * (fx - k);
                      const float b = t.at(k, j1)[c] * (1 - (fx - k)) + t.at(k1, j1)[c] * (fx - k);
                      return a * (1 - (fy - j)) + b * (fy - j);
                  };
                  std::uint8_t* p = image.at(x + i, y + row);
-                 p[0] = codes[std::size_t(std::clamp(value(0), 0.0f, 1.0f) * 4095 + 0.5f)];
-                 p[1] = codes[std::size_t(std::clamp(value(1), 0.0f, 1.0f) * 4095 + 0.5f)];
-                 p[2] = 0;
+                 for (int c = 0; c < 3; ++c)
+                     p[c] = codes[std::size_t(std::clamp(value(c), 0.0f, 1.0f) * 4095 + 0.5f)];
              }
          }});
 }

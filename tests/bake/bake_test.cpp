@@ -8,9 +8,12 @@
 #include "bake/sh_report.h"
 #include "bake/staging.h"
 #include "base/sha256.h"
+#include "io/picture/texture_image.h"
 #include "test.h"
 
 #include <fstream>
+#include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 
 using namespace domelight;
@@ -59,6 +62,11 @@ BakeOptions small_options() {
 nlohmann::json read_json(const std::filesystem::path& file) {
     std::ifstream stream(file);
     return nlohmann::json::parse(stream);
+}
+
+std::string text_of(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 int count_files(const std::filesystem::path& folder) {
@@ -221,6 +229,57 @@ TEST_CASE("bake: irradiance is E for generic and E / pi for khronos") {
     CHECK(khronos->metadata.at("domelight.quantity") == "irradiance_over_pi");
     CHECK(report->mean_radiance.x == doctest::Approx(0.5).epsilon(1e-6));
     CHECK(read_json(folder / "generic/manifest.json")["irradiance"]["quantity"] == "irradiance");
+}
+
+TEST_CASE("bake: the bytes of an engine's files do not depend on the engines baked with it") {
+    ImageF image = smooth_image(32);
+    image.at(20, 12)[1] = 1e5f;  // a sun, which narrow lobes take out of the rows
+    const auto files_of = [](const std::filesystem::path& folder) {
+        std::map<std::string, std::string> files;
+        for (const auto& entry : std::filesystem::directory_iterator(folder))
+            files[entry.path().filename().string()] = text_of(entry.path());
+        return files;
+    };
+    const auto bake_it = [&](std::vector<std::string> engines, int size, const std::filesystem::path& folder) {
+        Environment environment = environment_of(image);
+        BakeOptions options;
+        options.engines = std::move(engines);
+        options.size = size;
+        options.irradiance_size = 32;
+        options.threads = 2;
+        options.preview = false;
+        REQUIRE(bake(environment, options, folder));
+    };
+    std::map<int, std::map<std::string, std::string>> alone;  // by size
+    for (const Engine& engine : engines()) {
+        if (engine.name == "generic") continue;
+        CAPTURE(engine.name);
+        const test::TemporaryFolder folder;
+        const int size = engine.name == "playcanvas" ? 512 : engine.name == "unreal" ? 128 : 16;
+        if (alone[size].empty()) {
+            bake_it({"generic"}, size, folder / "alone");
+            alone[size] = files_of(folder / "alone");
+        }
+        bake_it({"generic", engine.name}, size, folder / "both");
+        CHECK(files_of(folder / "both/generic") == alone[size]);
+    }
+}
+
+TEST_CASE("bake: the picture shows the BRDF table as it is stored") {
+    const ImageF image = smooth_image(16);
+    for (const char* engine : {"generic", "filament"}) {
+        const test::TemporaryFolder folder;
+        Environment environment = environment_of(image);
+        BakeOptions options = small_options();
+        options.engines = {engine};
+        options.preview = true;
+        REQUIRE(bake(environment, options, folder.path()));
+        const auto png = decode_png_texture(bytes_of(text_of(folder / "preview.png")));
+        REQUIRE(png);
+        // The third of three cells of 300 px. Scale is the larger part; scale + bias is in the second channel.
+        const std::uint8_t* middle = png->rgba.data() + 4 * ((626 + 150) * png->width + 32 + 2 * 316 + 150);
+        CHECK((middle[0] > middle[1]) == (std::string(engine) == "generic"));
+    }
 }
 
 TEST_CASE("bake: a reading that fails changes nothing") {

@@ -386,14 +386,10 @@ def test_engines_share_a_reading_and_get_folders(folder):
     assert files >= {"khronos/ggx/specular.ktx2", "khronos/charlie/sheen.ktx2", "khronos/lambertian/diffuse.ktx2", "filament/studio_ibl.ktx",
                      "filament/studio_skybox.ktx", "filament/sh.txt", "babylon/studio.env", "bevy/studio_specular.ktx2", "bevy/studio_diffuse.ktx2",
                      "three/studio.pmrem.ktx2", "three-latlong/studio.exr", "generic/specular.ktx2"}, files
-    # The same light as each baked on its own; only the last digits may depend on the company.
+    # The same bytes as each baked on its own.
     for engine in ["khronos", "bevy", "three", "three-latlong"]:
         run("bake", "studio.hdr", "-o", engine, *SMALL, "--for", engine, folder=folder)
-        alone, together = manifest_of(folder / engine), manifest_of(folder / "all" / engine)
-        assert set(files_of(folder / engine)) == set(files_of(folder / "all" / engine)), engine
-        assert alone["options"]["engines"] == [engine] and len(together["options"]["engines"]) == 7
-        sh_alone, sh_together = (json.loads((f / engine / "sh.json").read_text())["radiance"] for f in (folder, folder / "all"))
-        assert all(abs(a - b) < 1e-5 * sh_alone[0][0] for v, w in zip(sh_alone, sh_together) for a, b in zip(v, w)), engine
+        assert files_of(folder / engine) == files_of(folder / "all" / engine), engine
     assert manifest_of(folder / "khronos")["irradiance"]["quantity"] == "irradiance_over_pi"
     lines = (folder / "all/filament/sh.txt").read_text().splitlines()
     assert len(lines) == 9 and lines[0].endswith("// L00, irradiance, pre-scaled base")

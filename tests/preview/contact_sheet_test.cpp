@@ -151,3 +151,30 @@ TEST_CASE("PreviewMap: a constant stays constant across edges, and a direction f
     const Vec3d d = latlong_direction({10.5 / 128, 20.5 / 64});
     CHECK(latlong.sample(Vec3f(d)).x == doctest::Approx(axes.at(10, 20)[0]).epsilon(1e-3));
 }
+
+TEST_CASE("contact_sheet: sheen levels have a row of their own below the others") {
+    const ImageF axes = make_axes_environment(256);
+    const FilteredMap level = cube_of(axes, 128);
+    PreviewInput input;
+    input.specular = {{&level, 0, 0}};
+    input.exposure_ev = 0;
+    input.width = 800;
+    const int without = contact_sheet(input).height();
+    input.sheen = {{&level, 1, 1}};
+    const Image<std::uint8_t> sheet = contact_sheet(input);
+    const int row = 300 + 10 + 225 + 3 * 20 + 8 + 24;  // ball, cross, three lines
+    CHECK(sheet.height() == without + row);
+    const Vec3d n = normalize(Vec3d{1, -0.4, 0} * (1 / std::sqrt(1.16)) + Vec3d{0, 0, 1});
+    check_near(pixel(sheet, 32 + 150 + 149.5 * n.x, 386 + row + 150 - 149.5 * n.y), {0.80f, 0.06f, 0.05f});
+}
+
+TEST_CASE("contact_sheet: the BRDF table shows as many channels as it is said to hold") {
+    const ImageF brdf(16, 16, 3, 0.4f);
+    PreviewInput input;
+    input.brdf = brdf.view();
+    input.width = 800;
+    const int code = to_byte(srgb_encode(0.4f));
+    CHECK(pixel(contact_sheet(input), 32 + 150, 386 + 150) == std::array{code, code, 0});
+    input.brdf_channels = 3;
+    CHECK(pixel(contact_sheet(input), 32 + 150, 386 + 150) == std::array{code, code, code});
+}

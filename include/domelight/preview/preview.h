@@ -16,7 +16,8 @@ namespace domelight {
 struct PreviewLevel {
     const FilteredMap* map = nullptr;
     double roughness = 0, alpha = 0;
-    std::string detail;  ///< in place of "roughness ... α ..." where it is not empty: "exponent 64"
+    std::string detail = {};  ///< in place of "roughness ... α ..." where it is not empty: "exponent 64"
+    std::string name = {};    ///< the line above that; empty: "level 2 · 128²"
 };
 
 /// What a contact sheet shows. Views and pointers are only read during the call; whatever is empty is left out.
@@ -26,16 +27,20 @@ struct PreviewInput {
     ImageView<const float> environment;  ///< lat-long RGB, any size; empty: the first specular level stands for it
     Mat3 world_to_source;                ///< turns the environment as the maps are turned
     std::vector<PreviewLevel> specular;  ///< sharpest first
+    std::vector<PreviewLevel> sheen;     ///< of Charlie's lobe, shown below the others
     const FilteredMap* irradiance_over_pi = nullptr;
+    std::string irradiance_detail;      ///< the second line below it; empty: its size
     std::span<const Vec3d> sh;          ///< radiance coefficients (spherical_harmonics.h)
-    ImageView<const float> brdf;        ///< a BRDF table (brdf_table.h), its first two channels
+    ImageView<const float> brdf;        ///< a BRDF table (brdf_table.h)
+    int brdf_channels = 2;              ///< how many of its channels are shown, as red, green and blue
+    std::string brdf_detail = "red scale, green bias";  ///< what these channels hold
     std::optional<double> exposure_ev;  ///< stops; empty: from the environment's log-average luminance, put to 0.18
     int width = 1600;                   ///< pixels, at least 800
     int threads = 0;
 };
 
 /// A contact sheet (8-bit sRGB, 3 channels) that a person can judge a bake by at a glance: the environment, each level
-/// as a chrome ball and unfolded, irradiance, its spherical-harmonic reconstruction, the BRDF table; tone mapped
+/// (of the sheen too) as a chrome ball and unfolded, irradiance, its spherical-harmonic reconstruction, the BRDF table; tone mapped
 /// (AgX) and labelled.
 ///
 /// Balls are seen along -Z with +X to the right and +Y up, so a chrome ball has +Z at its middle and -Z around its rim.
