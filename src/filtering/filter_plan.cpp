@@ -1,5 +1,7 @@
 #include "filtering/filter_plan.h"
 
+#include "filtering/direct/direct_sums.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -59,7 +61,7 @@ bool is_narrow(const ZonalKernel& kernel) {
 
 }  // namespace
 
-FilterPlan make_filter_plan(const FilterOptions& options) {
+FilterPlan make_filter_plan(const FilterOptions& options, bool sums_directly) {
     struct Need {
         int level, band_limit;
         bool narrow;
@@ -69,14 +71,21 @@ FilterPlan make_filter_plan(const FilterOptions& options) {
         const bool narrow = is_narrow(kernel);
         needs.push_back({level, required_band_limit(kernel, narrow), narrow});
     };
-    for (int l = 0; l < int(options.specular.size()); ++l)
-        if (!options.specular[l].mirror) add(l, options.specular[l].kernel);
+    FilterPlan plan;
+    for (int l = 0; l < int(options.specular.size()); ++l) {
+        const LevelSpec& level = options.specular[l];
+        if (level.mirror) continue;
+        if (sums_directly && is_narrow(level.kernel) && DirectSums::takes_directly(level, options.layout))
+            plan.direct.push_back(l);
+        else
+            add(l, level.kernel);
+    }
+    plan.split = !plan.direct.empty();
     if (options.irradiance_size > 0) add(FilterPlan::k_irradiance, ZonalKernel::cosine());
     std::stable_sort(needs.begin(), needs.end(), [](const Need& a, const Need& b) {
         return std::pair(a.narrow, a.band_limit) > std::pair(b.narrow, b.band_limit);
     });
 
-    FilterPlan plan;
     // The interpolation between rows and rings is made for spectra that have fallen off at the band limit: coefficients
     // that are wanted as they are lie in its first third.
     plan.wide_band_limit = std::max(64, 3 * (options.sh_bands - 1));

@@ -25,9 +25,11 @@ struct FilterPlan {
     /// expanded (BrightSplit).
     bool split = false;
     std::vector<Group> groups;
+    std::vector<int> direct;  ///< levels that are summed over the rows (DirectSums), indices of FilterOptions::specular
 };
 
-FilterPlan make_filter_plan(const FilterOptions& options);
+/// sums_directly   whether levels may be summed over the rows of a lat-long image; else all are expanded
+FilterPlan make_filter_plan(const FilterOptions& options, bool sums_directly);
 
 /// Degrees that a lobe needs for the accuracy that docs/math/prefilter.md states; fewer where the brightest texels are
 /// taken out (`split`).

@@ -5,6 +5,7 @@
 
 #include "filtering/harmonic/bright_texels.h"
 #include "filtering/harmonic/cube_analysis.h"
+#include "filtering/direct/direct_sums.h"
 #include "filtering/filter_plan.h"
 #include "filtering/kernel/residual_kernel.h"
 #include "filtering/harmonic/sh_analysis.h"
@@ -14,6 +15,7 @@
 #include <cmath>
 #include <deque>
 #include <memory>
+#include <optional>
 
 namespace domelight {
 namespace {
@@ -202,10 +204,12 @@ class RowPrefilter {
   public:
     RowPrefilter(int width, int height, const FilterOptions& options)
         : options_(options),
-          plan_(make_filter_plan(options)),
+          plan_(make_filter_plan(options, true)),
           analysis_(width, height, plan_.band_limit, options.threads),
           bright_(width, height),
-          split_(width, height) {}
+          split_(width, height) {
+        if (!plan_.direct.empty()) sums_.emplace(width, height, options, plan_.direct);
+    }
 
     /// Whether add_rows() sets texels of the rows to 0.
     bool changes_rows() const { return plan_.split; }
@@ -214,11 +218,18 @@ class RowPrefilter {
     void add_rows(ImageView<float> rows, std::span<const simd::Summary> summaries) {
         bright_.add_rows(rows, summaries);
         if (plan_.split) split_.take_from(rows, summaries);
+        if (sums_) sums_->add_rows(rows);
         analysis_.add_rows(rows);
     }
 
     /// After the last row.
     Result<void> finish(FilterResult& result) {
+        if (sums_) {
+            std::vector<FilteredMap> maps = sums_->finish(split_);
+            for (std::size_t i = 0; i < maps.size(); ++i)
+                result.specular[std::size_t(plan_.direct[i])] = std::move(maps[i]);
+            sums_.reset();
+        }
         const Spectrum spectrum = analysis_.finish();
         const auto points = [&](int band_limit) { return bright_.points(result.mean, band_limit); };
         if (split_.empty()) return make_levels(spectrum, nullptr, nullptr, points, plan_, options_, result);
@@ -233,6 +244,7 @@ class RowPrefilter {
     ShAnalysis analysis_;
     BrightTexels bright_;
     BrightSplit split_;
+    std::optional<DirectSums> sums_;
 };
 
 /// The options of run `i` of `count`, whose progress goes on from where the run before it ended.
@@ -290,7 +302,7 @@ Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) 
 }
 
 Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& options) {
-    const FilterPlan plan = make_filter_plan(options);
+    const FilterPlan plan = make_filter_plan(options, false);
     FilterResult result;
     result.specular.resize(options.specular.size());
     for (std::size_t l = 0; l < options.specular.size(); ++l) {
