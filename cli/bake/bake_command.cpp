@@ -28,17 +28,11 @@ struct BakeWords {
     EnvironmentOptions environment;
 };
 
-std::string engine_list() {
-    std::string text = "whose convention to bake in; several allowed (generic):";
-    for (const Engine& engine : engines()) text += " " + engine.name + " = " + engine.loads + ";";
-    text.back() = '.';
-    return text;
-}
-
-std::vector<std::string> engine_names() {
-    std::vector<std::string> names;
-    for (const Engine& engine : engines()) names.push_back(engine.name);
-    return names;
+/// Each engine with what is made for it.
+std::vector<std::pair<std::string, std::string>> engine_table() {
+    std::vector<std::pair<std::string, std::string>> table;
+    for (const Engine& engine : engines()) table.emplace_back(engine.name, engine.loads);
+    return table;
 }
 
 void declare(Arguments& a, BakeWords& w) {
@@ -48,9 +42,11 @@ void declare(Arguments& a, BakeWords& w) {
     a.group("What to bake");
     a.text("-o,--output", "DIR", w.output,
            "folder for the results; several environments go to DIR/NAME, several engines to DIR/ENGINE");
-    a.choices("--for", w.engines, engine_names(), engine_list());
+    a.choices("--for", "ENGINE", w.engines, engine_table(),
+              "the engine whose files and conventions to make; several are allowed (generic)");
     a.choice("--layout", w.layout, {"cube", "latlong"}, "cube maps, or lat-long maps with levels (cube)");
-    a.integer("--size", "N", w.size, "level 0: cube face size, or height of the lat-long map (the engine's)");
+    a.integer("--size", "N", w.size,
+              "level 0: cube face size, or height of the lat-long map (the engine's; else the source's)");
     a.integer("--levels", "N", w.levels, "number of levels, each half the size (the engine's)");
     a.numbers("--roughness", "r0,r1,...", w.roughness, "roughness of each level, 0 to 1 (the engine's curve)");
     a.choice("--lobe", w.lobe, {"ggx", "charlie", "phong", "phong-plain"},

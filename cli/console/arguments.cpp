@@ -59,6 +59,7 @@ struct Arguments::Parser {
     struct Entry {
         std::string group, name, value_name, help;
         CLI::Option* option = nullptr;
+        std::vector<std::pair<std::string, std::string>> table = {};  ///< values and what they stand for
     };
     std::vector<Entry> entries;
     bool help = false;
@@ -193,6 +194,15 @@ void Arguments::choices(const std::string& name, std::vector<std::string>& value
         true);
 }
 
+void Arguments::choices(const std::string& name, const std::string& value_name, std::vector<std::string>& values,
+                        const std::vector<std::pair<std::string, std::string>>& accepted, const std::string& help) {
+    std::vector<std::string> words;
+    for (const auto& [word, meaning] : accepted) words.push_back(word);
+    choices(name, values, words, help);
+    parser_->entries.back().value_name = value_name;
+    parser_->entries.back().table = accepted;
+}
+
 bool Arguments::given(const std::string& name) const {
     for (const auto& entry : parser_->entries)
         if (entry.name.ends_with(name)) return entry.option->count() > 0;
@@ -268,6 +278,12 @@ std::string Arguments::help() const {
         out += left.size() < column - 1 ? left + std::string(column - left.size(), ' ')
                                         : left + "\n" + std::string(column, ' ');
         out += wrap(entry.help, 110 - column, column) + "\n";
+        std::size_t widest = 0;
+        for (const auto& [value, meaning] : entry.table) widest = std::max(widest, value.size());
+        const std::size_t indent = 6, meaning_column = indent + widest + 2;
+        for (const auto& [value, meaning] : entry.table)
+            out += std::string(indent, ' ') + value + std::string(meaning_column - indent - value.size(), ' ') +
+                   wrap(meaning, 110 - meaning_column, meaning_column) + "\n";
     }
     return out + "  --help                      this text\n";
 }

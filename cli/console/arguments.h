@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace domelight::cli {
@@ -35,6 +36,9 @@ class Arguments {
     /// Several of `accepted`, in several options or separated by commas.
     void choices(const std::string& name, std::vector<std::string>& values, const std::vector<std::string>& accepted,
                  const std::string& help);
+    /// The same, where the help has one line for each accepted value: its name, and what it stands for.
+    void choices(const std::string& name, const std::string& value_name, std::vector<std::string>& values,
+                 const std::vector<std::pair<std::string, std::string>>& accepted, const std::string& help);
     /// A heading for the options declared after it.
     void group(const std::string& heading) { group_ = heading; }
     /// Whether the option was given.
