@@ -1,13 +1,13 @@
 #include "domelight/bake/bake.h"
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/io/file/file_extension.h"
+#include "domelight/study/environment_survey.h"
 
 #include "base/json.h"
 #include "base/sha256.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/environment_options.h"
-#include "cli/info/environment_survey.h"
 
 #include <fmt/core.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cli/render/render_study.h"
+#include "domelight/study/render_study.h"
 
 #include <cstdint>
 

@@ -80,7 +80,7 @@ Result<void> work(const SampleWords& w, const EnvironmentSampler& sampler, Json&
         for (const Json& file : files.elements()) fmt::print("{}\n", file.get<std::string>());
     json["files"] = std::move(files);
     if (!w.explain.empty()) {
-        auto told = explain_sample(w, sampler);
+        auto told = told_explanation(w, sampler);
         if (!told) return told.error();
         if (!w.common.json) fmt::print("{}", told->text);
         json["explanation"] = std::move(told->json);

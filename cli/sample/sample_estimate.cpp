@@ -2,10 +2,10 @@
 
 #include "domelight/image/colour.h"
 #include "domelight/io/write_image.h"
+#include "domelight/study/strategy_study.h"
 
 #include "base/json.h"
 #include "preview/plot.h"
-#include "cli/sample/sample_study.h"
 
 #include <fmt/core.h>
 
@@ -43,15 +43,9 @@ std::string slope_text(double s) {
     return std::isfinite(s) ? fmt::format("{:.2f}", s) : "-";
 }
 
-/// NaN where one of the two was not asked for.
-double efficiency_ratio(const Study& study, const char* name, const char* than) {
-    const StrategyResult *one = study.find(name), *other = study.find(than);
-    return one && other ? one->efficiency / other->efficiency : NAN;
-}
-
 /// "MIS compensation: 7.3 times the efficiency of mis-balance".
-std::string gain_text(const Study& study, const char* what, const char* name, const char* than) {
-    const double gain = efficiency_ratio(study, name, than);
+std::string gain_text(const StrategyStudy& study, const char* what, const char* name, const char* than) {
+    const double gain = study.efficiency_ratio(name, than);
     if (!std::isfinite(gain) || !(gain > 0)) return "";
     return fmt::format("{}: {} times the efficiency of {} ({})\n", what, times_text(gain), than,
                        gain > 1.1   ? "a gain"
@@ -59,17 +53,7 @@ std::string gain_text(const Study& study, const char* what, const char* name, co
                                     : "about the same");
 }
 
-/// What a kept direction of the product form is worth in directions from the environment, where the ray is what costs;
-/// 0: unknown.
-double per_ray(const Study& study) {
-    if (!study.find("product")) return 0;
-    const StrategyResult &product = *study.find("product"), &environment = *study.find("environment");
-    const double kept = product.error * product.error * product.estimate.samples / study.candidates;
-    const double drawn = environment.error * environment.error * environment.estimate.samples;
-    return kept > 0 && drawn > 0 ? drawn / kept : 0;
-}
-
-std::string table(const SampleWords& w, const Study& study) {
+std::string table(const SampleWords& w, const StrategyStudy& study) {
     std::string text = fmt::format("{}: {}\n", w.environment_name(), surface_text(w));
     text += fmt::format("reference  {:.6g} {:.6g} {:.6g}  ± {:.1e}   ({})\n\n", study.reference.x, study.reference.y,
                         study.reference.z, luminance(study.reference_error), study.reference_method);
@@ -96,14 +80,14 @@ std::string table(const SampleWords& w, const Study& study) {
         "\nerror: RMS of luminance over the reference's; efficiency: 1 / (squared error x CPU time), environment = 1\n";
     text += gain_text(study, "MIS compensation", "mis-balance-compensated", "mis-balance");
     text += gain_text(study, "product by resampling", "product", "environment");
-    const double rays = per_ray(study);
+    const double rays = study.product_gain_per_ray();
     if (rays > 0)
         text += fmt::format("   and {} times per shadow ray, of which it needs one for {} candidates\n",
                             times_text(rays), study.candidates);
     return text;
 }
 
-Json document(const SampleWords& w, const Study& study) {
+Json document(const SampleWords& w, const StrategyStudy& study) {
     Json strategies = Json::array();
     for (const StrategyResult& r : study.strategies) {
         Json curve = Json::array();
@@ -130,14 +114,14 @@ Json document(const SampleWords& w, const Study& study) {
               {"method", study.reference_method}}},
             {"runs", study.runs},
             {"gains",
-             {{"mis_compensation", number_json(efficiency_ratio(study, "mis-balance-compensated", "mis-balance"))},
-              {"product", number_json(efficiency_ratio(study, "product", "environment"))},
-              {"product_per_ray", number_json(per_ray(study))}}},
+             {{"mis_compensation", number_json(study.efficiency_ratio("mis-balance-compensated", "mis-balance"))},
+              {"product", number_json(study.efficiency_ratio("product", "environment"))},
+              {"product_per_ray", number_json(study.product_gain_per_ray())}}},
             {"strategies", std::move(strategies)}};
 }
 
 /// Measured errors as dots; where the variance is known and says that the runs missed most of it, its own line too.
-Plot convergence_plot(const SampleWords& w, const Study& study) {
+Plot convergence_plot(const SampleWords& w, const StrategyStudy& study) {
     Plot plot;
     plot.title = std::filesystem::path(w.environment_name()).filename().string();
     plot.subtitle =
@@ -145,6 +129,7 @@ Plot convergence_plot(const SampleWords& w, const Study& study) {
     plot.x = {"samples", PlotScale::logarithmic, {}};
     plot.y = {"RMS error over the reference's luminance", PlotScale::logarithmic, {}};
     bool computed = false;
+    const std::vector<std::string>& names = studied_strategies();
     for (const StrategyResult& r : study.strategies) {
         PlotSeries s;
         s.name = fmt::format("{}  {}{}", r.name, r.slope < 0 ? "−" : "", slope_text(std::abs(r.slope)));
@@ -154,8 +139,7 @@ Plot convergence_plot(const SampleWords& w, const Study& study) {
         // apart.
         s.line = r.name == "brdf" || r.name == "mis-power" || r.name == "product" ? PlotLine::dashed : PlotLine::solid;
         // A strategy keeps its colour whatever it is compared with.
-        s.colour = plot_colour(std::size_t(std::find(k_strategy_words.begin(), k_strategy_words.end(), r.name) -
-                                           k_strategy_words.begin()));
+        s.colour = plot_colour(std::size_t(std::find(names.begin(), names.end(), r.name) - names.begin()));
         plot.series.push_back(s);
         if (!r.missed()) continue;
         computed = true;
@@ -175,12 +159,31 @@ Plot convergence_plot(const SampleWords& w, const Study& study) {
     return plot;
 }
 
+StrategyStudyOptions study_options(const SampleWords& w, const Progress& progress) {
+    StrategyStudyOptions o;
+    const float alpha = float(w.roughness * w.roughness);
+    const Vec3f f0 = w.metal_f0.size() == 3 ? Vec3f(Vec3d{w.metal_f0[0], w.metal_f0[1], w.metal_f0[2]})
+                                            : Vec3f{1, 1, 1} * float(w.metal_f0[0]);
+    if (w.brdf == "phong") o.brdf = PhongBrdf{float(w.exponent), {1, 1, 1}};
+    if (w.brdf == "ggx") o.brdf = GgxBrdf{alpha, f0, {1, 1, 1}};
+    if (w.brdf == "charlie") o.brdf = CharlieBrdf{alpha, {1, 1, 1}};
+    o.normal = w.normal_world;
+    o.view = w.view_world;
+    o.samples = w.count.value_or(o.samples);
+    o.sequence = w.points;
+    o.seed = w.seed_number;
+    o.strategies = w.strategies;
+    o.threads = w.threads();
+    o.progress = progress;
+    return o;
+}
+
 }  // namespace
 
 Result<Told> estimate_by_all_strategies(const SampleWords& w, const EnvironmentSampler& sampler,
                                         const Progress& progress) {
-    const auto study = study_strategies(w, sampler, progress);
-    if (!study) return study.error();
+    const auto study = study_strategies(sampler, study_options(w, progress));
+    if (!study) return study.error().at(w.environment_name());
     Told told{table(w, *study), document(w, *study)};
     if (!w.plot.empty()) {
         if (auto ok = write_screen_picture(w.plot, draw_plot(convergence_plot(w, *study)).view()); !ok)

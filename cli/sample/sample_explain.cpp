@@ -14,7 +14,7 @@ namespace domelight::cli {
 namespace {
 
 /// The pieces around the one found, with an arrow at it.
-std::string neighbours(const Found& f, const char* piece, const char* axis) {
+std::string neighbours(const CumulativeSearch& f, const char* piece, const char* axis) {
     const int n = int(f.cumulative.size()) - 1;
     std::string text = fmt::format("   {:>8}{:>16}{:>16}{:>14}\n", piece, "C at its begin", "C at its end",
                                    fmt::format("{} from", axis));
@@ -24,7 +24,7 @@ std::string neighbours(const Found& f, const char* piece, const char* axis) {
     return text;
 }
 
-std::string position_text(const Found& f, const char* axis, bool continuous) {
+std::string position_text(const CumulativeSearch& f, const char* axis, bool continuous) {
     std::string text;
     const double s = (f.xi - f.begin) / (f.end - f.begin);
     text += fmt::format(
@@ -41,7 +41,7 @@ std::string position_text(const Found& f, const char* axis, bool continuous) {
     return text;
 }
 
-std::string text_of(const SampleWords& w, const EnvironmentSampler& sampler, const Explanation& e) {
+std::string text_of(const SampleWords& w, const EnvironmentSampler& sampler, const SampleExplanation& e) {
     const int width = sampler.image().width, height = sampler.image().height;
     std::string t = fmt::format("{}, {} x {} texels, {}: the point ({:g}, {:g}) of the unit square\n\n",
                                 w.environment_name(), width, height, w.method, e.point[0], e.point[1]);
@@ -83,12 +83,12 @@ std::string text_of(const SampleWords& w, const EnvironmentSampler& sampler, con
     return t + "\n";
 }
 
-Json found_json(const Found& f, const char* axis) {
+Json found_json(const CumulativeSearch& f, const char* axis) {
     return {{"xi", f.xi},       {"index", f.index}, {"begin", f.begin},  {"end", f.end}, {"fraction", f.fraction},
             {axis, f.position}, {"pdf", f.pdf},     {"search", f.search}};
 }
 
-Json json_of(const Explanation& e) {
+Json json_of(const SampleExplanation& e) {
     const LightSample& s = e.sample;
     Json row = found_json(e.row, "v"), column = found_json(e.column, "u");
     column["rows"] = {e.row_above, e.row_below};
@@ -110,8 +110,8 @@ Json json_of(const Explanation& e) {
 
 }  // namespace
 
-Result<Told> explain_sample(const SampleWords& w, const EnvironmentSampler& sampler) {
-    const Explanation e = explain(sampler, {w.explain[0], w.explain[1]});
+Result<Told> told_explanation(const SampleWords& w, const EnvironmentSampler& sampler) {
+    const SampleExplanation e = explain_sample(sampler, {w.explain[0], w.explain[1]});
     Told told{text_of(w, sampler, e), json_of(e)};
     if (!w.explain_picture.empty()) {
         const std::string title = std::filesystem::path(w.environment_name()).filename().string();

@@ -43,7 +43,7 @@ void arrow(ImageView<std::uint8_t> image, const std::array<double, 2>& a, const 
         line(image, b, {b[0] - 10 * dx / l + side * 4.5 * dy / l, b[1] - 10 * dy / l - side * 4.5 * dx / l}, 2, colour);
 }
 
-void draw_cumulative(ImageView<std::uint8_t> image, const Panel& p, const Found& f, Colour8 colour) {
+void draw_cumulative(ImageView<std::uint8_t> image, const Panel& p, const CumulativeSearch& f, Colour8 colour) {
     for (int k = 0; k <= 4; ++k) line(image, p.at(0, k / 4.0), p.at(1, k / 4.0), 1, k_grid);
     // The density behind it, scaled to its largest value: where light is, the cumulative function is steep.
     const int n = int(f.places.size()) - 1, pixels = p.vertical ? p.where.height : p.where.width;
@@ -70,7 +70,7 @@ void draw_cumulative(ImageView<std::uint8_t> image, const Panel& p, const Found&
 
 }  // namespace
 
-Image<std::uint8_t> explanation_picture(const EnvironmentSampler& sampler, const Explanation& e,
+Image<std::uint8_t> explanation_picture(const EnvironmentSampler& sampler, const SampleExplanation& e,
                                         const std::string& title, int threads) {
     Image<std::uint8_t> picture(k_marginal.x + k_marginal.width + 24, k_conditional.y + k_conditional.height + 44, 3);
     const auto image = picture.view();

@@ -1,6 +1,7 @@
 #include "cli/sample/sample_options.h"
 
 #include "domelight/io/write_image.h"
+#include "domelight/study/strategy_study.h"
 
 #include "cli/console/environment_options.h"
 #include "cli/console/output_endings.h"
@@ -88,10 +89,6 @@ Result<void> check_explain(const Arguments& arguments, const SampleWords& w) {
 
 }  // namespace
 
-const std::vector<std::string> k_strategy_words{"riemann",     "uniform",     "cosine",    "brdf",
-                                                "environment", "mis-balance", "mis-power", "mis-balance-compensated",
-                                                "product"};
-
 std::string method_word(DistributionMethod method) {
     std::string name = method_name(method);
     std::replace(name.begin(), name.end(), '_', '-');
@@ -132,7 +129,7 @@ void declare_sample_options(Arguments& a, SampleWords& w) {
     a.choice("--tables-format", w.tables_format, {"ktx2", "exr"}, "their format (ktx2)");
     a.group("How good each strategy is");
     a.flag("--estimate", w.estimate, "estimate the light that a surface reflects by every strategy, and compare them");
-    a.choices("--strategy", w.strategies, k_strategy_words, "compare only these with environment (all)");
+    a.choices("--strategy", w.strategies, studied_strategies(), "compare only these with environment (all)");
     a.text("--plot", "FILE", w.plot, "each strategy's error over the number of samples, with slopes, .png or .jpg");
     a.numbers("--normal", "X,Y,Z", w.normal, "the surface's normal (0,1,0)");
     a.numbers("--view", "X,Y,Z", w.view, "towards the viewer (the normal)");

@@ -45,9 +45,6 @@ struct SampleWords {
     std::string environment_name() const;
 };
 
-/// What --estimate compares: strategy_name()s, and MIS with the compensated density.
-extern const std::vector<std::string> k_strategy_words;
-
 void declare_sample_options(Arguments& arguments, SampleWords& words);
 /// Checks the values and how they go together, and fills in what is read off them. Errors name the option.
 Result<void> check_sample_options(const Arguments& arguments, SampleWords& words);

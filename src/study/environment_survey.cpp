@@ -1,8 +1,8 @@
-#include "cli/info/environment_survey.h"
+#include "domelight/study/environment_survey.h"
 
+#include "domelight/filtering/prefilter.h"
 #include "domelight/filtering/resample/area_resample.h"
 #include "domelight/image/colour.h"
-#include "domelight/filtering/prefilter.h"
 #include "domelight/projection/projection.h"
 
 #include "bake/tap.h"
@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace domelight::cli {
+namespace domelight {
 namespace {
 
 void note_range(EnvironmentSurvey& survey, std::span<const float> values) {
@@ -23,7 +23,7 @@ void note_range(EnvironmentSurvey& survey, std::span<const float> values) {
 struct Blob {
     Vec3d sum;  ///< of directions times power
     double power = 0, peak = 0;
-    double core = 0;  ///< solid angle of what is at least half as bright as the peak
+    double core = 0;  ///< solid angle of the texels at least half as bright as the peak
 };
 
 /// The texels connected to `start` (the seam wraps) whose luminance exceeds `threshold`; marks them as taken.
@@ -141,4 +141,4 @@ Result<EnvironmentSurvey> survey_environment(Environment& environment, int threa
     return survey;
 }
 
-}  // namespace domelight::cli
+}  // namespace domelight

@@ -1,7 +1,7 @@
-#include "cli/render/render_study.h"
+#include "domelight/study/render_study.h"
 
-#include "domelight/compare/metrics.h"
 #include "domelight/base/random.h"
+#include "domelight/compare/metrics.h"
 #include "domelight/render/shading/shading.h"
 
 #include <fmt/core.h>
@@ -10,7 +10,7 @@
 #include <array>
 #include <cmath>
 
-namespace domelight::cli {
+namespace domelight {
 namespace {
 
 constexpr LightStrategy k_strategies[] = {LightStrategy::environment, LightStrategy::brdf, LightStrategy::mis};
@@ -372,4 +372,4 @@ Result<SplitSumFigure> study_split_sum(const StudyScene& study, const StudyLight
     return figure;
 }
 
-}  // namespace domelight::cli
+}  // namespace domelight

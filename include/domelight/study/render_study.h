@@ -1,14 +1,15 @@
 #pragma once
+// The figures of `render --study`: how errors of rendering depend on strategy, samples, roughness and angle.
 
-#include "domelight/sampling/environment_sampler.h"
 #include "domelight/base/progress.h"
 #include "domelight/render/render.h"
+#include "domelight/scene/scene.h"
 
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace domelight::cli {
+namespace domelight {
 
 /// How much work a study is.
 struct RenderStudyOptions {
@@ -103,4 +104,4 @@ Result<SplitSumFigure> study_split_sum(const StudyScene& scene, const StudyLight
 /// "environment", "BRDF", "MIS".
 const char* strategy_label(LightStrategy strategy);
 
-}  // namespace domelight::cli
+}  // namespace domelight

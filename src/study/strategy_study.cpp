@@ -1,11 +1,11 @@
-#include "cli/sample/sample_study.h"
+#include "domelight/study/strategy_study.h"
 
-#include "domelight/image/colour.h"
 #include "domelight/base/parallel.h"
 #include "domelight/base/random.h"
 #include "domelight/filtering/reference.h"
+#include "domelight/image/colour.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include <functional>
 #include <mutex>
 
-namespace domelight::cli {
+namespace domelight {
 namespace {
 
 double thread_seconds() {
@@ -22,14 +22,8 @@ double thread_seconds() {
     return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-Surface surface_of(const SampleWords& w) {
-    const float alpha = float(w.roughness * w.roughness);
-    const Vec3f f0 = w.metal_f0.size() == 3 ? Vec3f(Vec3d{w.metal_f0[0], w.metal_f0[1], w.metal_f0[2]})
-                                            : Vec3f{1, 1, 1} * float(w.metal_f0[0]);
-    if (w.brdf == "phong") return make_surface(w.normal_world, w.view_world, PhongBrdf{float(w.exponent), {1, 1, 1}});
-    if (w.brdf == "ggx") return make_surface(w.normal_world, w.view_world, GgxBrdf{alpha, f0, {1, 1, 1}});
-    if (w.brdf == "charlie") return make_surface(w.normal_world, w.view_world, CharlieBrdf{alpha, {1, 1, 1}});
-    return make_surface(w.normal_world, w.view_world, LambertBrdf{});
+Surface surface_of(const StrategyStudyOptions& o) {
+    return std::visit([&](const auto& brdf) { return make_surface(o.normal, o.view, brdf); }, o.brdf);
 }
 
 /// Mean and its standard error over independent runs.
@@ -49,52 +43,60 @@ Runs repeat(int runs, int threads, const std::function<Vec3d(int run)>& one) {
     return out;
 }
 
-/// One line of the table: which strategy on which sampler.
+/// A strategy together with the sampler that it draws from.
 struct Contender {
     std::string name;
     Strategy strategy;
     const EnvironmentSampler* sampler;
-    /// Density per steradian, local L; for strategies that have one.
+    /// Density per steradian (L in the local frame); empty for strategies that have none.
     std::function<double(const Vec3f& L, const Vec3f& world)> density;
 };
 
 class Runner {
   public:
-    Runner(const SampleWords& w, const EnvironmentSampler& plain, const EnvironmentSampler& compensated)
-        : words_(w), plain_(plain), compensated_(compensated), surface_(surface_of(w)), frame_(surface_.normal) {}
+    Runner(const StrategyStudyOptions& options, const EnvironmentSampler& plain, const EnvironmentSampler& compensated)
+        : options_(options),
+          plain_(plain),
+          compensated_(compensated),
+          surface_(surface_of(options)),
+          frame_(surface_.normal) {}
 
-    void find_reference(Study& study) const;
+    void find_reference(StrategyStudy& study) const;
     std::vector<Contender> contenders() const;
-    bool run(const Contender& contender, Study& study, const std::function<bool(double)>& told) const;
+    /// Adds the contender's results to the study. False where `told` cancelled.
+    bool run(const Contender& contender, StrategyStudy& study, const std::function<bool(double)>& told) const;
 
   private:
     Estimate estimate(const Contender& c, int samples, int candidates, int run) const {
         EstimateOptions o;
         o.samples = samples;
         o.candidates = candidates;
-        o.sequence = words_.points;
+        o.sequence = options_.sequence;
         // Run 0 is what a program with this seed gets.
-        o.seed = run == 0 ? words_.seed_number : derive_key(words_.seed_number, std::uint64_t(run));
+        o.seed = run == 0 ? options_.seed : derive_key(options_.seed, std::uint64_t(run));
         return estimate_reflection(surface_, *c.sampler, c.strategy, o);
     }
-    std::optional<double> variance(const Contender& c, const Study& study) const;
+    std::optional<double> variance(const Contender& c, const StrategyStudy& study) const;
 
-    const SampleWords& words_;
+    const StrategyStudyOptions& options_;
     const EnvironmentSampler &plain_, &compensated_;
     Surface surface_;
     Frame<double> frame_;
 };
 
-void Runner::find_reference(Study& study) const {
-    if (words_.brdf == "lambert" && plain_.distribution().continuous()) {
+void Runner::find_reference(StrategyStudy& study) const {
+    const auto* lambert = std::get_if<LambertBrdf>(&options_.brdf);
+    if (lambert && plain_.distribution().continuous()) {
         const Vec3d direction = plain_.world_to_source() * surface_.normal;
-        study.reference =
-            convolve_exactly(plain_.image(), ZonalKernel::cosine(), std::span(&direction, 1), words_.threads())[0];
+        const Vec3d light =
+            convolve_exactly(plain_.image(), ZonalKernel::cosine(), std::span(&direction, 1), options_.threads)[0];
+        const Vec3d albedo(lambert->albedo);
+        study.reference = {albedo.x * light.x, albedo.y * light.y, albedo.z * light.z};
         study.reference_method = "exact: the cosine integrated over the bilinear environment";
         return;
     }
     constexpr int runs = 16, samples = 1 << 17;
-    const Runs r = repeat(runs, words_.threads(), [&](int i) {
+    const Runs r = repeat(runs, options_.threads, [&](int i) {
         EstimateOptions o{samples, Sequence::sobol, derive_key(0x5265666572656e63, std::uint64_t(i)), 8};
         return estimate_reflection(surface_, compensated_, Strategy::mis_balance, o).radiance;
     });
@@ -119,7 +121,7 @@ std::vector<Contender> Runner::contenders() const {
         {"mis-balance-compensated", Strategy::mis_balance, &compensated_, {}},
         {"product", Strategy::product, &plain_, {}}};
     // Environment sampling is the yardstick of the efficiencies.
-    const auto& wanted = words_.strategies;
+    const auto& wanted = options_.strategies;
     std::erase_if(all, [&](const Contender& c) {
         return !wanted.empty() && c.name != "environment" &&
                std::find(wanted.begin(), wanted.end(), c.name) == wanted.end();
@@ -128,8 +130,8 @@ std::vector<Contender> Runner::contenders() const {
 }
 
 /// Variance of one sample over the squared mean, of luminance.
-std::optional<double> Runner::variance(const Contender& c, const Study& study) const {
-    if (!c.density || words_.points != Sequence::random) return std::nullopt;
+std::optional<double> Runner::variance(const Contender& c, const StrategyStudy& study) const {
+    if (!c.density || options_.sequence != Sequence::random) return std::nullopt;
     // A surface whose BRDF is f times f L cos / p reflects the second moment.
     Surface squared = surface_;
     squared.evaluate = [&](const Vec3f& V, const Vec3f& L) {
@@ -139,7 +141,7 @@ std::optional<double> Runner::variance(const Contender& c, const Study& study) c
                                                   L.z;
         return value > 0 ? f * float(value / p) : Vec3f{};
     };
-    const Runs r = repeat(16, words_.threads(), [&](int i) {
+    const Runs r = repeat(16, options_.threads, [&](int i) {
         EstimateOptions o{1 << 14, Sequence::sobol, derive_key(0x566172, std::uint64_t(i)), 8};
         return estimate_reflection(squared, compensated_, Strategy::mis_balance, o).radiance;
     });
@@ -169,7 +171,7 @@ std::vector<int> steps(int most) {
     return n;
 }
 
-bool Runner::run(const Contender& c, Study& study, const std::function<bool(double)>& told) const {
+bool Runner::run(const Contender& c, StrategyStudy& study, const std::function<bool(double)>& told) const {
     StrategyResult result;
     result.name = c.name;
     const double mean = luminance(study.reference);
@@ -181,7 +183,7 @@ bool Runner::run(const Contender& c, Study& study, const std::function<bool(doub
         const int runs = c.strategy == Strategy::riemann ? 1 : study.runs * std::min(4, study.samples / n);
         std::vector<double> squares(runs), seconds(runs);
         std::vector<Estimate> first(1);
-        parallel_for(runs, words_.threads(), [&](int i) {
+        parallel_for(runs, options_.threads, [&](int i) {
             const double start = thread_seconds();
             const Estimate e = estimate(c, n, study.candidates, i);
             seconds[i] = thread_seconds() - start;
@@ -203,8 +205,8 @@ bool Runner::run(const Contender& c, Study& study, const std::function<bool(doub
     return true;
 }
 
-/// Efficiencies, and how far each strategy is from 1 %.
-void conclude(Study& study, Sequence points) {
+/// Fills in the efficiencies, and how many samples each strategy needs for an error of 1 %.
+void conclude(StrategyStudy& study, Sequence points) {
     const StrategyResult& yardstick = *study.find("environment");
     const auto squared_error = [&](const StrategyResult& r) {
         const double expected = r.expected_error() * r.expected_error();
@@ -226,36 +228,68 @@ void conclude(Study& study, Sequence points) {
     }
 }
 
+Result<void> check(const StrategyStudyOptions& options) {
+    if (options.samples < 1) return Error{fmt::format("is {}, not at least 1", options.samples), "samples", ""};
+    if (!(dot(options.normal, options.view) > 0))
+        return Error{"lies below the surface", "view", "Its angle with the normal must be less than 90 degrees."};
+    const auto& known = studied_strategies();
+    for (const std::string& name : options.strategies)
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            return Error{fmt::format("\"{}\" is none of {}", name, fmt::join(known, ", ")), "strategies", ""};
+    return {};
+}
+
 }  // namespace
 
-const StrategyResult* Study::find(const std::string& name) const {
+const StrategyResult* StrategyStudy::find(const std::string& name) const {
     const auto found =
         std::find_if(strategies.begin(), strategies.end(), [&](const StrategyResult& r) { return r.name == name; });
     return found == strategies.end() ? nullptr : &*found;
 }
 
-Result<Study> study_strategies(const SampleWords& w, const EnvironmentSampler& sampler, const Progress& progress) {
-    EnvironmentSamplerOptions options = sampler.options();
-    options.compensate = true;
-    auto compensated = EnvironmentSampler::build(sampler.image(), options, sampler.world_to_source());
+double StrategyStudy::efficiency_ratio(const std::string& name, const std::string& than) const {
+    const StrategyResult *one = find(name), *other = find(than);
+    return one && other ? one->efficiency / other->efficiency : NAN;
+}
+
+double StrategyStudy::product_gain_per_ray() const {
+    const StrategyResult *product = find("product"), *environment = find("environment");
+    if (!product || !environment) return 0;
+    const double kept = product->error * product->error * product->estimate.samples / candidates;
+    const double drawn = environment->error * environment->error * environment->estimate.samples;
+    return kept > 0 && drawn > 0 ? drawn / kept : 0;
+}
+
+const std::vector<std::string>& studied_strategies() {
+    static const std::vector<std::string> names{"riemann",     "uniform",     "cosine",    "brdf",
+                                                "environment", "mis-balance", "mis-power", "mis-balance-compensated",
+                                                "product"};
+    return names;
+}
+
+Result<StrategyStudy> study_strategies(const EnvironmentSampler& sampler, const StrategyStudyOptions& options) {
+    if (auto ok = check(options); !ok) return ok.error();
+    EnvironmentSamplerOptions with_compensation = sampler.options();
+    with_compensation.compensate = true;
+    auto compensated = EnvironmentSampler::build(sampler.image(), with_compensation, sampler.world_to_source());
     if (!compensated) return compensated.error();
-    const Runner runner(w, sampler, *compensated);
-    Study study;
-    study.samples = w.count.value_or(4096);
+    const Runner runner(options, sampler, *compensated);
+    StrategyStudy study;
+    study.samples = options.samples;
     study.runs = std::clamp((1 << 19) / study.samples, 8, 64);
-    const auto tell = [&](double done) { return !progress || progress("estimate", done); };
+    const auto tell = [&](double done) { return !options.progress || options.progress("estimate", done); };
     const Error cancelled{"cancelled", "", ""};
     if (!tell(0)) return cancelled;
     runner.find_reference(study);
     if (!(luminance(study.reference) > 0))
-        return Error{"no light reaches the viewer from this surface", w.environment_name(), "Turn it: --normal x,y,z."};
+        return Error{"no light reaches the viewer from this surface", "", "Turn its normal towards the light."};
     const auto contenders = runner.contenders();
     for (std::size_t i = 0; i < contenders.size(); ++i) {
         const auto told = [&](double done) { return tell((double(i) + done) / double(contenders.size())); };
         if (!runner.run(contenders[i], study, told)) return cancelled;
     }
-    conclude(study, w.points);
+    conclude(study, options.sequence);
     return study;
 }
 
-}  // namespace domelight::cli
+}  // namespace domelight

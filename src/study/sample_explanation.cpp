@@ -1,4 +1,4 @@
-#include "cli/sample/sample_explanation.h"
+#include "domelight/study/sample_explanation.h"
 
 #include "domelight/sampling/distribution/guided.h"
 
@@ -9,11 +9,11 @@
 #include <cmath>
 #include <functional>
 
-namespace domelight::cli {
+namespace domelight {
 namespace {
 
 /// Pieces from places[i] to places[i + 1] with the densities given at their ends (any scale); linear in between.
-Found search(double xi, std::vector<double> places, const std::function<std::array<double, 2>(int)>& ends) {
+CumulativeSearch search(double xi, std::vector<double> places, const std::function<std::array<double, 2>(int)>& ends) {
     const int n = int(places.size()) - 1;
     std::vector<double> cumulative(n + 1);
     for (int i = 0; i < n; ++i) {
@@ -22,7 +22,7 @@ Found search(double xi, std::vector<double> places, const std::function<std::arr
     }
     const double total = cumulative[n];
     for (double& c : cumulative) c /= total;
-    Found f;
+    CumulativeSearch f;
     f.xi = xi;
     // The first piece that ends beyond xi; rounding of the last sum may leave none, and then it is the last that is not
     // empty.
@@ -50,8 +50,8 @@ std::vector<double> even_places(int n, double first = 0) {
     return places;
 }
 
-/// What the method does to find the piece.
-std::string search_words(const EnvironmentSampler& sampler, const Found& found, bool column, int row) {
+/// How the method finds the piece.
+std::string search_words(const EnvironmentSampler& sampler, const CumulativeSearch& found, bool column, int row) {
     const int n = int(found.places.size()) - 1;
     switch (sampler.options().method) {
         case DistributionMethod::linear:
@@ -76,7 +76,7 @@ std::string search_words(const EnvironmentSampler& sampler, const Found& found, 
 
 }  // namespace
 
-Explanation explain(const EnvironmentSampler& sampler, const std::array<double, 2>& point) {
+SampleExplanation explain_sample(const EnvironmentSampler& sampler, const std::array<double, 2>& point) {
     const SamplingTextures tables = sampling_textures(sampler);
     const int w = tables.columns.width(), h = tables.columns.height();
     // The sampler takes the middle of a point's quantum of 2^-32; so v = 0, where the Jacobian is, never comes.
@@ -84,7 +84,7 @@ Explanation explain(const EnvironmentSampler& sampler, const std::array<double, 
     const auto row_density = [&](int j) { return double(tables.rows.at(0, j)[1]); };
     const auto density = [&](int i, int j) { return double(tables.columns.at(i, j)[1]); };
 
-    Explanation e;
+    SampleExplanation e;
     e.point = point;
     e.continuous = sampler.distribution().continuous();
     if (e.continuous) {
@@ -121,4 +121,4 @@ Explanation explain(const EnvironmentSampler& sampler, const std::array<double, 
     return e;
 }
 
-}  // namespace domelight::cli
+}  // namespace domelight
