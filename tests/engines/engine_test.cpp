@@ -151,7 +151,7 @@ TEST_CASE("engine: unity inverts its lookup level = 6 r (1.7 - 0.7 r) of seven l
         CHECK(6 * r * (1.7 - 0.7 * r) == doctest::Approx(l));
     }
     CHECK(plan.specular[6].roughness == doctest::Approx(1));
-    CHECK(plan.panorama_size == 1024);
+    CHECK(plan.panorama->height == 1024);
 }
 
 TEST_CASE("engine: unreal inverts its lookup level = last - 1 + 1.2 log2 r") {
