@@ -118,7 +118,7 @@ int main(int argc, char** argv) {
         report("100000:1 half-degree sun", sun_image(full ? 1024 : 512, 1e5, 0.4, 1.0), only, random, worst, figures);
     for (const auto& file : files) {
         auto environment = open_environment({file});
-        auto image = environment && environment->latlong ? read_latlong(*environment->latlong)
+        auto image = environment && !environment->cube() ? read_latlong(**environment->rows())
                                                          : Result<ImageF>(Error{"not a lat-long", "", ""});
         if (!image) {
             fmt::print("\n{}: {}\n", file.filename().string(), image.error().format());

@@ -48,11 +48,13 @@ Result<void> decode(const std::filesystem::path& source, int threads) {
     options.threads = threads;
     auto environment = open_environment({source}, options);
     if (!environment) return environment.error();
-    if (!environment->latlong) return Error{"is not a lat-long image", source.string(), ""};
-    RowSource& rows = *environment->latlong;
-    ImageF block(rows.width(), 64, 3);
-    for (int y = 0; y < rows.height(); y += block.height())
-        if (auto ok = rows.read(block.view().rows(0, std::min(block.height(), rows.height() - y))); !ok) return ok;
+    if (environment->cube()) return Error{"is not a lat-long image", source.string(), ""};
+    const auto rows = environment->rows();
+    if (!rows) return rows.error();
+    const int height = (*rows)->height();
+    ImageF block((*rows)->width(), 64, 3);
+    for (int y = 0; y < height; y += block.height())
+        if (auto ok = (*rows)->read(block.view().rows(0, std::min(block.height(), height - y))); !ok) return ok;
     return {};
 }
 
@@ -70,7 +72,7 @@ Result<void> decode_faces(std::vector<File>& files, const std::filesystem::path&
     if (!environment) return environment.error();
     // Which face is which does not matter here: all are written.
     for (std::size_t f = 0; f < files.size(); ++f) {
-        const ImageView<float> face = environment->cube.face(int(f));
+        const ImageView<const float> face = environment->cube()->face(int(f));
         files[f].picture = ImageF(face.width, face.height, 3);
         std::copy_n(face.data, files[f].picture.pixels().size(), files[f].picture.pixels().begin());
     }

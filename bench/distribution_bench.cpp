@@ -72,8 +72,8 @@ Result<ImageF> load(const std::string& file) {
     }
     auto environment = open_environment({file});
     if (!environment) return environment.error();
-    if (!environment->latlong) return Error{"not a lat-long", file, ""};
-    return read_latlong(*environment->latlong);
+    if (environment->cube()) return Error{"not a lat-long", file, ""};
+    return read_latlong(**environment->rows());
 }
 
 std::vector<UnitPoint> random_points(int count) {

@@ -128,7 +128,7 @@ int main(int argc, char** argv) {
     }
     for (const auto& file : files) {
         auto environment = open_environment({file});
-        auto image = environment && environment->latlong ? read_latlong(*environment->latlong)
+        auto image = environment && !environment->cube() ? read_latlong(**environment->rows())
                                                          : Result<ImageF>(Error{"not a lat-long", "", ""});
         if (image)
             report(file.filename().string(), *image);

@@ -173,7 +173,7 @@ int main(int argc, char** argv) {
     const int texels = argc > 4 ? std::atoi(argv[4]) : 200;
 
     Environment environment = take(open_environment({argv[1]}));
-    const ImageF source = take(read_latlong(*environment.latlong));
+    const ImageF source = take(read_latlong(**environment.rows()));
     const std::vector<Cubemap> chain = read_chain(argv[3], int(roughness.size()));
 
     const Mat3 turn = environment.world_to_source * orientation_of(chain.back(), source, roughness.back());

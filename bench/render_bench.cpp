@@ -107,8 +107,8 @@ ImageF make_environment(const Words& w) {
     }
     auto environment = open_environment({w.environment});
     if (!environment) fail(environment.error());
-    if (!environment->latlong) fail(Error{"is not a lat-long", w.environment, ""});
-    auto image = read_latlong(*environment->latlong);
+    if (environment->cube()) fail(Error{"is not a lat-long", w.environment, ""});
+    auto image = read_latlong(**environment->rows());
     if (!image) fail(image.error());
     return std::move(*image);
 }

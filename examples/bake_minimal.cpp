@@ -13,12 +13,10 @@ Result<void> bake(const char* photograph, const char* texture) {
     if (!environment) return environment.error();
 
     FilterOptions options;
-    options.world_to_source = environment->world_to_source;
     for (int level = 0; level < 5; ++level)  // 256^2, the environment itself, to 16^2, fully rough
         options.specular.push_back({256 >> level, level == 0, ZonalKernel::ggx(level / 4.0)});
 
-    auto filtered = environment->latlong ? prefilter(*environment->latlong, options)  // row by row
-                                         : prefilter(environment->cube, options);
+    auto filtered = prefilter(*environment, options);
     if (!filtered) return filtered.error();
     return write_ktx2(texture, encode_texture(filtered->specular, Encoding::rgba16f, 0));
 }

@@ -22,15 +22,9 @@ inline ImageF direction_image(int height) {
     return image;
 }
 
-/// Keeps the view, not the pixels.
 inline Environment environment_of(const ImageF& image) {
-    Environment environment;
+    Environment environment = Environment::from_latlong(image);
     environment.format = "test";
-    environment.projection = "latlong";
-    environment.width = image.width();
-    environment.height = image.height();
-    environment.latlong = std::make_unique<ImageRowSource>(image.view());
-    environment.report = std::make_shared<RepairReport>();
     return environment;
 }
 

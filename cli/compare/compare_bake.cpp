@@ -86,12 +86,12 @@ Result<Bake> read_pictures(const std::vector<std::string>& words, int threads) {
     for (const std::string& word : words) {
         auto cube = open_environment(environment_files({word}), options);
         if (!cube) return cube.error();
-        if (cube->cube.empty())
+        if (!cube->cube())
             return Error{
                 "is not a picture of a cube", word,
                 "Give a KTX2, KTX or DDS with its levels, or a cube picture or folder of six faces for each level."};
         bake.format = cube->format;
-        bake.levels.emplace_back().cube = std::move(cube->cube);
+        bake.levels.emplace_back().cube = *cube->cube();
     }
     return bake;
 }
@@ -272,16 +272,13 @@ int compare_bake(const BakeWords& w, const CommonOptions& common) {
     if (!bake) return print_error(bake.error());
     auto environment = open_environment_or_sky(w.env, options);
     if (!environment) return print_error(environment.error());
-    ImageF latlong;
     AuditSource source;
     source.world_to_source = environment->world_to_source;
-    if (environment->latlong) {
-        auto pixels = read_latlong(*environment->latlong);
+    source.cube = environment->cube();
+    if (!source.cube) {
+        const auto pixels = environment->latlong();
         if (!pixels) return print_error(pixels.error().at(join(w.env, " ")));
-        latlong = std::move(*pixels);
-        source.latlong = latlong.view();
-    } else {
-        source.cube = &environment->cube;
+        source.latlong = (*pixels)->view();
     }
     AuditOptions audit_options;
     audit_options.threads = threads;
@@ -295,11 +292,11 @@ int compare_bake(const BakeWords& w, const CommonOptions& common) {
         audit = audit_bake(bake->levels, source, audit_options);
     }
     if (!audit) return print_error(audit.error().at(w.bake[0]));
-    print_warnings(environment->report->warnings, common, join(w.env, " "));
+    print_warnings(environment->report().warnings, common, join(w.env, " "));
     const std::string convention =
         source.cube ? "" : convention_of(audit->orientation.ours_from_theirs, source.world_to_source);
     if (common.json)
-        print_json(w, *bake, *audit, convention, environment->report->warnings);
+        print_json(w, *bake, *audit, convention, environment->report().warnings);
     else if (!common.quiet)
         print_text(w, *bake, *audit, convention);
     return audit->passed() ? exit_done : exit_failed;

@@ -41,17 +41,16 @@ Result<Environment> built_in_sky(const EnvironmentOptions& options) {
     if (!std::isfinite(options.rotate_y_deg)) return Error{"angle is not a number", "--rotate-y-deg", ""};
     if (!(std::abs(options.exposure) <= 64))
         return Error{"exposure must lie between -64 and 64 stops", "--exposure", ""};
-    Environment sky;
-    sky.format = "sky";
-    sky.projection = "latlong";
     // A sun of true radiance, 1e7 W/(m^2 sr), is far beyond half floats: eight stops down it fits.
     constexpr double built_in_exposure = -8;
-    sky.latlong =
-        std::make_unique<ScaledRows>(make_sky(SkyOptions{}), float(std::exp2(options.exposure + built_in_exposure)));
-    sky.width = sky.latlong->width();
-    sky.height = sky.latlong->height();
+    const float scale = float(std::exp2(options.exposure + built_in_exposure));
+    const auto open = [scale](std::shared_ptr<RepairReport>) -> Result<std::unique_ptr<RowSource>> {
+        return std::unique_ptr<RowSource>(std::make_unique<ScaledRows>(make_sky(SkyOptions{}), scale));
+    };
+    const int height = SkyOptions{}.height;
+    Environment sky = Environment::from_rows(2 * height, height, open);
+    sky.format = "sky";
     sky.world_to_source = rotation_y(options.rotate_y_deg * k_pi / 180).transposed();
-    sky.report = std::make_shared<RepairReport>();
     return sky;
 }
 

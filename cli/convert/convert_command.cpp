@@ -136,7 +136,7 @@ void print_json(const ConvertWords& w, const Environment& environment, const Con
           {"projection", environment.projection},
           {"width", environment.width},
           {"height", environment.height},
-          {"repaired", environment.report->repaired()}}},
+          {"repaired", environment.report().repaired()}}},
         {"files", written.files},
         {"projection", w.to},
         {"layout", w.output.layout},
@@ -204,7 +204,6 @@ int run_convert(const std::vector<std::string>& words) {
 
     const int threads = w.common.threads.value_or(0);
     w.environment.threads = w.output.threads = threads;
-    w.environment.keep_projection = true;
     auto environment = open_environment_or_sky(w.files, w.environment);
     if (!environment) return print_error(environment.error());
     const auto size = chart_size(w, *environment, *target);
@@ -215,7 +214,7 @@ int run_convert(const std::vector<std::string>& words) {
     if (!made) return print_error(made.error());
     const auto written = write_projected(made->image, w.output);
     if (!written) return print_error(written.error());
-    print_warnings(environment->report->warnings, w.common);
+    print_warnings(environment->report().warnings, w.common);
     if (written->clips) print_warnings({w.output.file + ": 8 bits clip at 1; write .hdr or .exr for light"}, w.common);
     if (!target->full())
         print_warnings({fmt::format("{} shows {:.0f} % of all directions: the rest is lost", target->name(),

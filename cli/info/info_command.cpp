@@ -50,7 +50,7 @@ Json environment_json(const std::string& name, const Environment& e, const Envir
                           {"elevation_deg", light.elevation_deg},
                           {"radius_deg", light.radius_deg},
                           {"share", light.share}});
-    const RepairReport& r = *e.report;
+    const RepairReport r = e.report();
     return {{"version", version()},
             {"kind", "environment"},
             {"file", name},
@@ -82,7 +82,7 @@ void print_environment(const std::string& name, const Environment& e, const Envi
             100 * l.share, l.direction.x, l.direction.y, l.direction.z, l.azimuth_deg, l.elevation_deg,
             2 * l.radius_deg);
     if (s.lights.empty()) fmt::print("  bright light     none stands out\n");
-    const RepairReport& r = *e.report;
+    const RepairReport r = e.report();
     if (r.repaired())
         fmt::print(
             "  bad texels       {} not a number, {} infinite, {} negative (down to {:.4g}); repaired on reading\n",
@@ -103,7 +103,7 @@ int info_environment(const InfoWords& w) {
         survey = survey_environment(*environment, options.threads, bar.callback());
     }
     if (!survey) return print_error(survey.error().at(name));
-    print_warnings(environment->report->warnings, w.common, name);
+    print_warnings(environment->report().warnings, w.common, name);
     if (w.common.json)
         print_document(environment_json(name, *environment, *survey));
     else

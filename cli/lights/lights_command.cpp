@@ -77,16 +77,16 @@ struct Picture {
     Mat3 world_to_source;
 };
 
-Result<Picture> read_picture(Environment& environment, int threads) {
-    if (environment.latlong) {
-        auto image = read_latlong(*environment.latlong);
-        if (!image) return image.error();
-        return Picture{*std::move(image), environment.world_to_source};
-    }
+Result<Picture> read_picture(const Environment& environment, int threads) {
     // A cube has no lat-long convention to keep: the world in the default one.
-    return Picture{area_resample_cube_to_latlong(environment.cube, 2 * environment.cube.size(),
-                                                 environment.world_to_source, threads),
-                   {}};
+    if (const Cubemap* cube = environment.cube())
+        return Picture{area_resample_cube_to_latlong(*cube, 2 * cube->size(), environment.world_to_source, threads),
+                       {}};
+    const auto rows = environment.rows();
+    if (!rows) return rows.error();
+    auto image = read_latlong(**rows);
+    if (!image) return image.error();
+    return Picture{*std::move(image), environment.world_to_source};
 }
 
 Json array(const Vec3d& v) {
@@ -133,7 +133,7 @@ Json document(const LightsWords& w, const Outcome& o) {
     source.update({{"width", o.environment.width},
                    {"height", o.environment.height},
                    {"projection", o.environment.projection},
-                   {"repaired", o.environment.report->repaired()}});
+                   {"repaired", o.environment.report().repaired()}});
     const Mat3& m = o.picture.world_to_source;
     return {{"version", version()},
             {"source", source},
@@ -256,7 +256,7 @@ int run(const LightsWords& w) {
     outcome.in_openexr_convention = environment->projection == "latlong" && in_openexr_convention(w);
     const auto json = write_all(w, outcome);
     if (!json) return print_error(json.error());
-    print_warnings(environment->report->warnings, w.common, name);
+    print_warnings(environment->report().warnings, w.common, name);
     if (outcome.in_openexr_convention && outcome.remainder_file == "remainder.hdr" && w.environment.latlong.empty())
         print_warnings({"the remainder is in OpenEXR's lat-long convention, which an .hdr file cannot state: read it "
                         "with --latlong openexr"},

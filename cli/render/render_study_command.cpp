@@ -157,7 +157,7 @@ Result<Json> study(const RenderWords& w, const StudyScene& scene, const StudyLig
 
 }  // namespace
 
-int run_study(const RenderWords& w, std::optional<Scene> given, Environment& environment) {
+int run_study(const RenderWords& w, std::optional<Scene> given, const Environment& environment) {
     StudyScene scene;
     if (given) {
         const auto options = render_options(w, *given);

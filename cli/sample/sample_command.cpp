@@ -117,7 +117,7 @@ int run_sample(const std::vector<std::string>& words) {
     if (!environment) return print_error(environment.error());
     auto sampler = EnvironmentSampler::build(*environment, w.sampler);
     if (!sampler) return print_error(sampler.error().at(w.environment_name()));
-    print_warnings(environment->report->warnings, w.common, w.environment_name());
+    print_warnings(environment->report().warnings, w.common, w.environment_name());
     if (w.compensate && !w.common.quiet && sampler->compensation() > 0)
         print_warnings({"compensated samples leave out the light below the mean: use them only beside BRDF sampling"},
                        w.common);

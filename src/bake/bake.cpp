@@ -341,7 +341,7 @@ void add_warnings(BakeReport& report, const Environment& environment, const Bake
         report.warnings.push_back(fmt::format(
             "repaired texels: {} not a number, {} infinite, {} negative (down to {:.4g})", report.repaired.not_a_number,
             report.repaired.infinite, report.repaired.negative, report.repaired.negative_radiance));
-    if (options.method != BakeMethod::exact && !environment.latlong)
+    if (options.method != BakeMethod::exact && environment.cube())
         report.warnings.push_back(
             fmt::format("--method {} works on lat-long images: the cube was resampled to one first",
                         bake_method_name(options.method)));
@@ -357,7 +357,8 @@ void add_warnings(BakeReport& report, const Environment& environment, const Bake
 
 }  // namespace
 
-Result<BakeReport> bake(Environment& environment, const BakeOptions& options, const std::filesystem::path& folder) {
+Result<BakeReport> bake(const Environment& environment, const BakeOptions& options,
+                        const std::filesystem::path& folder) {
     auto plans = plan_all(options, &environment);
     if (!plans) return plans.error();
     if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
@@ -376,7 +377,7 @@ Result<BakeReport> bake(Environment& environment, const BakeOptions& options, co
         const StageClock clock(report.stages, "filter");
         if (auto ok = job.run(environment, options); !ok) return ok.error().at(environment.file.string());
     }
-    if (environment.report) report.repaired = source.repaired = *environment.report;
+    report.repaired = source.repaired = environment.report();
     report.mean_radiance = job.result(0).mean;
     report.clamped = job.clamped();
     report.band_limit = job.band_limit();

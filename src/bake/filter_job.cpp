@@ -90,23 +90,25 @@ FilterJob::FilterJob(const std::vector<EnginePlan>& plans, const Environment& en
     }
 }
 
-Result<void> FilterJob::read_rows(Environment& environment, const BakeOptions& options) {
+Result<void> FilterJob::read_rows(const Environment& environment, const BakeOptions& options) {
     std::vector<RowConversion> conversions;
     for (const PanoramaSpec& spec : panorama_specs_)
-        conversions.push_back(convert_rows(environment.latlong->width(), environment.latlong->height(),
+        conversions.push_back(convert_rows(environment.latlong_width(), environment.latlong_height(),
                                            *projection_from_name(spec.projection), spec.width, spec.height,
                                            environment.world_to_source, options.threads));
     const bool whole = std::any_of(conversions.begin(), conversions.end(), [](const auto& c) { return !c.rows; });
     Sha256 hash;
     const bool hash_rows = environment.file.empty() && options.hashes;
-    TapRowSource tap(*environment.latlong, [&](ImageView<const float> rows) {
+    const auto source_rows = environment.rows();
+    if (!source_rows) return source_rows.error();
+    TapRowSource tap(**source_rows, [&](ImageView<const float> rows) {
         for (const RowConversion& conversion : conversions)
             if (conversion.rows) conversion.rows->add_rows(rows);
         for (int y = 0; hash_rows && y < rows.height; ++y)
             hash.add({reinterpret_cast<const std::uint8_t*>(rows.row(y)),
                       std::size_t(rows.width) * rows.channels * sizeof(float)});
     });
-    // The rows come once: where something needs the whole image, all of them are kept.
+    // Where something needs the whole image, all rows are kept.
     const bool plain = options.method != BakeMethod::exact;
     ImageF kept;
     if (plain || whole) {
@@ -127,23 +129,24 @@ Result<void> FilterJob::read_rows(Environment& environment, const BakeOptions& o
     return {};
 }
 
-Result<void> FilterJob::filter_cube(Environment& environment, const BakeOptions& options) {
+Result<void> FilterJob::filter_cube(const Environment& environment, const BakeOptions& options) {
+    const Cubemap& cube = *environment.cube();
     if (options.method == BakeMethod::exact) {
         for (const FilterOptions& run : runs_) {
-            auto result = prefilter(environment.cube, run);
+            auto result = prefilter(cube, run);
             if (!result) return result.error();
             results_.push_back(*std::move(result));
         }
     } else {
         // The plain methods read lat-long images: the cube as one, in its own frame.
-        const ImageF image =
-            area_resample_cube_to_latlong(environment.cube, 2 * environment.cube.size(), Mat3{}, options.threads);
-        auto results = filter_plainly(image, runs_, options);
+        const auto image = environment.latlong();
+        if (!image) return image.error();
+        auto results = filter_plainly(**image, runs_, options);
         if (!results) return results.error();
         results_ = *std::move(results);
     }
     if (panorama_specs_.empty()) return {};
-    const ImageView<const float> strip = std::as_const(environment.cube).strip();
+    const ImageView<const float> strip = cube.strip();
     ImageF pixels(strip.width, strip.height, 3);
     std::copy_n(strip.data, pixels.pixels().size(), pixels.pixels().begin());
     const ProjectedImage source{projection_from_name("cube")->turned(environment.world_to_source), std::move(pixels)};
@@ -151,8 +154,8 @@ Result<void> FilterJob::filter_cube(Environment& environment, const BakeOptions&
     return {};
 }
 
-Result<void> FilterJob::run(Environment& environment, const BakeOptions& options) {
-    return environment.latlong ? read_rows(environment, options) : filter_cube(environment, options);
+Result<void> FilterJob::run(const Environment& environment, const BakeOptions& options) {
+    return environment.cube() ? filter_cube(environment, options) : read_rows(environment, options);
 }
 
 std::int64_t FilterJob::clamped() const {

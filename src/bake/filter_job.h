@@ -17,7 +17,7 @@ class FilterJob {
     FilterJob(const std::vector<EnginePlan>& plans, const Environment& environment, const BakeOptions& options);
 
     /// Reads the environment once, to its last row, and computes everything.
-    Result<void> run(Environment& environment, const BakeOptions& options);
+    Result<void> run(const Environment& environment, const BakeOptions& options);
 
     /// An engine's maps, handed out and taken back so that the next engine finds them.
     struct Maps {
@@ -41,8 +41,8 @@ class FilterJob {
         std::size_t specular_count = 0;  ///< the run's levels are the specular ones, then those of the sheen
         std::optional<std::size_t> panorama;
     };
-    Result<void> read_rows(Environment& environment, const BakeOptions& options);
-    Result<void> filter_cube(Environment& environment, const BakeOptions& options);
+    Result<void> read_rows(const Environment& environment, const BakeOptions& options);
+    Result<void> filter_cube(const Environment& environment, const BakeOptions& options);
 
     std::vector<FilterOptions> runs_;    ///< distinct ones
     std::vector<FilterResult> results_;  ///< one for each of runs_

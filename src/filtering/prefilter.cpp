@@ -322,4 +322,13 @@ Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& optio
     return result;
 }
 
+Result<FilterResult> prefilter(const Environment& environment, const FilterOptions& options) {
+    FilterOptions turned = options;
+    turned.world_to_source = environment.world_to_source * options.world_to_source;
+    if (const Cubemap* cube = environment.cube()) return prefilter(*cube, turned);
+    const auto rows = environment.rows();
+    if (!rows) return rows.error();
+    return prefilter(**rows, turned);
+}
+
 }  // namespace domelight

@@ -1,7 +1,5 @@
-#include "domelight/image/row_source.h"
 #include "domelight/sampling/environment_sampler.h"
 
-#include "domelight/filtering/resample/area_resample.h"
 #include "domelight/base/parallel.h"
 #include "domelight/projection/projection.h"
 
@@ -128,20 +126,15 @@ Result<EnvironmentSampler> EnvironmentSampler::build(ImageView<const float> latl
     return build(std::move(sampler));
 }
 
-Result<EnvironmentSampler> EnvironmentSampler::build(Environment& environment,
+Result<EnvironmentSampler> EnvironmentSampler::build(const Environment& environment,
                                                      const EnvironmentSamplerOptions& options) {
     EnvironmentSampler sampler;
     sampler.options_ = options;
-    if (environment.latlong) {
-        auto image = read_latlong(*environment.latlong);
-        if (!image) return image.error();
-        sampler.owned_ = std::move(*image);
-        sampler.world_to_source_ = environment.world_to_source;
-    } else {
-        sampler.owned_ = area_resample_cube_to_latlong(environment.cube, 2 * environment.cube.size(),
-                                                       environment.world_to_source, options.threads);
-    }
-    sampler.image_ = sampler.owned_.view();
+    auto image = environment.latlong();
+    if (!image) return image.error();
+    sampler.owned_ = *std::move(image);
+    sampler.image_ = sampler.owned_->view();
+    sampler.world_to_source_ = environment.world_to_source;
     if (auto fine = check(sampler.image_, options.threads); !fine) return fine.error();
     return build(std::move(sampler));
 }

@@ -102,7 +102,7 @@ std::vector<BrightLight> find_lights(const ImageF& image) {
 
 }  // namespace
 
-Result<EnvironmentSurvey> survey_environment(Environment& environment, int threads, const Progress& progress) {
+Result<EnvironmentSurvey> survey_environment(const Environment& environment, int threads, const Progress& progress) {
     EnvironmentSurvey survey;
     survey.least = INFINITY;
     FilterOptions filter;
@@ -113,23 +113,25 @@ Result<EnvironmentSurvey> survey_environment(Environment& environment, int threa
     filter.progress = progress;
     Result<FilterResult> result = Error{};
     ImageF world;
-    if (environment.latlong) {
-        const int width = environment.latlong->width(), height = environment.latlong->height();
+    if (const Cubemap* cube = environment.cube()) {
+        note_range(survey, cube->pixels());
+        result = prefilter(*cube, filter);
+        if (result)
+            world = area_resample_cube_to_latlong(*cube, std::min(2 * cube->size(), 512), environment.world_to_source,
+                                                  threads);
+    } else {
+        const auto rows = environment.rows();
+        if (!rows) return rows.error();
+        const int width = (*rows)->width(), height = (*rows)->height();
         const auto resampler =
             area_resample_to_latlong(width, height, std::min(height, 512), environment.world_to_source, threads);
-        TapRowSource tap(*environment.latlong, [&](ImageView<const float> rows) {
-            resampler->add_rows(rows);
-            for (int y = 0; y < rows.height; ++y)
-                note_range(survey, {rows.row(y), std::size_t(rows.width) * rows.channels});
+        TapRowSource tap(**rows, [&](ImageView<const float> block) {
+            resampler->add_rows(block);
+            for (int y = 0; y < block.height; ++y)
+                note_range(survey, {block.row(y), std::size_t(block.width) * block.channels});
         });
         result = prefilter(tap, filter);
         if (result) world = resampler->finish();
-    } else {
-        note_range(survey, environment.cube.pixels());
-        result = prefilter(environment.cube, filter);
-        if (result)
-            world = area_resample_cube_to_latlong(environment.cube, std::min(2 * environment.cube.size(), 512),
-                                                  environment.world_to_source, threads);
     }
     if (!result) return result.error();
     survey.mean_radiance = result->mean;

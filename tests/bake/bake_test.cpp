@@ -38,13 +38,8 @@ ImageF smooth_image(int height) {
 }
 
 Environment environment_of(const ImageF& image) {
-    Environment environment;
+    Environment environment = Environment::from_latlong(image);
     environment.format = "test";
-    environment.projection = "latlong";
-    environment.width = image.width();
-    environment.height = image.height();
-    environment.latlong = std::make_unique<ImageRowSource>(image.view());
-    environment.report = std::make_shared<RepairReport>();
     return environment;
 }
 
@@ -289,9 +284,9 @@ TEST_CASE("bake: a reading that fails changes nothing") {
         Result<void> read(ImageView<float>) override { return Error{"is cut off", "", ""}; }
     };
     const test::TemporaryFolder folder;
-    Environment environment;
+    Environment environment = Environment::from_rows(
+        64, 32, [](auto) -> Result<std::unique_ptr<RowSource>> { return std::unique_ptr<RowSource>(new BrokenRows); });
     environment.file = "broken.hdr";
-    environment.latlong = std::make_unique<BrokenRows>();
     BakeOptions options = small_options();
     options.hashes = false;
     const auto report = bake(environment, options, folder / "out");

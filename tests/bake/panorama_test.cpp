@@ -85,7 +85,7 @@ TEST_CASE("bake: engines of both layouts share one reading, and each gets what i
                second = open_environment({folder / "alone/sky.exr"}, {.latlong = "materialx"});
     REQUIRE(first);
     REQUIRE(second);
-    const auto a = read_latlong(*first->latlong), b = read_latlong(*second->latlong);
+    const auto a = read_latlong(**first->rows()), b = read_latlong(**second->rows());
     REQUIRE(a);
     REQUIRE(b);
     CHECK(std::equal(a->pixels().begin(), a->pixels().end(), b->pixels().begin()));
@@ -115,8 +115,8 @@ TEST_CASE("bake: engines that take the environment alone get it in their own con
         reading.latlong = convention;
         auto opened = open_environment({folder / "sky.exr"}, reading);
         REQUIRE(opened);
-        REQUIRE(opened->latlong);
-        const auto read = read_latlong(*opened->latlong);
+        REQUIRE_FALSE(opened->cube());
+        const auto read = read_latlong(**opened->rows());
         REQUIRE(read);
         for (const Vec3d& d : {Vec3d{1, 0.2, 0.1}, Vec3d{-1, -0.5, 0.3}, Vec3d{0.1, 1, 1}, Vec3d{0.2, 0.3, -1}}) {
             const UV uv = latlong_uv(opened->world_to_source * d);
@@ -166,7 +166,7 @@ TEST_CASE("bake: an image that only changes its convention keeps its texels") {
         REQUIRE(bake(environment, options, folder.path()));
         const auto opened = open_environment({folder / "sky.exr"}, {.latlong = convention});
         REQUIRE(opened);
-        const auto read = read_latlong(*opened->latlong);
+        const auto read = read_latlong(**opened->rows());
         REQUIRE(read);
         const int quarter = std::string(convention) == "usd" ? 16 : 0;  // columns from +X to +Z
         for (int y = 0; y < 32; ++y)
@@ -196,7 +196,7 @@ TEST_CASE("bake: unity and unreal get a cube as they look it up, and a lat-long 
         auto opened = open_environment({folder / "sky_latlong.exr"}, {.latlong = unity ? "usd" : "materialx"});
         REQUIRE(opened);
         CHECK(opened->width == 256);  // 4 N texels round for faces of N^2
-        const auto read = read_latlong(*opened->latlong);
+        const auto read = read_latlong(**opened->rows());
         REQUIRE(read);
         const UV uv = latlong_uv(opened->world_to_source * Vec3d{1, 0.2, 0.1});
         CHECK(direction_of(texel_at(*read, uv.u, uv.v)).x > 0.9);

@@ -73,7 +73,7 @@ TEST_CASE("direct sums: narrow lobes over real environments are the integral") {
         CAPTURE(name);
         auto environment = open_environment({*folder / name});
         REQUIRE(environment);
-        const auto image = read_latlong(*environment->latlong);
+        const auto image = read_latlong(**environment->rows());
         REQUIRE(image);
         check_accuracy(*image, 100);
     }

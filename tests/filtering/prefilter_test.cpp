@@ -48,7 +48,7 @@ void check_rows(const std::vector<Accuracy>& rows, double most_rmse, double most
 ImageF load(const std::filesystem::path& file) {
     auto environment = open_environment({file});
     REQUIRE(environment);
-    auto image = read_latlong(*environment->latlong);
+    auto image = read_latlong(**environment->rows());
     REQUIRE(image);
     return std::move(*image);
 }

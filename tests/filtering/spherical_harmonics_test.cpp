@@ -117,7 +117,7 @@ TEST_CASE("spherical_harmonics: Filament's nine numbers of a real environment ar
     DOMELIGHT_DATA_FILE(file, "reference/symmetrical_garden/symmetrical_garden_1k.hdr");
     auto environment = open_environment({file});
     REQUIRE(environment);
-    const auto image = read_latlong(*environment->latlong);
+    const auto image = read_latlong(**environment->rows());
     REQUIRE(image);
     // Key "sh" of symmetrical_garden_ibl.ktx.
     const Vec3d theirs[9] = {

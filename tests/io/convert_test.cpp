@@ -23,7 +23,6 @@ Projection get(const std::string& name) {
 }
 
 Environment open(const std::filesystem::path& file, EnvironmentOptions options = {}) {
-    options.keep_projection = true;
     auto environment = open_environment({file}, options);
     REQUIRE_MESSAGE(environment, environment.error().format());
     return *std::move(environment);
@@ -159,9 +158,9 @@ TEST_CASE("convert: every projection, written and read again, shows the same lig
         // As bake, sample and render open it.
         auto back = open_environment({folder / "p.exr"}, {.projection = name});
         REQUIRE_MESSAGE(back, back.error().format());
-        REQUIRE(back->latlong);
+        REQUIRE_FALSE(back->cube());
         CHECK(back->projection == name.substr(0, name.find('/')));
-        const auto latlong = read_latlong(*back->latlong);
+        const auto latlong = read_latlong(**back->rows());
         REQUIRE(latlong);
         double sum = 0;
         int count = 0;
@@ -205,7 +204,7 @@ TEST_CASE("convert: lat-long to cube and back, a real environment at matched siz
     DOMELIGHT_DATA_FILE(file, "env_latlong/kloppenheim_05_1k.hdr");
     TemporaryFolder folder;
     Environment source = open(file);
-    const ImageF truth = *read_latlong(*open(file).latlong);
+    const ImageF truth = *read_latlong(**open(file).rows());
     // The face whose middle's texels are as wide as the equator's: pi / H = 2 / n.
     const int size = int(std::lround(2 * truth.height() / k_pi));
     Conversion cube = made(source, "cube", size);

@@ -126,9 +126,9 @@ TEST_CASE("bake: exr-mip lies as OpenEXR's envmap says, in every level, and is r
         const auto opened = open_environment({folder / "specular.exr"});
         REQUIRE(opened);
         if (layout == Layout::cube) {
-            CHECK(worst_direction(opened->cube, [](const Vec3d& d) { return d; }) < 0.1);
+            CHECK(worst_direction(*opened->cube(), [](const Vec3d& d) { return d; }) < 0.1);
         } else {
-            const auto read = read_latlong(*opened->latlong);
+            const auto read = read_latlong(**opened->rows());
             REQUIRE(read);
             for (const Vec3d& d : {Vec3d{1, 0.2, 0.1}, Vec3d{-1, -0.5, 0.3}, Vec3d{0.1, 1, 1}, Vec3d{0.2, 0.3, -1}}) {
                 const UV uv = latlong_uv(opened->world_to_source * d);

@@ -295,10 +295,10 @@ TEST_CASE("exr reader: chromaticities become Rec. 709") {
     write_scanlines(folder / "xyz.exr", header, Channels(Imf::FLOAT, k_rgb, 2, 1, [](int, int, int) { return 1.0f; }));
     auto environment = open_environment({folder / "xyz.exr"});
     REQUIRE_MESSAGE(environment, environment.error().format());
-    const auto image = read_latlong(*environment->latlong);
+    const auto image = read_latlong(**environment->rows());
     REQUIRE(image);
     for (const float v : image->pixels()) CHECK(std::abs(v - 1) < 1e-5);
-    CHECK(environment->report->warnings.size() == 1);
+    CHECK(environment->report().warnings.size() == 1);
 
     Imf::Header plain(2, 1);
     Imf::addChromaticities(plain, {});

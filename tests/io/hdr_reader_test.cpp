@@ -125,7 +125,7 @@ TEST_CASE("hdr reader: PRIMARIES and xyze become Rec. 709") {
     save(folder / "xyz.hdr", joined(hdr_header("-Y 1 +X 2", "FORMAT=32-bit_rle_xyze\n"), joined(texel, texel)));
     auto xyz = open_environment({folder / "xyz.hdr"});
     REQUIRE(xyz);
-    const auto grey = read_latlong(*xyz->latlong);
+    const auto grey = read_latlong(**xyz->rows());
     REQUIRE(grey);
     for (const float v : grey->pixels()) CHECK(std::abs(v - 1) < 0.02);  // eight bits of mantissa, times the matrix
 
@@ -134,12 +134,12 @@ TEST_CASE("hdr reader: PRIMARIES and xyze become Rec. 709") {
     save(folder / "p.hdr", joined(hdr_header("-Y 1 +X 2", radiance), {128, 128, 128, 129, 0, 128, 0, 129}));
     auto primaries = open_environment({folder / "p.hdr"});
     REQUIRE(primaries);
-    const auto converted = read_latlong(*primaries->latlong);
+    const auto converted = read_latlong(**primaries->rows());
     REQUIRE(converted);
     for (int c = 0; c < 3; ++c) CHECK(std::abs(converted->at(0, 0)[c] - 1) < 1e-3);  // the rounding of 0.333
     CHECK(converted->at(1, 0)[1] > 0.9);
     CHECK(std::abs(converted->at(1, 0)[1] - 1) > 1e-3);
-    CHECK(primaries->report->warnings.size() == 1);
+    CHECK(primaries->report().warnings.size() == 1);
 
     // Eight zeros mean that nobody knew.
     const auto zeros = open_bytes(joined(hdr_header("-Y 1 +X 1", "PRIMARIES=0 0 0 0 0 0 0 0\n"), {1, 2, 3, 129}));

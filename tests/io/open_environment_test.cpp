@@ -89,7 +89,7 @@ TEST_CASE("environment: turning moves the light from +X towards +Z, up says wher
     const auto check = [&](const EnvironmentOptions& options, const Vec3d& world, const Vec3d& shown) {
         auto environment = open_environment({folder / "d.exr"}, options);
         REQUIRE_MESSAGE(environment, environment.error().format());
-        const auto image = read_latlong(*environment->latlong);
+        const auto image = read_latlong(**environment->rows());
         REQUIRE(image);
         CHECK(length(seen(*image, *environment, world) - shown) < 0.03);  // half a texel at the poles
     };
@@ -136,10 +136,10 @@ TEST_CASE("environment: exposure is in stops, of every projection") {
     write_exr(folder / "c.exr", ImageF(6, 1, 3, 3.0f));
     auto latlong = open_environment({folder / "l.exr"}, {.exposure = -1});
     REQUIRE(latlong);
-    CHECK(read_latlong(*latlong->latlong)->at(0, 0)[1] == 1.5f);
+    CHECK(read_latlong(**latlong->rows())->at(0, 0)[1] == 1.5f);
     const auto cube = open_environment({folder / "c.exr"}, {.exposure = 2});
     REQUIRE(cube);
-    CHECK(cube->cube.face(5).at(0, 0)[1] == 12);
+    CHECK(cube->cube()->face(5).at(0, 0)[1] == 12);
 }
 
 TEST_CASE("environment: bad texels are mended and counted as rows pass") {
@@ -151,15 +151,15 @@ TEST_CASE("environment: bad texels are mended and counted as rows pass") {
     write_exr(folder / "b.exr", image);
     auto environment = open_environment({folder / "b.exr"});
     REQUIRE(environment);
-    CHECK(environment->report->repaired() == 0);
-    const auto rows = read_latlong(*environment->latlong);
+    CHECK(environment->report().repaired() == 0);
+    const auto rows = read_latlong(**environment->rows());
     REQUIRE(rows);
     CHECK(rows->at(0, 0)[1] == 1);
     CHECK(rows->at(3, 1)[0] == 0);
-    CHECK(environment->report->not_a_number == 1);
-    CHECK(environment->report->negative == 1);
-    CHECK(environment->report->infinite == 1);
-    CHECK(environment->report->negative_radiance == -2);
+    CHECK(environment->report().not_a_number == 1);
+    CHECK(environment->report().negative == 1);
+    CHECK(environment->report().infinite == 1);
+    CHECK(environment->report().negative_radiance == -2);
 }
 
 TEST_CASE("environment: wrong shapes and options say what is wrong, where, and what to do") {
@@ -216,12 +216,12 @@ TEST_CASE("environment: an OpenEXR cube lies as the OpenEXR library says, orient
     write_exr(folder / "c.exr", image, Imf::ENVMAP_CUBE);
     const auto environment = open_environment({folder / "c.exr"});
     REQUIRE_MESSAGE(environment, environment.error().format());
-    REQUIRE(environment->cube.size() == n);
+    REQUIRE(environment->cube()->size() == n);
     for (int f = 0; f < 6; ++f)
         for (int y = 0; y < n; ++y)
             for (int x = 0; x < n; ++x) {
                 const Vec3d d = cube_direction(f, {(x + 0.5) / n, (y + 0.5) / n});
-                const float* seen = environment->cube.face(f).at(x, y);
+                const float* seen = environment->cube()->face(f).at(x, y);
                 CHECK(length(Vec3d(seen[0], seen[1], seen[2]) - Vec3d(2, 2, 2) - d) < 1e-6);  // float rounding
             }
 }
@@ -240,7 +240,7 @@ TEST_CASE("environment: an OpenEXR lat-long lies as the OpenEXR library says, or
     write_exr(folder / "l.exr", image, Imf::ENVMAP_LATLONG);
     auto environment = open_environment({folder / "l.exr"});
     REQUIRE_MESSAGE(environment, environment.error().format());
-    const auto rows = read_latlong(*environment->latlong);
+    const auto rows = read_latlong(**environment->rows());
     REQUIRE(rows);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
@@ -261,7 +261,7 @@ TEST_CASE("environment: OpenEXR's cube and lat-long of one place agree on every 
         const auto cube = open_environment({root / cube_name});
         REQUIRE_MESSAGE(latlong, latlong.error().format());
         REQUIRE_MESSAGE(cube, cube.error().format());
-        const auto image = read_latlong(*latlong->latlong);
+        const auto image = read_latlong(**latlong->rows());
         REQUIRE(image);
         // Differences as they are, against those with every face mirrored: the picture must be told from its mirror
         // image.
@@ -270,7 +270,7 @@ TEST_CASE("environment: OpenEXR's cube and lat-long of one place agree on every 
             const Vec3d seen = look(*image, latlong->world_to_source, d);
             CubePoint p = cube_point(cube->world_to_source * d);
             const auto difference = [&] {
-                return std::min(0.5, length(seen - look(cube->cube, cube_direction(p.face, p.uv))));
+                return std::min(0.5, length(seen - look(*cube->cube(), cube_direction(p.face, p.uv))));
             };
             as_it_is[p.face] += difference();
             p.uv.u = 1 - p.uv.u;

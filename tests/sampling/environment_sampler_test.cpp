@@ -308,12 +308,10 @@ TEST_CASE("environment_sampler: without light, with one texel, with bad texels")
 }
 
 TEST_CASE("environment_sampler: of a cube it draws what the cube holds") {
-    Environment environment;
-    environment.projection = "cube";
-    environment.cube = Cubemap(8);
-    std::ranges::fill(environment.cube.pixels(), 0.1f);
-    environment.cube.face(4).at(2, 3)[1] = 500;  // on +Z
-    auto sampler = EnvironmentSampler::build(environment);
+    Cubemap cube(8);
+    std::ranges::fill(cube.pixels(), 0.1f);
+    cube.face(4).at(2, 3)[1] = 500;  // on +Z
+    auto sampler = EnvironmentSampler::build(Environment::from_cube(std::move(cube)));
     REQUIRE(sampler);
     const Vec3f sun(normalize(cube_direction(4, {2.5 / 8, 3.5 / 8})));
     int near = 0;

@@ -505,7 +505,7 @@ TEST_CASE("extract_lights: the suns of photographs") {
         CAPTURE(k.file);
         auto environment = open_environment({*folder / k.file});
         REQUIRE(environment);
-        const auto image = read_latlong(*environment->latlong);
+        const auto image = read_latlong(**environment->rows());
         REQUIRE(image);
         const LightExtraction found = extract(*image);
         check_sound(*image, found);

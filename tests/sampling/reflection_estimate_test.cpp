@@ -114,7 +114,7 @@ TEST_CASE("estimate_reflection: on a photograph the estimate is the bake's irrad
     DOMELIGHT_DATA_FILE(file, "env_highres/spruit_sunrise_1k.hdr");
     auto environment = open_environment({file});
     REQUIRE(environment);
-    auto image = read_latlong(*environment->latlong);
+    auto image = read_latlong(**environment->rows());
     REQUIRE(image);
     auto sampler = EnvironmentSampler::build(*image);
     REQUIRE(sampler);

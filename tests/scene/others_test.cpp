@@ -15,8 +15,8 @@ namespace {
 std::string outcome(const std::filesystem::path& file) {
     auto environment = open_environment({file});
     if (!environment) return environment.error().what;
-    if (!environment->latlong) return environment->cube.empty() ? "nothing in it" : "";
-    const auto image = read_latlong(*environment->latlong);
+    if (environment->cube()) return environment->cube()->empty() ? "nothing in it" : "";
+    const auto image = read_latlong(**environment->rows());
     return image ? "" : image.error().what;
 }
 

@@ -95,8 +95,8 @@ TEST_CASE("cube reader: crosses are unfolded so that the picture continues acros
             const auto environment = open_environment({folder / name}, {.projection = projection});
             REQUIRE_MESSAGE(environment, environment.error().format());
             CHECK(environment->projection == "cube");
-            REQUIRE(environment->cube.size() == k_size);
-            CHECK(error_of(environment->cube) <= k_rgbe_step);
+            REQUIRE(environment->cube()->size() == k_size);
+            CHECK(error_of(*environment->cube()) <= k_rgbe_step);
         }
 }
 
@@ -112,7 +112,7 @@ TEST_CASE("cube reader: strips hold the faces in order, each in OpenGL's orienta
         for (const char* projection : {"auto", "cube-strip"}) {
             const auto environment = open_environment({folder / name}, {.projection = projection});
             REQUIRE_MESSAGE(environment, environment.error().format());
-            CHECK(error_of(environment->cube) <= k_rgbe_step);
+            CHECK(error_of(*environment->cube()) <= k_rgbe_step);
         }
 }
 
@@ -137,7 +137,7 @@ TEST_CASE("cube reader: six files are recognised by name, in any order and case"
         for (const auto& input : {files, {folder.path()}}) {
             const auto environment = open_environment(input);
             REQUIRE_MESSAGE(environment, environment.error().format());
-            CHECK(error_of(environment->cube) <= k_rgbe_step);
+            CHECK(error_of(*environment->cube()) <= k_rgbe_step);
         }
         const auto five = open_environment({files[0], files[1], files[2], files[3], files[4], files[4]});
         REQUIRE_FALSE(five);
@@ -182,7 +182,7 @@ TEST_CASE("cube reader: a cube texture of ours is read back as the environment i
         const auto environment = open_environment({folder / name}, {.exposure = 0});
         REQUIRE_MESSAGE(environment, environment.error().format());
         CHECK(environment->projection == "cube");
-        CHECK(error_of(environment->cube) == 0);
+        CHECK(error_of(*environment->cube()) == 0);
         CHECK_FALSE(open_environment({folder / name}, {.max_bytes = 1000}));
     }
     Bytes cut = load(folder / "c.dds");

@@ -246,8 +246,8 @@ TEST_CASE("env: Babylon's shader finds every direction's light, and so do we on 
     const auto opened = open_environment({folder / "sky.env"});
     REQUIRE(opened);
     CHECK(opened->format == "Babylon .env");
-    CHECK(worst_direction(opened->cube, [](const Vec3d& d) { return d; }) < 0.03);
-    CHECK(opened->report->warnings.empty());
+    CHECK(worst_direction(*opened->cube(), [](const Vec3d& d) { return d; }) < 0.03);
+    CHECK(opened->report().warnings.empty());
     // Diffuse light: its linear part points where the light does, half a sphere's mean of it.
     const Vec3d x = env->irradiance->x;
     CHECK(x.x == doctest::Approx(-4.0 / 9).epsilon(0.01));
@@ -264,11 +264,11 @@ TEST_CASE("env: Babylon's own file shows its source, in the convention that Baby
     options.latlong = "usd";
     auto opened = open_environment({source}, options);
     REQUIRE(opened);
-    const auto image = read_latlong(*opened->latlong);
+    const auto image = read_latlong(**opened->rows());
     REQUIRE(image);
     // Correlation of logarithms, 16 x 16 means a face, which sun and clipping do not decide.
     double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0, n = 0;
-    const int block = theirs->cube.size() / 16;
+    const int block = theirs->cube()->size() / 16;
     for (int f = 0; f < 6; ++f)
         for (int y = 0; y < 16; ++y)
             for (int x = 0; x < 16; ++x) {
@@ -277,7 +277,7 @@ TEST_CASE("env: Babylon's own file shows its source, in the convention that Baby
                     for (int i = 0; i < block; ++i) {
                         const double s = (x * block + i + 0.5) / (16 * block), t = (y * block + j + 0.5) / (16 * block);
                         const UV uv = latlong_uv(opened->world_to_source * cube_direction(f, {s, t}));
-                        a += double(theirs->cube.face(f).at(x * block + i, y * block + j)[1]);
+                        a += double(theirs->cube()->face(f).at(x * block + i, y * block + j)[1]);
                         b += double(texel_at(*image, uv.u, uv.v)[1]);
                     }
                 a = std::log(a / (block * block) + 0.01), b = std::log(b / (block * block) + 0.01);

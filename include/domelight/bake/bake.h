@@ -151,7 +151,7 @@ Result<void> check_bake_options(const BakeOptions& options);
 /// Bakes an environment into `folder`: specular chain, irradiance, harmonics, BRDF table, picture, manifest; with
 /// several engines each into a folder of its name. Everything is written beside its place first and moved there when
 /// all is complete; on an error nothing has changed.
-Result<BakeReport> bake(Environment& environment, const BakeOptions& options, const std::filesystem::path& folder);
+Result<BakeReport> bake(const Environment& environment, const BakeOptions& options, const std::filesystem::path& folder);
 
 /// Whether `folder` already holds exactly what baking these files with these options would write: same version,
 /// options, source hash, and every file there with its hash.

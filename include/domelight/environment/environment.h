@@ -7,27 +7,90 @@
 #include "domelight/image/repair_report.h"
 #include "domelight/image/row_source.h"
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
+#include <vector>
 
 namespace domelight {
 
-/// An environment opened for reading: a lat-long image handed on by rows, or a cube in memory.
-struct Environment {
-    std::filesystem::path file;
-    std::string format;                     ///< "Radiance HDR", "OpenEXR", "PNG", "JPEG", "sky"
-    std::string projection;                 ///< "latlong", "cube", or the name of another in projections.h
-    int width = 0, height = 0;              ///< of the image as stored
-    std::unique_ptr<RowSource> latlong;     ///< set for lat-long; in the default convention up to `world_to_source`
-    Cubemap cube;                           ///< set for cubes
-    std::optional<ProjectedImage> picture;  ///< set for the others with EnvironmentOptions::keep_projection, else they
-                                            ///< are in `latlong`
-    /// Where to look in the source for light from a world direction: convention, up axis and rotation together
-    /// (orthogonal, may mirror).
+/// The light that arrives from every direction, as one picture holds it.
+///
+/// An environment can be read as rows of a lat-long image, as an image in memory, or direction by direction, any number
+/// of times and in any order, whatever projection it is stored in. Copies are cheap: they share the pixels. Reading is
+/// safe from several threads at once.
+///
+///     Result<Environment> environment = open_environment({"studio.exr"});
+///     Result<FilterResult> levels = prefilter(*environment, options);
+///     Result<EnvironmentSampler> sampler = EnvironmentSampler::build(*environment);
+///     Result<Vec3f> up = environment->radiance({0, 1, 0});
+class Environment {
+  public:
+    /// Opens the rows of a lat-long image anew, from the top. What the reader repairs is counted in the report, which
+    /// is empty at first.
+    using RowsOpener = std::function<Result<std::unique_ptr<RowSource>>(std::shared_ptr<RepairReport>)>;
+
+    /// How the pixels are stored.
+    enum class Storage {
+        none,    ///< there is no light: what a default-constructed environment holds
+        rows,    ///< a lat-long image that is read row by row
+        cube,    ///< a cube in memory
+        picture  ///< a picture in memory in another projection
+    };
+
+    std::filesystem::path file;  ///< the first of its files; empty where the environment was made in memory
+    std::string format;          ///< "Radiance HDR", "OpenEXR", "PNG", "JPEG", "sky", ...
+    std::string projection;      ///< "latlong", "cube", or the name of another one in projections.h
+    int width = 0, height = 0;   ///< texels of the image as it is stored; of one face where a cube is six images
+    /// Where to look in the source for the light that arrives from a world direction: the convention, the up axis and
+    /// the rotation together (orthogonal, may mirror). The source's own frame is that of latlong_direction() for rows
+    /// and of cube_direction() for a cube.
     Mat3 world_to_source;
-    std::shared_ptr<RepairReport> report;
+
+    Environment();
+    /// From a lat-long image in the default convention up to `world_to_source`: 3 channels, radiance, linear Rec. 709,
+    /// finite and >= 0.
+    static Environment from_latlong(ImageF latlong, const Mat3& world_to_source = {});
+    /// From rows of such an image, `width` x `height` texels, which `open` opens anew for each reading. `notes` are the
+    /// warnings that report() holds until an image has been read.
+    static Environment from_rows(int width, int height, RowsOpener open, std::vector<std::string> notes = {});
+    /// From a cube of radiance. `threads`: for averaging it to rows; 0: all.
+    static Environment from_cube(Cubemap cube, const Mat3& world_to_source = {}, RepairReport report = {},
+                                 int threads = 0);
+    /// From a picture in any projection. It is turned into a lat-long image of the same resolution when rows are asked
+    /// for; that image may need at most `max_bytes`. `threads`: for that; 0: all.
+    static Environment from_picture(ProjectedImage picture, const Mat3& world_to_source = {}, RepairReport report = {},
+                                    std::int64_t max_bytes = std::int64_t(1) << 30, int threads = 0);
+
+    Storage storage() const;
+    /// The cube as it is stored, or null where the environment is not stored as one.
+    const Cubemap* cube() const;
+    /// The picture as it is stored, or null where the environment is not stored in another projection.
+    const ProjectedImage* picture() const;
+
+    /// Texels of the lat-long image that rows() reads; 0 where there is no light.
+    int latlong_width() const;
+    int latlong_height() const;
+    /// The environment as rows of a lat-long image in the source's own frame, from the top. Each call begins a reading
+    /// of its own. A cube is averaged over the texels of an image four times as wide as a face, a picture in another
+    /// projection is reprojected; either happens once.
+    /// Errors: no light; too many bytes; what opening the file anew gives.
+    Result<std::unique_ptr<RowSource>> rows() const;
+    /// The whole of that image, read at the first call and kept for as long as a copy of the environment lives.
+    Result<std::shared_ptr<const ImageF>> latlong() const;
+    /// The radiance that arrives from a world direction (of any length but 0), bilinear between texels. The first call
+    /// reads the image, as latlong() does; a cube is looked up in its own faces.
+    Result<Vec3f> radiance(const Vec3d& direction) const;
+
+    /// What was repaired and what there is to say about the files. The counts of texels are complete once an image has
+    /// been read to its last row, and do not grow when it is read again.
+    RepairReport report() const;
+
+  private:
+    struct State;
+    std::shared_ptr<State> state_;
 };
 
 }  // namespace domelight

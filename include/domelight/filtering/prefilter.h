@@ -2,6 +2,7 @@
 
 #include "domelight/image/image.h"
 #include "domelight/base/progress.h"
+#include "domelight/environment/environment.h"
 #include "domelight/base/result.h"
 #include "domelight/image/row_source.h"
 #include "domelight/base/vec.h"
@@ -28,7 +29,9 @@ struct FilterOptions {
     std::vector<LevelSpec> specular;
     int irradiance_size = 0;  ///< face size (cube) or height (lat-long); 0: none
     int sh_bands = 3;         ///< spherical harmonics of the radiance, this many bands; 0: none
-    Mat3 world_to_source;     ///< as in Environment
+    /// Where to look in the source for the light from a world direction. For an Environment, which brings a
+    /// world_to_source of its own, this one is applied before it: it then turns the world.
+    Mat3 world_to_source;
     int threads = 0;          ///< 0: all
     Progress progress;
 };
@@ -55,6 +58,9 @@ struct FilterResult {
 
 /// The exact prefilter: every level is the environment convolved with its kernel, to about 1e-4. The source is the
 /// bilinear reconstruction of the texels (u wraps, v clamps in the half rows at the poles). docs/math/prefilter.md.
+/// Errors: what reading the source gives; "cancelled".
+Result<FilterResult> prefilter(const Environment& environment, const FilterOptions& options);
+/// The rows of a lat-long image, in the default convention up to FilterOptions::world_to_source. They are read once.
 Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options);
 Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& options);
 

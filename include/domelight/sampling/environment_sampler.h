@@ -58,7 +58,7 @@ struct LightSampleSpans {
 class EnvironmentSampler {
   public:
     /// Reads and keeps an environment. Errors: what reading it gives; no texels.
-    static Result<EnvironmentSampler> build(Environment& environment, const EnvironmentSamplerOptions& options = {});
+    static Result<EnvironmentSampler> build(const Environment& environment, const EnvironmentSamplerOptions& options = {});
     /// A lat-long image (default convention up to `world_to_source`, 3 channels) in memory, which must outlive the
     /// sampler. Errors: no texels; a value that is NaN, infinite or negative (names the texel).
     static Result<EnvironmentSampler> build(ImageView<const float> latlong,
@@ -99,7 +99,7 @@ class EnvironmentSampler {
     float density(double pdf_uv, float sin_theta) const;
 
     EnvironmentSamplerOptions options_;
-    ImageF owned_;
+    std::shared_ptr<const ImageF> owned_;
     ImageView<const float> image_;
     Mat3 world_to_source_;
     double compensation_ = 0;

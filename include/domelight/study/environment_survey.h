@@ -32,6 +32,7 @@ struct EnvironmentSurvey {
 /// environment  read from its beginning
 /// threads      0: all
 /// progress     stages are those of prefilter()
-Result<EnvironmentSurvey> survey_environment(Environment& environment, int threads = 0, const Progress& progress = {});
+Result<EnvironmentSurvey> survey_environment(const Environment& environment, int threads = 0,
+                                             const Progress& progress = {});
 
 }  // namespace domelight

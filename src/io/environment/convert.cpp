@@ -1,8 +1,8 @@
-#include "domelight/image/row_source.h"
 #include "domelight/io/environment/convert.h"
 
-#include "domelight/filtering/resample/area_resample.h"
 #include "domelight/base/parallel.h"
+#include "domelight/filtering/resample/area_resample.h"
+#include "domelight/image/row_source.h"
 
 #include "io/environment/convert_rows.h"
 
@@ -72,13 +72,14 @@ bool permutes_axes(const Mat3& m) {
 }
 
 /// Straight from the rows where that goes: the image, or nothing.
-Result<std::optional<ImageF>> by_rows(Environment& environment, const Projection& target, const Mat3& world_to_source,
-                                      const ConvertOptions& o, Conversion& result) {
-    RowSource& rows = *environment.latlong;
-    const RowConversion conversion =
-        convert_rows(rows.width(), rows.height(), target, o.width, o.height, world_to_source, o.threads, o.sharp);
+Result<std::optional<ImageF>> by_rows(const Environment& environment, const Projection& target,
+                                      const Mat3& world_to_source, const ConvertOptions& o, Conversion& result) {
+    const RowConversion conversion = convert_rows(environment.latlong_width(), environment.latlong_height(), target,
+                                                  o.width, o.height, world_to_source, o.threads, o.sharp);
     if (!conversion.rows) return std::optional<ImageF>();
-    auto image = stream(rows, *conversion.rows, o, result.power_before);
+    const auto rows = environment.rows();
+    if (!rows) return rows.error();
+    auto image = stream(**rows, *conversion.rows, o, result.power_before);
     if (!image) return image.error();
     result.method = conversion.copies ? "copy" : "exact";
     return std::optional<ImageF>(*std::move(image));
@@ -86,10 +87,10 @@ Result<std::optional<ImageF>> by_rows(Environment& environment, const Projection
 
 }  // namespace
 
-Result<Conversion> convert(Environment& environment, const Projection& target, const ConvertOptions& o) {
+Result<Conversion> convert(const Environment& environment, const Projection& target, const ConvertOptions& o) {
     Conversion result{{target, {}}, {}, {}, "conservative"};
     const Mat3 world_to_source = environment.world_to_source * o.turn.transposed();
-    if (environment.latlong) {
+    if (environment.storage() == Environment::Storage::rows) {
         auto image = by_rows(environment, target, world_to_source, o, result);
         if (!image) return image.error();
         if (*image) {
@@ -99,19 +100,12 @@ Result<Conversion> convert(Environment& environment, const Projection& target, c
         }
     }
     ProjectedImage source{*projection_from_name("cube"), {}};
-    if (environment.latlong) {
-        auto image = read_latlong(*environment.latlong);
-        if (!image) return image.error();
-        source = {projection_from_name("latlong")->turned(world_to_source), *std::move(image)};
-    } else if (environment.picture) {
-        source = {environment.picture->projection.turned(world_to_source), std::move(environment.picture->pixels)};
-        environment.picture.reset();
-    } else {
+    if (const Cubemap* cube = environment.cube()) {
         const Mat3 m = world_to_source * target.world_to_picture().transposed();
-        if (target.name() == "cube" && target.grid() == SampleGrid::centres && o.height == environment.cube.size() &&
+        if (target.name() == "cube" && target.grid() == SampleGrid::centres && o.height == cube->size() &&
             permutes_axes(m)) {
             ImageF strip(o.width, 6 * o.width, 3);
-            const Cubemap moved = area_resample_cube(environment.cube, o.width, m, o.threads);
+            const Cubemap moved = area_resample_cube(*cube, o.width, m, o.threads);
             std::copy(moved.pixels().begin(), moved.pixels().end(), strip.pixels().begin());
             result.image.pixels = std::move(strip);
             result.method = "copy";
@@ -120,10 +114,18 @@ Result<Conversion> convert(Environment& environment, const Projection& target, c
             result.power_after = result.power_before;
             return result;
         }
-        const ImageView<const float> strip = std::as_const(environment.cube).strip();
+        const ImageView<const float> strip = cube->strip();
         ImageF pixels(strip.width, strip.height, 3);
         std::copy_n(strip.data, pixels.pixels().size(), pixels.pixels().begin());
         source = {projection_from_name("cube")->turned(world_to_source), std::move(pixels)};
+    } else if (const ProjectedImage* picture = environment.picture()) {
+        source = {picture->projection.turned(world_to_source), picture->pixels};
+    } else {
+        const auto rows = environment.rows();
+        if (!rows) return rows.error();
+        auto image = read_latlong(**rows);
+        if (!image) return image.error();
+        source = {projection_from_name("latlong")->turned(world_to_source), *std::move(image)};
     }
     result.power_before = radiant_power(source, o.threads);
     result.image = reproject(source, target, o.width, o.height, o.threads, o.progress);
@@ -133,11 +135,9 @@ Result<Conversion> convert(Environment& environment, const Projection& target, c
 
 int matched_height(const Environment& environment, const Projection& target) {
     const ProjectionShape& shape = target.shape();
-    double latlong = environment.height;
-    if (environment.latlong) latlong = environment.latlong->height();
-    if (!environment.cube.empty()) latlong = 2.0 * environment.cube.size();
-    if (environment.picture)
-        latlong = environment.picture->projection.shape().latlong_height(environment.picture->height());
+    double latlong = environment.latlong_height();
+    if (const ProjectedImage* picture = environment.picture())
+        latlong = picture->projection.shape().latlong_height(picture->height());  // without rows()' bounds
     return std::max(1, int(std::round(latlong * 1000 / shape.latlong_height(1000))));
 }
 

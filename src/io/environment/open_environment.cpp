@@ -14,6 +14,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <utility>
 
 namespace domelight {
 
@@ -129,14 +131,17 @@ Result<std::optional<CubeLayout>> choose_layout(const ImageFacts& facts, const s
 }
 
 /// What concerns the file as a whole.
-Environment begin_environment(const std::filesystem::path& file, const ImageFacts& facts) {
-    Environment environment;
+Environment with_facts(Environment environment, const std::filesystem::path& file, const std::string& format, int width,
+                       int height) {
     environment.file = file;
-    environment.format = facts.format;
-    environment.width = facts.width;
-    environment.height = facts.height;
-    environment.report = std::make_shared<RepairReport>();
+    environment.format = format;
+    environment.width = width;
+    environment.height = height;
     return environment;
+}
+
+Environment with_facts(Environment environment, const std::filesystem::path& file, const ImageFacts& facts) {
+    return with_facts(std::move(environment), file, facts.format, facts.width, facts.height);
 }
 
 ReaderOptions reader_options(const EnvironmentOptions& options) {
@@ -151,22 +156,78 @@ Result<std::unique_ptr<ImageReader>> open_file(const std::filesystem::path& file
     return image;
 }
 
-std::unique_ptr<RowSource> radiance_of(const Environment& environment, const std::filesystem::path& file,
-                                       std::unique_ptr<ImageReader> image, const Request& request, bool wraps) {
+std::unique_ptr<RowSource> radiance_of(const std::filesystem::path& file, std::unique_ptr<ImageReader> image,
+                                       const Request& request, bool wraps, std::shared_ptr<RepairReport> report) {
     return std::make_unique<RadianceReader>(file, std::move(image), request.scale, wraps, request.options.threads,
-                                            environment.report);
+                                            std::move(report));
 }
 
-Result<Environment> open_latlong(Environment environment, std::unique_ptr<ImageReader> image, const Request& request) {
+/// Adds what the reader of one more file says; files of a kind say the same things, and they are said once.
+void add_report(RepairReport& sum, const RepairReport& part) {
+    add_repairs(sum, part);
+    for (const std::string& warning : part.warnings)
+        if (std::find(sum.warnings.begin(), sum.warnings.end(), warning) == sum.warnings.end())
+            sum.warnings.push_back(warning);
+}
+
+/// Radiance of a picture that is read at once, together with its report.
+struct PictureRows {
+    std::shared_ptr<RepairReport> report = std::make_shared<RepairReport>();
+    std::unique_ptr<RowSource> rows;
+    PictureRows(const std::filesystem::path& file, std::unique_ptr<ImageReader> image, const Request& request)
+        : rows(radiance_of(file, std::move(image), request, false, report)) {}
+};
+
+/// A lat-long file whose rows can be read again and again. The bytes stay open, so that every reading sees the same
+/// file, even if another program replaces it meanwhile.
+class LatlongFile {
+  public:
+    LatlongFile(std::filesystem::path file, std::shared_ptr<const FileBytes> bytes, std::unique_ptr<ImageReader> first,
+                Request request, LatlongConvention::Grid grid)
+        : file_(std::move(file)),
+          bytes_(std::move(bytes)),
+          first_(std::move(first)),
+          request_(std::move(request)),
+          grid_(grid) {}
+
+    Result<std::unique_ptr<RowSource>> open(std::shared_ptr<RepairReport> report) {
+        auto image = reader();
+        if (!image) return image.error().at(file_.string());
+        return regrid_latlong(radiance_of(file_, *std::move(image), request_, true, std::move(report)), grid_);
+    }
+
+  private:
+    /// The reader that opening the environment made, and new ones after that.
+    Result<std::unique_ptr<ImageReader>> reader() {
+        {
+            const std::lock_guard lock(mutex_);
+            if (first_) return std::exchange(first_, nullptr);
+        }
+        return open_image_reader(bytes_, reader_options(request_.options));
+    }
+
+    std::filesystem::path file_;
+    std::shared_ptr<const FileBytes> bytes_;
+    std::mutex mutex_;
+    std::unique_ptr<ImageReader> first_;
+    Request request_;
+    LatlongConvention::Grid grid_;
+};
+
+Result<Environment> open_latlong(const std::filesystem::path& file, std::shared_ptr<const FileBytes> bytes,
+                                 std::unique_ptr<ImageReader> image, const Request& request) {
+    const ImageFacts facts = image->facts();
     std::string name = request.options.latlong;
-    if (name.empty()) name = image->facts().envmap == ImageFacts::Envmap::latlong ? "openexr" : "default";
+    if (name.empty()) name = facts.envmap == ImageFacts::Envmap::latlong ? "openexr" : "default";
     const Result<LatlongConvention> convention = latlong_convention(name);
     if (!convention) return convention.error();
-    environment.projection = "latlong";
+    const auto source =
+        std::make_shared<LatlongFile>(file, std::move(bytes), std::move(image), request, convention->grid);
+    Environment environment = Environment::from_rows(
+        facts.width, facts.height,
+        [source](std::shared_ptr<RepairReport> report) { return source->open(std::move(report)); }, facts.warnings);
     environment.world_to_source = convention->world_to_default() * request.turn;
-    environment.latlong =
-        regrid_latlong(radiance_of(environment, environment.file, std::move(image), request, true), convention->grid);
-    return environment;
+    return with_facts(std::move(environment), file, facts);
 }
 
 Result<void> check_cube_memory(std::int64_t size, std::int64_t max_bytes) {
@@ -178,54 +239,22 @@ Result<void> check_cube_memory(std::int64_t size, std::int64_t max_bytes) {
 }
 
 /// A cube has no lat-long convention, only the turn.
-Environment finish_cube(Environment environment, Cubemap cube, const Request& request) {
+Environment finish_cube(Cubemap cube, RepairReport report, const Request& request) {
     if (!request.options.latlong.empty())
-        environment.report->warnings.push_back("a lat-long convention means nothing for a cube: ignored");
-    environment.projection = "cube";
-    environment.world_to_source = request.turn;
-    environment.cube = std::move(cube);
-    return environment;
+        report.warnings.push_back("a lat-long convention means nothing for a cube: ignored");
+    return Environment::from_cube(std::move(cube), request.turn, std::move(report), request.options.threads);
 }
 
-/// Rows of an image that goes with them.
-class OwnedRows : public RowSource {
-  public:
-    explicit OwnedRows(ImageF image) : image_(std::move(image)), rows_(image_) {}
-    int width() const override { return image_.width(); }
-    int height() const override { return image_.height(); }
-    Result<void> read(ImageView<float> rows) override { return rows_.read(rows); }
-
-  private:
-    ImageF image_;
-    ImageRowSource rows_;
-};
-
-/// The greatest height that a lat-long map made from another projection gets.
-constexpr int k_most_latlong_height = 8192;
-
-/// A picture in any projection: kept, or made lat-long without loss of resolution.
-Result<Environment> finish_other(Environment environment, ProjectedImage picture, const Request& request) {
+/// A picture in any other projection.
+Environment finish_other(ProjectedImage picture, RepairReport report, const Request& request) {
     const ProjectionShape& shape = picture.projection.shape();
-    environment.projection = picture.projection.name();
-    environment.world_to_source = request.turn;
     if (!picture.projection.full())
-        environment.report->warnings.push_back(
-            fmt::format("the projection {} shows {:.0f} % of all directions: {}", environment.projection,
-                        25 * shape.coverage() / k_pi,
-                        shape.coverage() < 3 * k_pi ? "the rest is black" : "the rest repeats its rim"));
-    if (request.options.keep_projection) {
-        environment.picture = std::move(picture);
-        return environment;
-    }
-    const int height = std::clamp(shape.latlong_height(picture.height()), 1, k_most_latlong_height);
-    if (const std::int64_t bytes = std::int64_t(height) * height * 2 * 12; bytes > request.options.max_bytes)
-        return Error{
-            fmt::format("the lat-long map needs {} bytes, more than the limit of {}", bytes, request.options.max_bytes),
-            "", ""};
-    ProjectedImage latlong =
-        reproject(picture, *projection_from_name("latlong"), 2 * height, height, request.options.threads);
-    environment.latlong = std::make_unique<OwnedRows>(std::move(latlong.pixels));
-    return environment;
+        report.warnings.push_back(fmt::format("the projection {} shows {:.0f} % of all directions: {}",
+                                              picture.projection.name(), 25 * shape.coverage() / k_pi,
+                                              shape.coverage() < 3 * k_pi ? "the rest is black"
+                                                                          : "the rest repeats its rim"));
+    return Environment::from_picture(std::move(picture), request.turn, std::move(report), request.options.max_bytes,
+                                     request.options.threads);
 }
 
 /// Reads one picture of a projection: its only chart, or the two halves of a dual paraboloid side by side.
@@ -246,19 +275,20 @@ Result<ProjectedImage> read_other(RowSource& rows, const Projection& projection)
 
 /// Front and back of a dual paraboloid.
 Result<Environment> open_halves(const std::vector<std::filesystem::path>& files, const Request& request) {
-    Environment environment;
+    ImageFacts first;
+    RepairReport report;
     ImageF stacked;
     for (int c = 0; c < 2; ++c) {
         const std::filesystem::path& file = files[std::size_t(c)];
         auto image = open_file(file, request.options);
         if (!image) return image.error();
-        const ImageFacts& facts = (*image)->facts();
+        const ImageFacts facts = (*image)->facts();
         if (facts.width != facts.height)
             return Error{
                 fmt::format("image is {} x {}, but half a dual paraboloid must be square", facts.width, facts.height),
                 file.string(), ""};
         if (c == 0) {
-            environment = begin_environment(file, facts);
+            first = facts;
             stacked = ImageF(facts.width, 2 * facts.width, 3);
         } else if (facts.width != stacked.width()) {
             return Error{fmt::format("image is {} x {}, but {} is {} x {}", facts.width, facts.height,
@@ -266,12 +296,11 @@ Result<Environment> open_halves(const std::vector<std::filesystem::path>& files,
                          file.string(), "Both halves must have one size."};
         }
         const int size = stacked.width();
-        if (const auto read = radiance_of(environment, file, std::move(*image), request, false)
-                                  ->read(stacked.view().rows(c * size, size));
-            !read)
-            return read.error();
+        PictureRows picture(file, std::move(*image), request);
+        if (const auto read = picture.rows->read(stacked.view().rows(c * size, size)); !read) return read.error();
+        add_report(report, *picture.report);
     }
-    return finish_other(std::move(environment), {*request.other, std::move(stacked)}, request);
+    return with_facts(finish_other({*request.other, std::move(stacked)}, std::move(report), request), files[0], first);
 }
 
 /// KTX2, KTX and DDS hold cubes as the engines load them.
@@ -279,15 +308,12 @@ Result<Environment> open_texture(const std::filesystem::path& file, const std::s
                                  const Request& request) {
     if (const std::string& projection = request.options.projection; projection != "auto")
         return Error{"a texture's projection is known: leave " + projection + " out", "--projection", ""};
-    Environment environment;
-    environment.file = file;
-    environment.format = container;
-    environment.report = std::make_shared<RepairReport>();
+    RepairReport report;
     Result<Cubemap> cube =
-        read_cube_texture(file, request.options.max_bytes, request.scale, *environment.report, request.options.decode);
+        read_cube_texture(file, request.options.max_bytes, request.scale, report, request.options.decode);
     if (!cube) return cube.error();
-    environment.width = environment.height = cube->size();
-    return finish_cube(std::move(environment), std::move(*cube), request);
+    const int size = cube->size();
+    return with_facts(finish_cube(*std::move(cube), std::move(report), request), file, container, size, size);
 }
 
 /// A matrix that turns directions as the unit quaternion x, y, z, w does.
@@ -300,17 +326,15 @@ Mat3 turn_of(const std::array<float, 4>& q) {
 Result<Environment> open_gltf_light(const std::filesystem::path& file, const Request& request) {
     if (const std::string& projection = request.options.projection; projection != "auto")
         return Error{"a glTF file's light is a cube: leave " + projection + " out", "--projection", ""};
-    Environment environment;
-    environment.file = file;
-    environment.format = "glTF EXT_lights_image_based";
-    environment.report = std::make_shared<RepairReport>();
-    auto light = read_gltf_environment(file, request.options.max_bytes, request.scale, *environment.report);
+    RepairReport report;
+    auto light = read_gltf_environment(file, request.options.max_bytes, request.scale, report);
     if (!light) return light.error();
-    environment.width = environment.height = light->cube.size();
-    Environment finished = finish_cube(std::move(environment), std::move(light->cube), request);
+    const int size = light->cube.size();
+    Environment environment = with_facts(finish_cube(std::move(light->cube), std::move(report), request), file,
+                                         "glTF EXT_lights_image_based", size, size);
     // Light turned by R arrives from d if it came from R^T d before.
-    finished.world_to_source = turn_of(light->rotation).transposed() * finished.world_to_source;
-    return finished;
+    environment.world_to_source = turn_of(light->rotation).transposed() * environment.world_to_source;
+    return environment;
 }
 
 Result<Environment> open_picture(const std::filesystem::path& file, const Request& request) {
@@ -319,28 +343,26 @@ Result<Environment> open_picture(const std::filesystem::path& file, const Reques
     if (const std::string container = texture_container((*bytes)->bytes()); !container.empty())
         return open_texture(file, container, request);
     if (may_be_gltf_image_light((*bytes)->bytes())) return open_gltf_light(file, request);
-    auto image = open_image_reader(std::move(*bytes), reader_options(request.options));
+    auto image = open_image_reader(*bytes, reader_options(request.options));
     if (!image) return image.error();
-    const ImageFacts& facts = (*image)->facts();
+    const ImageFacts facts = (*image)->facts();
     if (request.other) {
-        Environment environment = begin_environment(file, facts);
-        const auto rows = radiance_of(environment, file, std::move(*image), request, false);
-        Result<ProjectedImage> picture = read_other(*rows, *request.other);
+        const PictureRows source(file, *std::move(image), request);
+        Result<ProjectedImage> picture = read_other(*source.rows, *request.other);
         if (!picture) return picture.error();
-        return finish_other(std::move(environment), *std::move(picture), request);
+        return with_facts(finish_other(*std::move(picture), *source.report, request), file, facts);
     }
     const auto layout = choose_layout(facts, request.options.projection);
     if (!layout) return layout.error();
-    Environment environment = begin_environment(file, facts);
-    if (!*layout) return open_latlong(std::move(environment), std::move(*image), request);
+    if (!*layout) return open_latlong(file, *std::move(bytes), *std::move(image), request);
 
     const bool strip = **layout != CubeLayout::horizontal_cross && **layout != CubeLayout::vertical_cross;
     const int size = strip ? std::min(facts.width, facts.height) : std::max(facts.width, facts.height) / 4;
     if (const auto fits = check_cube_memory(size, request.options.max_bytes); !fits) return fits.error();
-    const auto rows = radiance_of(environment, file, std::move(*image), request, false);
-    Result<Cubemap> cube = read_cube_picture(*rows, **layout);
+    const PictureRows source(file, *std::move(image), request);
+    Result<Cubemap> cube = read_cube_picture(*source.rows, **layout);
     if (!cube) return cube.error();
-    return finish_cube(std::move(environment), std::move(*cube), request);
+    return with_facts(finish_cube(*std::move(cube), *source.report, request), file, facts);
 }
 
 Result<Environment> open_faces(const std::vector<std::filesystem::path>& files, const Request& request) {
@@ -348,35 +370,32 @@ Result<Environment> open_faces(const std::vector<std::filesystem::path>& files, 
         return Error{"six files are the faces of a cube, not " + projection, "--projection", ""};
     const auto faces = cube_faces_by_name(files);
     if (!faces) return faces.error();
-    Environment environment;
+    ImageFacts first;
+    RepairReport report;
     Cubemap cube;
     for (int f = 0; f < 6; ++f) {
         const std::filesystem::path& file = (*faces)[std::size_t(f)];
         auto image = open_file(file, request.options);
         if (!image) return image.error();
-        const ImageFacts& facts = (*image)->facts();
+        const ImageFacts facts = (*image)->facts();
         if (facts.width != facts.height)
             return Error{
                 fmt::format("image is {} x {}, but a face of a cube must be square", facts.width, facts.height),
                 file.string(), ""};
         if (f == 0) {
             if (const auto fits = check_cube_memory(facts.width, request.options.max_bytes); !fits) return fits.error();
-            environment = begin_environment(file, facts);
+            first = facts;
             cube = Cubemap(facts.width);
         } else if (facts.width != cube.size()) {
             return Error{fmt::format("image is {} x {}, but {} is {} x {}", facts.width, facts.height,
                                      (*faces)[0].filename().string(), cube.size(), cube.size()),
                          file.string(), "The faces of a cube must have one size."};
         }
-        if (const auto read = radiance_of(environment, file, std::move(*image), request, false)->read(cube.face(f));
-            !read)
-            return read.error();
+        PictureRows picture(file, *std::move(image), request);
+        if (const auto read = picture.rows->read(cube.face(f)); !read) return read.error();
+        add_report(report, *picture.report);
     }
-    // Six files of a kind say the same things.
-    std::vector<std::string>& warnings = environment.report->warnings;
-    std::sort(warnings.begin(), warnings.end());
-    warnings.erase(std::unique(warnings.begin(), warnings.end()), warnings.end());
-    return finish_cube(std::move(environment), std::move(cube), request);
+    return with_facts(finish_cube(std::move(cube), std::move(report), request), (*faces)[0], first);
 }
 
 }  // namespace

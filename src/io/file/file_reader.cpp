@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -80,12 +81,11 @@ FileBytes::~FileBytes() {
     if (mapping_) munmap(mapping_, size_);
 }
 
-void FileBytes::release_before(std::size_t offset) const {
-    constexpr std::size_t step = std::size_t(8) << 20;  // rarely enough to cost nothing, often enough to stay small
-    const std::size_t end = offset / step * step;
-    if (!mapping_ || end <= released_) return;
-    madvise(static_cast<char*>(mapping_) + released_, end - released_, MADV_DONTNEED);
-    released_ = end;
+std::size_t FileBytes::release(std::size_t first, std::size_t end) const {
+    first = first / k_release_step * k_release_step;
+    end = end / k_release_step * k_release_step;
+    if (mapping_ && end > first) madvise(static_cast<char*>(mapping_) + first, end - first, MADV_DONTNEED);
+    return std::max(first, end);
 }
 
 }  // namespace domelight

@@ -24,9 +24,12 @@ class FileBytes {
 
     std::span<const std::uint8_t> bytes() const { return {data_, size_}; }
 
-    /// Says that bytes before `offset` are not needed for now: their pages leave this process (they would count as its
-    /// memory otherwise) and come back from the system's cache when touched again.
-    void release_before(std::size_t offset) const;
+    /// Says that bytes first .. end - 1 are not needed for now: their pages leave this process (they would count as its
+    /// memory otherwise) and come back from the system's cache when they are touched again. Offsets are rounded down to
+    /// a multiple of k_release_step; returns `end` so rounded, from where the next call may go on.
+    std::size_t release(std::size_t first, std::size_t end) const;
+    /// Large enough for releases to cost nothing, small enough for little to be held.
+    static constexpr std::size_t k_release_step = std::size_t(8) << 20;
 
   private:
     FileBytes() = default;
@@ -34,7 +37,6 @@ class FileBytes {
     std::size_t size_ = 0;
     void* mapping_ = nullptr;  // null: the bytes are in memory_
     std::vector<std::uint8_t> memory_;
-    mutable std::size_t released_ = 0;
 };
 
 }  // namespace domelight

@@ -344,7 +344,7 @@ TEST_CASE("distribution: the built-in sky and a photograph pass the chi-square t
     if (const auto data = data_folder()) {
         auto environment = open_environment({*data / "env_highres" / "spruit_sunrise_1k.hdr"});
         if (environment) {
-            auto image = read_latlong(*environment->latlong);
+            auto image = read_latlong(**environment->rows());
             REQUIRE(bool(image));
             all.push_back(light_weights("spruit_sunrise_1k.hdr", *image, 256));
         }

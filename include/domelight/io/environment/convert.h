@@ -22,10 +22,10 @@ struct Conversion {
                          ///< (reproject.h)
 };
 
-/// An environment in another projection, whatever it came in (open it with keep_projection). Lat-long rows to a cube or
-/// another lat-long map about the same axis pass by without being in memory together; where texels only change places
-/// they keep their bits; all else is reproject()'s.
-Result<Conversion> convert(Environment& environment, const Projection& target, const ConvertOptions& options);
+/// An environment in another projection, whatever it came in. Lat-long rows to a cube or to another lat-long map about
+/// the same axis are never in memory together; where texels only change places they keep their bits; all else is done
+/// by reproject().
+Result<Conversion> convert(const Environment& environment, const Projection& target, const ConvertOptions& options);
 
 /// The height of a target's charts in which its finest texels are as fine as the source's.
 int matched_height(const Environment& environment, const Projection& target);

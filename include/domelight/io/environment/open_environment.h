@@ -12,7 +12,7 @@ namespace domelight {
 /// How to understand an environment's file where it does not say so itself.
 struct EnvironmentOptions {
     /// auto | latlong | cube-cross | cube-strip | cube-faces, or any other of projections.h, with its convention:
-    /// "angular/centre=+Z", "mirror-ball/fov=20". Those are turned into a lat-long image on opening.
+    /// "angular/centre=+Z", "mirror-ball/fov=20".
     std::string projection = "auto";
     /// Lat-long convention: default, usd, mitsuba, openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]", or pbrt
     /// (the equal-area octahedral square); empty: what the file says, else default.
@@ -24,7 +24,6 @@ struct EnvironmentOptions {
     double exposure = 0;      ///< stops: radiance is multiplied by 2^exposure
     std::int64_t max_bytes = std::int64_t(1) << 30;  ///< refuses images whose decoding would need more memory than this
     int threads = 0;                                 ///< for decoding; 0: all
-    bool keep_projection = false;                    ///< leaves other projections as they are, in Environment::picture
 };
 
 /// Opens an environment. `files` is one image, the six faces of a cube in any order (recognised by name), or the
