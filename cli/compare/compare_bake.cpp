@@ -256,7 +256,7 @@ void add_bake_options(Arguments& a, BakeWords& w) {
     a.number("--within", "ERROR", w.within,
              "exit with status 1 also where a level is further off, at its stated roughness and brightness or else at "
              "the best fit: 0.01 is 1 %. Without it the status is 0 for any bake of this environment and 1 for others");
-    a.integer("--texels", "N", w.texels, "looked at in each level (6144)");
+    a.integer("--texels", "N", w.texels, "compared in each level, a quarter of them the brightest (6144)");
     add_environment_options(a, w.environment);
 }
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace domelight {
 namespace {
@@ -61,27 +62,69 @@ double mean_luminance(const Cubemap& cube) {
     return weight > 0 ? sum / weight : 0;
 }
 
+namespace {
+
+Vec3f value_of(const Cubemap& cube, std::int64_t texel) {
+    const float* p = cube.strip().row(int(texel / cube.size())) + 3 * (texel % cube.size());
+    return {p[0], p[1], p[2]};
+}
+
+bool is_finite(const Vec3f& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// Marks the finite texels that are brighter than all but about `count`.
+std::vector<char> brightest(const Cubemap& cube, std::int64_t count) {
+    const std::int64_t all = std::int64_t(6) * cube.size() * cube.size();
+    std::vector<float> values(static_cast<std::size_t>(all));
+    for (std::int64_t i = 0; i < all; ++i) {
+        const Vec3f v = value_of(cube, i);
+        values[std::size_t(i)] = is_finite(v) ? luminance(v) : 0;
+    }
+    std::vector<float> sorted = values;
+    const auto limit = sorted.begin() + count;
+    std::nth_element(sorted.begin(), limit, sorted.end(), std::greater<>());
+    std::vector<char> marks(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) marks[i] = values[i] > *limit;
+    return marks;
+}
+
+void add_texel(TexelSample& sample, const Cubemap& cube, std::int64_t texel, double share) {
+    Vec3f v = value_of(cube, texel);
+    if (!is_finite(v)) return;
+    v = {std::max(v.x, 0.0f), std::max(v.y, 0.0f), std::max(v.z, 0.0f)};
+    const int n = cube.size();
+    sample.texels.push_back(int(texel));
+    sample.weights.push_back(share * cube_solid_angle(int(texel % n), int(texel / n) % n, n));
+    sample.values.push_back(v);
+    sample.luminance.push_back(luminance(v));
+}
+
+}  // namespace
+
 TexelSample sample_texels(const Cubemap& cube, int most) {
     TexelSample sample;
     const int n = cube.size();
     sample.size = n;
-    const std::int64_t all = std::int64_t(6) * n * n, pieces = std::min<std::int64_t>(all, most);
-    const auto value = [&](std::int64_t i) {
-        const float* p = cube.strip().row(int(i / n)) + 3 * (i % n);
-        return Vec3f{p[0], p[1], p[2]};
-    };
-    const auto finite = [](const Vec3f& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
     sample.mean = mean_luminance(cube);
+    const std::int64_t all = std::int64_t(6) * n * n;
+    if (all <= most) {
+        for (std::int64_t i = 0; i < all; ++i) add_texel(sample, cube, i, 1);
+        return sample;
+    }
+    // The brightest texels decide the relative RMSE, and a few random ones would miss a sun.
+    const std::vector<char> bright = brightest(cube, most / 4);
+    const std::int64_t pieces = most - most / 4;
+    std::vector<std::int64_t> others;
     for (std::int64_t k = 0; k < pieces; ++k) {
-        const std::int64_t begin = all * k / pieces, end = all * (k + 1) / pieces;
-        const std::int64_t i = begin + std::int64_t(mix_bits(std::uint64_t(k)) % std::uint64_t(end - begin));
-        Vec3f v = value(i);
-        if (!finite(v)) continue;
-        v = {std::max(v.x, 0.0f), std::max(v.y, 0.0f), std::max(v.z, 0.0f)};
-        sample.texels.push_back(int(i));
-        sample.weights.push_back(cube_solid_angle(int(i % n), int(i / n) % n, n) * double(all) / double(pieces));
-        sample.values.push_back(v);
-        sample.luminance.push_back(luminance(v));
+        others.clear();
+        for (std::int64_t i = all * k / pieces; i < all * (k + 1) / pieces; ++i)
+            if (bright[std::size_t(i)])
+                add_texel(sample, cube, i, 1);
+            else
+                others.push_back(i);
+        if (!others.empty())
+            add_texel(sample, cube, others[mix_bits(std::uint64_t(k)) % others.size()], double(others.size()));
     }
     return sample;
 }

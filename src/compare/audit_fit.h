@@ -21,7 +21,8 @@ struct TexelSample {
     std::vector<float> luminance;  ///< of values
     double mean = 0;               ///< luminance over the sphere, of every finite texel
 };
-/// All finite texels, or `most` of them, one from each of as many pieces of the strip.
+/// All finite texels, or about `most` of them: the brightest, which are a quarter, and of the others one from each of
+/// as many pieces of the strip as the rest allows.
 TexelSample sample_texels(const Cubemap& cube, int most);
 
 /// The same for a cube that is first averaged to faces of at most k_broad_size^2.

@@ -6,6 +6,7 @@
 #include "test.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -180,6 +181,28 @@ TEST_SUITE("bake") {
         REQUIRE(bool(three));
         CHECK(one->levels[0].roughness == three->levels[0].roughness);
         CHECK(one->levels[0].error == three->levels[0].error);
+    }
+
+    TEST_CASE("audit: the sampled texels hold the sun, and give the same means as all") {
+        Cubemap cube(128);
+        for (std::size_t i = 0; i < cube.pixels().size(); ++i) cube.pixels()[i] = 1 + 0.5F * float(i % 7);
+        float* sun = cube.face(2).at(77, 31);
+        sun[0] = sun[1] = sun[2] = 1e5F;
+        const TexelSample some = sample_texels(cube, 6144), all = sample_texels(cube, 6 * 128 * 128);
+        CHECK(some.texels.size() <= 6144);
+        CHECK(all.texels.size() == 6 * 128 * 128);
+        const auto sums = [](const TexelSample& sample) {
+            std::array<double, 2> sum{};
+            for (std::size_t k = 0; k < sample.weights.size(); ++k) {
+                sum[0] += sample.weights[k];
+                sum[1] += sample.weights[k] * sample.luminance[k];
+            }
+            return sum;
+        };
+        CHECK(sums(all)[0] == doctest::Approx(4 * k_pi));
+        // Standard errors of some 4600 random texels are below a hundredth; the sun alone is a third of the light.
+        CHECK(sums(some)[0] == doctest::Approx(4 * k_pi).epsilon(0.03));
+        CHECK(sums(some)[1] == doctest::Approx(sums(all)[1]).epsilon(0.03));
     }
 
     TEST_CASE("audit: a bake of another environment is refused") {

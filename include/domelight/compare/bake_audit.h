@@ -75,7 +75,7 @@ struct BakeAudit {
 
 struct AuditOptions {
     Lobe lobe = Lobe::ggx;  ///< with which the levels were filtered
-    int texels = 6144;      ///< compared in each level, spread over it evenly at random; all of smaller levels
+    int texels = 6144;  ///< compared in each level: a quarter the brightest, the others random; all of smaller levels
     double same = 0.25;     ///< a level with a larger LevelAudit::broad_error is one of another environment
     /// The largest error that a level may have, (0, 1]: LevelAudit::stated_error, or LevelAudit::error where the level
     /// states no roughness. Nothing: any error.
