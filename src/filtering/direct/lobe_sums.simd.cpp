@@ -74,6 +74,12 @@ struct LaneSum {
         b = hn::MulAdd(w, blue, b);
         weight = hn::MulAdd(w, width, weight);
     }
+    HWY_INLINE void add(const LaneSum& part) {
+        r = hn::Add(r, part.r);
+        g = hn::Add(g, part.g);
+        b = hn::Add(b, part.b);
+        weight = hn::Add(weight, part.weight);
+    }
     HWY_INLINE LobeSum total() const {
         const D d;
         const auto sum = [d](V v) { return double(hn::GetLane(hn::SumOfLanes(d, v))); };
@@ -98,6 +104,8 @@ LobeSum sum_cells(const CellRows& rows, const CellBox& box, const LobeAxis& axis
                 c2 = hn::Set(d, 24 * (1 - sigma) * chords.down() * rows.curvature),
                 c3 = hn::Set(d, 24 * sigma * rows.curvature);
         const float* red = rows.planes + 4 * rows.stride * (y - rows.first_row);
+        // Each row by itself first: thousands of small terms on one large sum would lose their last digits.
+        LaneSum line = LaneSum::zero();
         for (int k = 0; k < 2; ++k)
             for (int i = box.begin[k]; i < box.end[k]; i += lanes) {
                 const V offset = chords.offset(hn::LoadU(d, rows.x + i));
@@ -109,9 +117,10 @@ LobeSum sum_cells(const CellRows& rows, const CellBox& box, const LobeAxis& axis
                 w = hn::IfThenZeroElse(hidden, w);
                 if (i + lanes > box.end[k]) w = hn::IfThenElseZero(hn::FirstN(d, std::size_t(box.end[k] - i)), w);
                 const float* p = red + i;
-                sum.add(w, hn::LoadU(d, p), hn::LoadU(d, p + rows.stride), hn::LoadU(d, p + 2 * rows.stride),
-                        hn::LoadU(d, p + 3 * rows.stride));
+                line.add(w, hn::LoadU(d, p), hn::LoadU(d, p + rows.stride), hn::LoadU(d, p + 2 * rows.stride),
+                         hn::LoadU(d, p + 3 * rows.stride));
             }
+        sum.add(line);
     }
     return sum.total();
 }
@@ -128,6 +137,7 @@ LobeSum sum_patches(const PatchRow& row, const PatchColumns& columns, const Lobe
         const V row_weight = hn::Set(d, place.weight);
         const V upper = hn::Set(d, row.use_upper ? 1 - node[n] : 0), lower = hn::Set(d, row.use_lower ? node[n] : 0);
         const V present = hn::Add(upper, lower);
+        LaneSum line = LaneSum::zero();
         for (int i = 0; i < patches; i += lanes) {
             // Between the texels left and right of the patch, which do not count outside the box.
             auto has_left = hn::FirstN(d, std::size_t(lanes)), has_right = has_left;
@@ -155,10 +165,11 @@ LobeSum sum_patches(const PatchRow& row, const PatchColumns& columns, const Lobe
                         cosine = hn::Max(hn::NegMulAdd(hn::Set(d, 0.5f), s2, one), zero);
                 const V lobe = hn::Mul(hn::Mul(inverse, inverse), hn::Mul(cosine, row_weight));
                 const V w = hn::IfThenElseZero(inside, hn::Mul(lobe, hn::Set(d, share[m])));
-                sum.add(w, hn::MulAdd(at, across[0], left[0]), hn::MulAdd(at, across[1], left[1]),
-                        hn::MulAdd(at, across[2], left[2]), hn::MulAdd(at, across[3], left[3]));
+                line.add(w, hn::MulAdd(at, across[0], left[0]), hn::MulAdd(at, across[1], left[1]),
+                         hn::MulAdd(at, across[2], left[2]), hn::MulAdd(at, across[3], left[3]));
             }
         }
+        sum.add(line);
     }
     return sum.total();
 }
