@@ -19,8 +19,8 @@ namespace {
 struct BakeWords {
     CommonOptions common;
     std::vector<std::string> environments, engines;
-    std::string output, lobe, method = "exact", riemann_steps, layout, encoding, encoding_quality, format,
-                              cube_picture = "cross";
+    std::string output, lobe, method = "exact", riemann_steps, riemann_sum = "normalised", layout, encoding,
+                              encoding_quality, format, cube_picture = "cross";
     std::string sh_window = "none", brdf_g = "correlated", brdf_form;
     std::optional<int> size, levels, samples, irradiance_size, sh_bands, brdf_size;
     std::vector<double> roughness, exponents;
@@ -57,7 +57,11 @@ void declare(Arguments& a, BakeWords& w) {
              "exact, or one of the plain slow methods (exact)");
     a.integer("--samples", "N", w.samples, "montecarlo: samples a texel (1024)");
     a.text("--riemann-steps", "KxJ", w.riemann_steps,
-           "riemann: polar and azimuthal steps over the hemisphere (64x256)");
+           "riemann: K steps of phi (azimuth, to 2 pi) by J of theta (polar angle, to pi/2), as in the lectures "
+           "(256x64)");
+    a.choice("--riemann-sum", w.riemann_sum, {"normalised", "plain"},
+             "riemann: normalised, divided by the sum of its weights; plain, the lectures' sum as it stands, which "
+             "gives E = 3.224 and not pi for L = 1 and J = 4 (normalised)");
     a.integer("--irradiance-size", "N", w.irradiance_size, "face size of the irradiance cube (the engine's)");
     a.integer("--sh-bands", "N", w.sh_bands, "bands of spherical harmonics, 1 to 64 (3)");
     a.choice("--sh-window", w.sh_window, {"none", "hann", "lanczos"}, "window against their ringing (none)");
@@ -91,9 +95,10 @@ Result<void> parse_riemann_steps(const std::string& words, BakeOptions& options)
     const auto steps = split(words, 'x');
     const auto k = parse_integer(steps[0]), j = parse_integer(steps.size() == 2 ? steps[1] : "");
     if (!k || !j)
-        return Error{"\"" + words + "\" is not two whole numbers", "--riemann-steps", "Write KxJ, as in 64x256."};
-    options.riemann_polar = *k;
-    options.riemann_azimuth = *j;
+        return Error{"\"" + words + "\" is not two whole numbers", "--riemann-steps",
+                     "Write KxJ: K steps of phi by J of theta, as in 256x64."};
+    options.riemann.phi_steps = *k;
+    options.riemann.theta_steps = *j;
     return {};
 }
 
@@ -120,6 +125,7 @@ Result<BakeOptions> bake_options(const BakeWords& w) {
     o.samples = w.samples.value_or(o.samples);
     if (!w.riemann_steps.empty())
         if (auto ok = parse_riemann_steps(w.riemann_steps, o); !ok) return ok.error();
+    o.riemann.normalised = w.riemann_sum == "normalised";
     if (!w.encoding.empty()) o.encoding = *encoding_from_name(w.encoding);
     if (!w.encoding_quality.empty()) o.encoding_quality = *encoding_quality_from_name(w.encoding_quality);
     if (!w.format.empty()) o.format = *container_from_name(w.format);

@@ -47,8 +47,7 @@ ReferenceOptions reference_options(const BakeOptions& o) {
     r.method = o.method == BakeMethod::riemann      ? ReferenceMethod::riemann
                : o.method == BakeMethod::montecarlo ? ReferenceMethod::montecarlo
                                                     : ReferenceMethod::bruteforce;
-    r.riemann_polar = o.riemann_polar;
-    r.riemann_azimuth = o.riemann_azimuth;
+    r.riemann = o.riemann;
     r.samples = o.samples;
     return r;
 }

@@ -74,7 +74,10 @@ Json options_json(const EnginePlan& plan, const BakeOptions& o) {
     json[phong ? "exponents" : "roughness"] = widths;
     json["method"] = bake_method_name(o.method);
     if (o.method == BakeMethod::montecarlo) json["samples"] = o.samples;
-    if (o.method == BakeMethod::riemann) json["riemann_steps"] = {o.riemann_polar, o.riemann_azimuth};
+    if (o.method == BakeMethod::riemann) {
+        json["riemann_steps"] = {{"phi", o.riemann.phi_steps}, {"theta", o.riemann.theta_steps}};
+        json["riemann_sum"] = o.riemann.normalised ? "normalised" : "plain";
+    }
     json["encoding"] = plan.container == Container::hdr ? "rgbe" : encoding_name(plan.encoding);
     if (plan.container != Container::hdr && encoding_block(plan.encoding) > 1)
         json["encoding_quality"] = encoding_quality_name(o.encoding_quality);

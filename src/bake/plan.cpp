@@ -76,8 +76,9 @@ Result<void> check_values(const BakeOptions& o) {
         return option_error("--sh-bands", fmt::format("{} is not from 1 to 64", o.sh_bands));
     if (o.samples < 1 || o.samples > (1 << 24))
         return option_error("--samples", fmt::format("{} is not from 1 to 2^24", o.samples));
-    if (o.riemann_polar < 1 || o.riemann_azimuth < 1 || o.riemann_polar > 65536 || o.riemann_azimuth > 65536)
-        return option_error("--riemann-steps", "steps are from 1 to 65536");
+    for (const int steps : {o.riemann.phi_steps, o.riemann.theta_steps})
+        if (steps < 1 || steps > 65536)
+            return option_error("--riemann-steps", fmt::format("{} is not from 1 to 65536", steps));
     if (o.threads < 0 || o.threads > 1024)
         return option_error("--threads", fmt::format("{} is not from 0 to 1024", o.threads));
     return {};

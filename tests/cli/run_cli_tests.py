@@ -421,6 +421,19 @@ def test_plain_methods_agree_with_the_exact_one(folder):
         assert all(abs(a - b) <= 2e-2 * abs(b) for a, b in zip(mean, expected)), (method, mean, expected)
 
 
+def test_riemann_sum_of_the_lecture(folder):
+    """Constant light of radiance 1: K steps of phi by J of theta give (pi^2 / 2J) / sin(pi / 2J), 3.224 for J = 4, whatever K is."""
+    (folder / "half.exr").write_bytes(make_exr(16, 8, {}))  # 0.5 everywhere
+    constant = ["bake", "half.exr", *SMALL, "--exposure", "1", "--levels", "1", "--method", "riemann", "--encoding", "rgba32f"]
+    for steps, words, expected in [("6x4", ["--riemann-sum", "plain"], 3.2238), ("4x16", ["--riemann-sum", "plain"], 3.1466), ("6x4", [], math.pi)]:
+        run(*constant, "-o", "out", "--riemann-steps", steps, *words, folder=folder)
+        red = struct.unpack("<f", (folder / "out/irradiance.ktx2").read_bytes()[-16:-12])[0]
+        assert abs(red - expected) < 1e-4, (steps, words, red)
+        options = manifest_of(folder / "out")["options"]
+        assert options["riemann_steps"] == dict(zip(["phi", "theta"], map(int, steps.split("x"))))
+        assert options["riemann_sum"] == ("plain" if words else "normalised")
+
+
 def test_same_bytes_on_any_number_of_threads(folder):
     expected = None
     engines = [w for t in ["generic", "khronos", "filament", "babylon", "bevy", "three", "three-latlong"] for w in ("--for", t)]

@@ -1,8 +1,9 @@
 #include "domelight/filtering/reference.h"
 
-#include "domelight/projection/projection.h"
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
+#include "domelight/projection/projection.h"
 
+#include "filtering/reference/sampling.h"
 #include "filtering/reference/source.h"
 #include "test.h"
 
@@ -168,7 +169,7 @@ TEST_CASE("prefilter_reference: a constant environment stays constant by every m
                                 {1, false, ZonalKernel::charlie(0.7)},
                                 {1, false, {Lobe::phong_brdf, 9}}};
             options.irradiance_size = 2;
-            const auto result = prefilter_reference(image, options, {method, 16, 16, 64});
+            const auto result = prefilter_reference(image, options, {method, {16, 16}, 64});
             REQUIRE(result);
             REQUIRE(result->specular.size() == 4);
             CHECK(result->specular[0].pixels().size() == std::size_t(3 * 16 * (layout == Layout::cube ? 6 : 2)));
@@ -202,12 +203,42 @@ TEST_CASE("prefilter_reference: the Riemann sum and Monte Carlo come nearer to b
             }
             return std::sqrt(sum / 72);
         };
-        CHECK(error({ReferenceMethod::riemann, 200, 400, 1}) < 1e-4);  // (pi / 400)^2
-        CHECK(error({ReferenceMethod::riemann, 10, 20, 1}) > error({ReferenceMethod::riemann, 40, 80, 1}));
-        CHECK(error({ReferenceMethod::montecarlo, 1, 1, 16384}) <
+        CHECK(error({ReferenceMethod::riemann, {400, 200}, 1}) < 1e-4);  // (pi / 400)^2
+        CHECK(error({ReferenceMethod::riemann, {20, 10}, 1}) > error({ReferenceMethod::riemann, {80, 40}, 1}));
+        CHECK(error({ReferenceMethod::montecarlo, {}, 16384}) <
               1e-3);  // noise of a unit-contrast source, low-discrepancy
-        CHECK(error({ReferenceMethod::montecarlo, 1, 1, 64}) > error({ReferenceMethod::montecarlo, 1, 1, 4096}));
+        CHECK(error({ReferenceMethod::montecarlo, {}, 64}) > error({ReferenceMethod::montecarlo, {}, 4096}));
     }
+}
+
+TEST_CASE("prefilter_reference: the plain Riemann sum of constant light is the lecture's, and depends on J alone") {
+    FilterOptions options;
+    options.irradiance_size = 1;
+    options.sh_bands = 0;
+    const auto irradiance = [&](int K, int J, bool normalised) {
+        const auto result =
+            prefilter_reference(constant(8, 4, 1), options, {ReferenceMethod::riemann, {K, J, normalised}});
+        return result->irradiance_over_pi.pixels()[0] * k_pi;
+    };
+    // pi^2 / J sum_j cos theta_j sin theta_j = (pi^2 / 2J) / sin(pi / 2J): pi^2 / (8 sin(pi / 8)) for J = 4.
+    for (const int K : {1, 4, 16}) CHECK(irradiance(K, 4, false) == doctest::Approx(3.2238).epsilon(1e-4));
+    CHECK(irradiance(4, 16, false) == doctest::Approx(3.1466).epsilon(1e-4));
+    CHECK(irradiance(4, 4, true) == doctest::Approx(k_pi).epsilon(1e-6));
+}
+
+TEST_CASE("prefilter_reference: K steps turn about the direction, J steps tilt away from it") {
+    // Light that depends on the azimuth about +Y only: J changes nothing but the weights' sum, K samples it.
+    ImageF image(64, 32, 3);
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 64; ++x)
+            for (int c = 0; c < 3; ++c) image.at(x, y)[c] = (x + 8) / 16 % 2 == 0 ? 1.f : 0.f;
+    const ReferenceSource source(image);
+    const auto sum = [&](int K, int J) {
+        return riemann_sum(source, ZonalKernel::cosine(), {0, 1, 0}, {.phi_steps = K, .theta_steps = J}).x;
+    };
+    CHECK(sum(64, 1) == doctest::Approx(0.5).epsilon(1e-9));
+    CHECK(sum(64, 9) == doctest::Approx(0.5).epsilon(1e-9));
+    CHECK(std::abs(sum(1, 64) - 0.5) > 0.4);
 }
 
 TEST_CASE("prefilter_reference: the mirror level is the environment, turned as asked") {
@@ -264,5 +295,5 @@ TEST_CASE(
     options.specular = {{0, true, {}}};
     CHECK(!prefilter_reference(image, options));
     options.specular.clear();
-    CHECK(!prefilter_reference(image, options, {ReferenceMethod::montecarlo, 1, 1, 0}));
+    CHECK(!prefilter_reference(image, options, {ReferenceMethod::montecarlo, {}, 0}));
 }

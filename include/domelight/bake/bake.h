@@ -42,7 +42,7 @@ struct BakeOptions {
     std::vector<double> exponents;  ///< Phong: of each level; infinity is the environment itself
     BakeMethod method = BakeMethod::exact;
     int samples = 1024;  ///< montecarlo: per texel
-    int riemann_polar = 64, riemann_azimuth = 256;
+    RiemannOptions riemann;
 
     std::optional<Encoding> encoding;
     EncodingQuality encoding_quality = EncodingQuality::standard;

@@ -7,14 +7,24 @@ namespace domelight {
 /// The plain, slow filters: what the exact one is tested against and what a reader learns from.
 enum class ReferenceMethod {
     bruteforce,  ///< the kernel summed over all of the source, patch by patch, in double: the truth
-    riemann,     ///< the textbook Riemann sum over the hemisphere about each direction, K x J steps
+    riemann,     ///< the textbook Riemann sum over the hemisphere about each direction
     montecarlo,  ///< Hammersley points, GGX half vectors, weighted by n.l: Karis 2013
+};
+
+/// The Riemann sum's steps, in the letters of the lectures: K counts phi, J counts theta.
+struct RiemannOptions {
+    int phi_steps = 256;   ///< K: steps of the azimuth phi over [0, 2 pi)
+    int theta_steps = 64;  ///< J: steps of the polar angle theta over [0, pi/2)
+    /// Whether the sum is divided by the sum of its weights, so that constant light stays constant. Without it the sum
+    /// is the lectures' double loop as it stands: pi^2 / (K J) sum L cos theta sin theta for E, which is 3.224 and not
+    /// pi for L = 1 and J = 4.
+    bool normalised = true;
 };
 
 struct ReferenceOptions {
     ReferenceMethod method = ReferenceMethod::bruteforce;
-    int riemann_polar = 64, riemann_azimuth = 256;  ///< K and J
-    int samples = 1024;                             ///< montecarlo: per texel
+    RiemannOptions riemann;
+    int samples = 1024;  ///< montecarlo: per texel
 };
 
 /// The same result as `prefilter`, by a plain method, from a lat-long image in memory.

@@ -98,10 +98,9 @@ bool fill(Grid& grid, ImageView<const float> latlong, const ReferenceSource& sou
         } else {
             parallel_ranges(count, 16, options.threads, [&](int begin, int end) {
                 for (int i = begin; i < end; ++i)
-                    values[i] =
-                        reference.method == ReferenceMethod::riemann
-                            ? riemann_sum(source, kernel, axes[i], reference.riemann_polar, reference.riemann_azimuth)
-                            : montecarlo_sum(source, kernel, axes[i], reference.samples);
+                    values[i] = reference.method == ReferenceMethod::riemann
+                                    ? riemann_sum(source, kernel, axes[i], reference.riemann)
+                                    : montecarlo_sum(source, kernel, axes[i], reference.samples);
             });
         }
         for (int i = 0; i < count; ++i) grid.set(first + i, values[i]);
@@ -118,7 +117,7 @@ bool valid(const ZonalKernel& kernel) {
 Result<void> check(ImageView<const float> latlong, const FilterOptions& options, const ReferenceOptions& reference) {
     if (latlong.width < 1 || latlong.height < 1 || latlong.channels != 3)
         return Error{"the environment must be an RGB image of at least 1 x 1", "", ""};
-    if (reference.riemann_polar < 1 || reference.riemann_azimuth < 1)
+    if (reference.riemann.phi_steps < 1 || reference.riemann.theta_steps < 1)
         return Error{"a Riemann sum needs at least one step each way", "", ""};
     if (reference.samples < 1) return Error{"Monte Carlo needs at least one sample", "", ""};
     for (const LevelSpec& level : options.specular) {
