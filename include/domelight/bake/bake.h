@@ -19,22 +19,22 @@
 
 namespace domelight {
 
-/// Sheen with a roughness below this is baked with this one: towards 0 Charlie's lobe shrinks to the horizon and its
-/// integral to nothing (the Khronos viewer's own level for 0 is black).
+/// The least roughness of baked sheen; lower values are raised to it. Towards roughness 0 Charlie's lobe shrinks to the
+/// horizon and its integral to 0 (the Khronos viewer's own level for roughness 0 is black).
 inline constexpr double k_charlie_least_roughness = 0.1;
 
 /// How the filtering is done: exactly, or by one of the plain methods of reference.h.
 enum class BakeMethod { exact, bruteforce, riemann, montecarlo };
 std::string bake_method_name(BakeMethod method);
 
-/// How cubes are laid out in .exr and .hdr: one picture a level, or six.
+/// How cubes are laid out in .exr and .hdr files: one picture a level, or six.
 enum class CubePicture { cross, strip, faces };
 std::string cube_picture_name(CubePicture picture);
 
-/// What to bake. Whatever is left out is the engine's choice.
+/// What to bake. Each engine has its own default for an option that is empty.
 struct BakeOptions {
-    std::vector<std::string> engines{"generic"};  ///< several share one reading of the environment
-    std::optional<Layout> layout;                 ///< cube unless asked otherwise
+    std::vector<std::string> engines{"generic"};  ///< several engines share one reading of the environment
+    std::optional<Layout> layout;                 ///< by default the engine's, which is mostly cube
     std::optional<int> size;                      ///< level 0: face size, or height of a lat-long map
     std::optional<int> levels;
     std::vector<double> roughness;  ///< of each level, [0, 1]; empty: the engine's curve
@@ -62,8 +62,8 @@ struct BakeOptions {
     int threads = 0;
     Progress progress;
 
-    /// The environment's files in the order to hash them (empty: Environment::file), and how it was opened, for the
-    /// manifest.
+    /// For the manifest: the environment's files in the order to hash them (empty: Environment::file), and how it was
+    /// opened.
     std::vector<std::filesystem::path> source_files;
     EnvironmentOptions environment;
 };
@@ -81,7 +81,7 @@ struct BakedLevel {
     bool mirror = false;              ///< the environment itself
     double roughness = 0, alpha = 0;  ///< ggx and charlie
     double exponent = 0;              ///< phong
-    std::vector<BakedFile> files;     ///< containers that hold one image a level
+    std::vector<BakedFile> files;     ///< for containers that hold one image a level
     EncodingReport encoding;
 };
 
@@ -91,11 +91,12 @@ struct BakedMap {
     Lobe lobe = Lobe::ggx;
     Quantity quantity = Quantity::radiance;
     Layout layout = Layout::cube;
-    std::string projection;  ///< the environment as one image: its name and convention; else empty
+    std::string projection;  ///< for an environment stored as one image: the name and convention of its projection;
+                             ///< otherwise empty
     std::string encoding, container;
     bool widened = false;  ///< `encoding` is rgba32f, because halves, the default of OpenEXR files, would clip
     bool zstd = false;
-    BakedFile file;  ///< containers that hold the whole chain
+    BakedFile file;  ///< for containers that hold the whole chain
     std::vector<BakedLevel> levels;
 };
 
@@ -117,7 +118,7 @@ struct BrdfReport {
     std::string encoding;
 };
 
-/// What one engine's folder holds.
+/// The contents of one engine's folder.
 struct EngineReport {
     std::string name;
     std::filesystem::path folder;
@@ -145,16 +146,16 @@ struct BakeReport {
     std::vector<StageTime> stages;
 };
 
-/// Whether the options make sense together, before anything is read. The error's `where` is the option.
+/// Checks whether the options are consistent, before anything is read. The error's `where` names the option.
 Result<void> check_bake_options(const BakeOptions& options);
 
-/// Bakes an environment into `folder`: specular chain, irradiance, harmonics, BRDF table, picture, manifest; with
-/// several engines each into a folder of its name. Everything is written beside its place first and moved there when
-/// all is complete; on an error nothing has changed.
+/// Bakes an environment into `folder`: specular chain, irradiance, harmonics, BRDF table, picture, manifest. With
+/// several engines, each has a subfolder with its name. Everything is first written next to its final place and moved
+/// there when all is complete, so an error changes nothing.
 Result<BakeReport> bake(const Environment& environment, const BakeOptions& options, const std::filesystem::path& folder);
 
-/// Whether `folder` already holds exactly what baking these files with these options would write: same version,
-/// options, source hash, and every file there with its hash.
+/// Whether `folder` already holds exactly what a bake of these files with these options would write: the same version,
+/// options and source hash, and every file with its hash.
 bool bake_is_up_to_date(const std::vector<std::filesystem::path>& source_files, const BakeOptions& options,
                         const std::filesystem::path& folder);
 

@@ -9,8 +9,8 @@ template <typename T>
 struct Frame {
     Vec3<T> tangent, bitangent, normal;
 
-    /// `n` of unit length. Duff et al. 2017, "Building an orthonormal basis, revisited": no branch, and no direction
-    /// near which it loses precision. The tangent turns over where n.z changes sign.
+    /// `n` must have unit length. Duff et al. 2017, "Building an orthonormal basis, revisited": there is no branch, and
+    /// no direction near which precision is lost. The tangent is discontinuous where n.z changes sign.
     explicit Frame(const Vec3<T>& n) : normal(n) {
         const T sign = std::copysign(T(1), n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
         tangent = {1 + sign * n.x * n.x * a, sign * b, -sign * n.x};

@@ -7,19 +7,20 @@
 
 namespace domelight {
 
-/// Memory for large arrays, from the system directly and in large pages where it has them: a 64 MB array in 4 KB pages
-/// costs 16384 page faults, which takes longer than filling it. Free it with the same size. Throws std::bad_alloc.
+/// Memory for large arrays, taken from the system directly, in large pages where the system has them. A 64 MB array in
+/// 4 KB pages costs 16384 page faults, which take longer than filling it. Free it with the same size. Throws
+/// std::bad_alloc.
 void* allocate_large(std::size_t bytes);
 void free_large(void* memory, std::size_t bytes) noexcept;
-/// Whether what allocate_large returns is zero already.
+/// Whether the memory that allocate_large returns is already zero.
 extern const bool k_large_is_zero;
 
-/// An allocator for pixels: large arrays by allocate_large, and elements without a given value are not written (their
-/// values are undefined).
+/// An allocator for pixels. Large arrays come from allocate_large. Elements without a given value stay uninitialised:
+/// their values are undefined.
 template <typename T>
 struct LargeAllocator {
     using value_type = T;
-    /// From here on an array counts as large.
+    /// Arrays of this size or more count as large.
     static constexpr std::size_t k_large_bytes = std::size_t(4) << 20;
 
     LargeAllocator() = default;

@@ -5,8 +5,8 @@
 
 namespace domelight {
 
-/// Long work tells how far it is: a stage's name ("filter") and the part of it that is done, 0 to 1. Called from one
-/// thread at a time. Returning false asks the work to stop; it then returns an Error with `what` "cancelled".
+/// Reports the progress of long work: the name of a stage ("filter") and the part of it that is done, 0 to 1. Called
+/// from one thread at a time. If it returns false, the work stops and returns an Error whose `what` is "cancelled".
 using Progress = std::function<bool(std::string_view stage, double done)>;
 
 }  // namespace domelight

@@ -21,8 +21,8 @@ constexpr std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> c
     return counter;
 }
 
-/// A bijection of 64-bit words in which every bit of the argument reaches every bit of the result: one step of
-/// SplitMix64 (Steele, Lea and Flood 2014) from state `x`. For keys, where Philox would be more than is needed.
+/// A bijection of 64-bit words in which every bit of the argument affects every bit of the result: one step of
+/// SplitMix64 (Steele, Lea and Flood 2014) from state `x`. Used for keys, where Philox would be more than is needed.
 constexpr std::uint64_t mix_bits(std::uint64_t x) {
     x += 0x9e3779b97f4a7c15ull;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
@@ -30,16 +30,16 @@ constexpr std::uint64_t mix_bits(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
-/// A key of its own for each (seed, dimension pair, or whatever else `which` numbers).
+/// A different key for each seed and each value of `which` (a pair of dimensions, for example).
 constexpr std::uint64_t derive_key(std::uint64_t seed, std::uint64_t which) {
     return mix_bits(mix_bits(seed) + which);
 }
 
-/// Where `i` goes in a random permutation of 0..n-1 that `key` chooses; i < n, n >= 1.
+/// The image of `i` under a random permutation of 0..n-1 that `key` selects; i < n, n >= 1.
 ///
-/// Keyed bijections of the next power of two (add, multiply by an odd number, fold the high bits down), repeated until
-/// the result is below n: following a cycle until it comes back into the set keeps it a bijection (Black and Rogaway
-/// 2002, "Ciphers with arbitrary finite domains"; in sampling, Kensler 2013).
+/// A keyed bijection of 0..2^k-1, with 2^k the next power of two (add, multiply by an odd number, fold the high bits
+/// down), is repeated until the result is below n. This is still a bijection, because a cycle is followed until it
+/// returns to the set (Black and Rogaway 2002, "Ciphers with arbitrary finite domains"; in sampling, Kensler 2013).
 constexpr std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint64_t key) {
     int bits = 1;
     while (bits < 32 && ((n - 1) >> bits) != 0) ++bits;
@@ -47,7 +47,7 @@ constexpr std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint64_t 
     const int fold = (bits + 1) / 2;
     do {
         std::uint64_t k = key;
-        for (int round = 0; round < 8; ++round) {  // with 4, orders of 4 things are not equally likely
+        for (int round = 0; round < 8; ++round) {  // with 4 rounds, the orders of 4 items are not equally likely
             i = (i + std::uint32_t(k >> 32)) & mask;
             i = (i * (std::uint32_t(k >> 8) | 1u)) & mask;
             i ^= i >> fold;

@@ -21,11 +21,11 @@ struct Error {
         if (!hint.empty()) text += "\n       " + hint;
         return text;
     }
-    /// The same error, told of `place` where it names none yet.
+    /// The same error with `where` set to `place`, unless it is already set.
     Error at(std::string place) const { return {what, where.empty() ? std::move(place) : where, hint}; }
 };
 
-/// A value or an Error: everything that depends on outside input returns one (a small std::expected).
+/// A value or an Error, like a small std::expected. Every function that depends on outside input returns one.
 ///
 ///     Result<int> parse(std::string_view text);
 ///     auto n = parse("12");

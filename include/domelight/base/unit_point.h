@@ -6,9 +6,9 @@ namespace domelight {
 
 /// A point of the unit square in 32-bit fixed point: (x, y) / 2^32, so in [0, 1) by construction.
 ///
-/// Sequences make them and samplers take them. A float in [0, 1) has 24 bits, and an environment of 4096 x 2048 texels
-/// uses 23 of them to find the texel: nothing would be left of where in it. 32 bits are what cumulative tables in
-/// 32-bit fixed point can tell apart.
+/// Sequences return such points and samplers take them. A float in [0, 1) has 24 bits, and an environment of 4096 x
+/// 2048 texels needs 23 of them to choose the texel, which would leave one bit for the position within it. Cumulative
+/// tables in 32-bit fixed point can distinguish exactly 32 bits.
 struct UnitPoint {
     std::uint32_t x = 0, y = 0;
     constexpr bool operator==(const UnitPoint&) const = default;
@@ -22,7 +22,7 @@ constexpr double unit_double(std::uint32_t u) {
 constexpr float unit_float(std::uint32_t u) {
     return float(u >> 8) * 0x1p-24f;
 }
-/// A number in [0, 1) as a fraction, rounded down; what lies outside is clamped to the nearest fraction, NaN becomes 0.
+/// A number in [0, 1) as a fraction, rounded down. Numbers outside are clamped to the nearest fraction; NaN becomes 0.
 constexpr std::uint32_t unit_fixed(double u) {
     if (!(u > 0)) return 0;
     return u >= 1 ? 0xffffffffu : std::uint32_t(u * 0x1p32);

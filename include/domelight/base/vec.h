@@ -41,7 +41,7 @@ template <typename T>
 constexpr Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-/// Component by component: a colour through a filter.
+/// The product of each component: a colour seen through a filter, for example.
 template <typename T>
 constexpr Vec3<T> product(const Vec3<T>& a, const Vec3<T>& b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};

@@ -18,11 +18,11 @@ namespace domelight {
 /// A level of a bake.
 struct CubeLevel {
     Cubemap cube;                     ///< RGB radiance, faces in the file's order
-    std::optional<double> roughness;  ///< what the file or its format says was baked into it, [0, 1]
+    std::optional<double> roughness;  ///< the roughness that the file or its format states, [0, 1]
     std::optional<double> exponent = {};  ///< the same for a Phong lobe, >= 0; infinity: the environment itself
 };
 
-/// The light that was baked: exactly one of the two.
+/// The light that was baked: exactly one of `latlong` and `cube` is set.
 struct AuditSource {
     ImageView<const float> latlong;  ///< RGB, default convention up to world_to_source
     const Cubemap* cube = nullptr;
@@ -35,27 +35,28 @@ struct CubeOrientation {
     Mat3 ours_from_theirs;  ///< a signed permutation of the axes
     std::string words;      ///< "as ours", "mirrored in x", "turned by 90 degrees about +Y", ...
     double error = 0;       ///< LevelAudit::broad_error of level 0 in this orientation, [0, 1]
-    double next_error = 0;  ///< of the best other orientation
-    bool certain = true;    ///< false: the light is so even or symmetric that another orientation fits as well
+    double next_error = 0;  ///< the same for the second best orientation
+    bool certain = true;    ///< false: the light is so uniform or symmetric that another orientation fits as well
 };
 /// The words for one of the 48 orientations.
 std::string orientation_words(const Mat3& ours_from_theirs);
 
-/// What was found out about a level. `exact` is the exact filter of the source at `roughness`, in the orientation
-/// found; `scale` times it is the best fit to the level.
+/// The findings for a level. Below, `exact` is the exact filter of the source at `roughness`, in the orientation found,
+/// and `scale` times `exact` is the best fit to the level.
 struct LevelAudit {
     int size = 0;
     double roughness = 0;            ///< of the lobe that fits best; 0: the environment itself
     std::optional<double> exponent;  ///< of a Phong lobe that fits best; infinity: the environment itself
-    double roughness_within = 0;     ///< the fit is less than a twentieth worse (or 0.0005) this far from it
+    double roughness_within = 0;     ///< this far from `roughness` the fit is worse by less than a twentieth (or by
+                                     ///< less than 0.0005)
     bool roughness_known = true;     ///< false: every roughness fits alike
     double scale = 1;                ///< median over texels of theirs / exact (luminance)
-    double energy = 1;  ///< mean over the sphere of theirs over that of exact (luminance), as their texels sample it
+    double energy = 1;  ///< ratio of the means over the sphere, theirs / exact (luminance), both at the level's texels
     double error =
         0;  ///< RMS over the sphere of (theirs - fit) / max(theirs, fit), [0, 1]: every direction counts alike
     double broad_error = 0;    ///< the same with both averaged to faces of at most 32^2, which removes noise and detail
     double relative_rmse = 0;  ///< sqrt(sum (theirs - fit)^2 / sum fit^2): the brightest directions count most
-    double largest = 0;        ///< of |theirs - fit| / max(theirs, fit)
+    double largest = 0;        ///< the largest |theirs - fit| / max(theirs, fit)
     std::optional<double> stated_roughness;
     /// At the stated roughness and scale 1: what a consumer gets that trusts the file.
     double stated_error = 0, stated_relative_rmse = 0;

@@ -19,13 +19,13 @@ std::string quantity_name(Quantity quantity);
 /// to one engine each: Babylon's .env, a glTF file with EXT_lights_image_based, PlayCanvas' atlas (a PNG).
 enum class Container { ktx2, ktx1, dds, dds9, exr, exr_mip, hdr, env, gltf, playcanvas_atlas };
 std::string container_name(Container container);
-/// Those that fit any engine: ktx2, ktx1, dds, dds9, exr, exr-mip, hdr. The error lists them.
+/// Accepts the containers that suit any engine: ktx2, ktx1, dds, dds9, exr, exr-mip, hdr. The error lists them.
 Result<Container> container_from_name(const std::string& name);
 std::string container_extension(Container container);  ///< ".ktx2", ".ktx", ...
 
-/// How an engine's lookup differs from texture(cube, d) for the light that arrives from world direction d = (x, y, z).
+/// How an engine looks up the light that arrives from world direction d = (x, y, z).
 enum class CubeMirror {
-    none,     ///< it does not
+    none,     ///< it reads texture(cube, d)
     x,        ///< it reads texture(cube, (-x, y, z))
     z,        ///< it reads texture(cube, (x, y, -z))
     swap_yz,  ///< it reads texture(cube, (x, z, y))
@@ -37,20 +37,20 @@ enum class BrdfForm { none, scale_bias, multiscatter, scale_bias_charlie };
 std::string brdf_form_name(BrdfForm form);  ///< "none", "scale-bias", "multiscatter", "scale-bias-charlie"
 Result<BrdfForm> brdf_form_from_name(const std::string& name);
 
-/// Roughness baked into a level: of `levels` levels of a cube whose first has `size`^2 texels a face.
+/// The roughness of a level in a chain of `levels` levels whose first has `size`^2 texels a face.
 using RoughnessCurve = double (*)(int level, int levels, int size);
 
 /// One engine: what it loads and in which convention. In file names, {stem} stands for the environment's name, and
 /// the container's extension is appended. An empty name means that the map is not written.
 struct Engine {
     std::string name;   ///< "filament"
-    std::string loads;  ///< one line for lists: what the engine is, and what is made for it
-    std::string note;   ///< what the engine does itself, or what a later version will write; may be empty
+    std::string loads;  ///< one line for lists: the engine, and what is baked for it
+    std::string note;   ///< a remark for the user: what the engine does itself, for example; may be empty
 
     int size = 512;    ///< face size of level 0; 0 (only with `environment_only`): the image is as large as the source
     int smallest = 8;  ///< by default levels go down to this face size
     RoughnessCurve roughness = nullptr;
-    Layout layout = Layout::cube;  ///< of the maps, unless asked otherwise
+    Layout layout = Layout::cube;  ///< the default layout of the maps
     CubeMirror mirror = CubeMirror::none;
     std::string latlong = "default";  ///< convention of lat-long maps: one that only turns the default about +Y
     Encoding encoding = Encoding::rgba16f;
@@ -84,7 +84,7 @@ Result<const Engine*> find_engine(const std::string& name);
 /// roughness = level / (levels - 1); 0 for a single level.
 double linear_roughness(int level, int levels, int size);
 
-/// Levels of an engine's cube chain whose first has `size`^2 texels a face: down to its smallest.
+/// The number of levels of an engine's cube chain from `size`^2 texels a face down to its smallest.
 int default_levels(const Engine& engine, int size);
 
 /// Phong's exponent n_s of a level >= 0 where none are given. Level 0 is the environment itself (infinity), level 1 has

@@ -19,7 +19,7 @@ enum class Layout { cube, latlong };
 /// One level of a specular chain.
 struct LevelSpec {
     int size = 0;         ///< cube: face size; lat-long: height (the width is twice that)
-    bool mirror = false;  ///< the environment itself, averaged over each texel; `kernel` is not used
+    bool mirror = false;  ///< the environment itself, averaged over each texel; `kernel` is then ignored
     ZonalKernel kernel;
 };
 

@@ -4,7 +4,7 @@
 
 namespace domelight {
 
-/// The plain, slow filters: what the exact one is tested against and what a reader learns from.
+/// The plain, slow filters. The exact filter is tested against them, and they show the method in its simplest form.
 enum class ReferenceMethod {
     bruteforce,  ///< the kernel summed over all of the source, patch by patch, in double: the truth
     riemann,     ///< the textbook Riemann sum over the hemisphere about each direction

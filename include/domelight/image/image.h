@@ -54,7 +54,7 @@ class Image {
     Image() = default;
     Image(int width, int height, int channels, T value = {})
         : width_(width), height_(height), channels_(channels), data_(std::size_t(width) * height * channels, value) {}
-    /// Pixels of no value yet, for who writes them all: memory is first touched there, perhaps by many threads.
+    /// Uninitialised pixels: the caller must write every one. The memory is first touched by the threads that write it.
     static Image uninitialized(int width, int height, int channels) {
         Image image;
         image.width_ = width;

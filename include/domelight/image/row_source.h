@@ -5,18 +5,18 @@
 
 namespace domelight {
 
-/// A lat-long image in the default convention, handed on from the top row down: RGB float radiance, linear Rec. 709,
-/// finite and >= 0. A 16384 x 8192 image passes through without ever being in memory whole.
+/// A lat-long image in the default convention that is read from the top row down: RGB float radiance, linear Rec. 709,
+/// finite and >= 0. A 16384 x 8192 image can be read without ever being in memory as a whole.
 class RowSource {
   public:
     virtual ~RowSource() = default;
     virtual int width() const = 0;
     virtual int height() const = 0;
-    /// The next `rows.height` rows (at most what is left) into `rows` (width() wide, 3 channels).
+    /// Reads the next `rows.height` rows (no more than are left) into `rows` (width() wide, 3 channels).
     virtual Result<void> read(ImageView<float> rows) = 0;
 };
 
-/// An image in memory as a RowSource. Keeps the view, not the pixels.
+/// An image in memory as a RowSource. It refers to the pixels without copying them.
 class ImageRowSource : public RowSource {
   public:
     explicit ImageRowSource(ImageView<const float> image) : image_(image) {}
@@ -29,7 +29,7 @@ class ImageRowSource : public RowSource {
     int next_row_ = 0;
 };
 
-/// All rows of a source, from its next one on, in memory.
+/// Reads all remaining rows of a source into memory.
 Result<ImageF> read_latlong(RowSource& source);
 
 }  // namespace domelight

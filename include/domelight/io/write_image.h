@@ -17,7 +17,7 @@ namespace domelight {
 /// Writers of images. Each output appears whole or not at all; an existing file is replaced only by a complete one.
 
 /// Radiance HDR: RGBE, new run-length encoding (flat where the width does not allow it), mantissas rounded to the
-/// nearest. The source form writes row by row. Negative values and NaN become 0.
+/// nearest. The form with a RowSource writes row by row. Negative values and NaN become 0.
 Result<void> write_hdr(const std::filesystem::path& file, ImageView<const float> rgb, int threads = 0);
 Result<void> write_hdr(const std::filesystem::path& file, RowSource& rows, int threads = 0);
 
@@ -45,18 +45,19 @@ Result<void> write_exr(const std::filesystem::path& file, ImageView<const float>
 Result<void> write_exr(const std::filesystem::path& file, RowSource& rows, const ExrWriteOptions& options = {});
 
 /// OpenEXR tiled image with levels (MIPMAP_LEVELS, sizes rounded down). `levels`: the finest first, each half as large
-/// as the one before in both directions; the smaller ones that the format demands down to 1 x 1 are made from the last
-/// one by averaging. With envmap "cube" each level is a strip of faces that halves. Errors: other sizes.
+/// as the one before in both directions. The format requires levels down to 1 x 1; those that are missing are made from
+/// the last one by averaging. With envmap "cube" each level is a strip of faces. Errors: other sizes.
 Result<void> write_exr_levels(const std::filesystem::path& file, std::span<const ImageView<const float>> levels,
                               const ExrWriteOptions& options = {});
 
-/// A layer of an image of several.
+/// One layer of an image with several layers.
 struct ExrLayer {
-    std::string name;  ///< before the channels' names: "direct" gives direct.R; empty for the picture itself
+    std::string name;  ///< the prefix of the channels' names: "direct" gives direct.R; empty for the picture itself
     ImageView<const float> pixels;  ///< 1 to 4 channels: Y (or `channel`), or R G B A
-    std::string channel = {};       ///< the name of a single one
+    std::string channel = {};       ///< the name of a single channel
 };
-/// OpenEXR scanline image of 32-bit floats with several layers of the same size. `options`: attributes.
+/// OpenEXR scanline image of 32-bit floats with several layers of the same size. Of `options` only the attributes are
+/// used.
 Result<void> write_exr_layers(const std::filesystem::path& file, std::span<const ExrLayer> layers,
                               const ExrWriteOptions& options = {});
 

@@ -20,12 +20,12 @@ struct PreviewLevel {
     std::string name = {};    ///< the line above that; empty: "level 2 · 128²"
 };
 
-/// What a contact sheet shows. Views and pointers are only read during the call; whatever is empty is left out.
+/// The contents of a contact sheet. Views and pointers are only used during the call; empty ones are left out.
 struct PreviewInput {
     std::string title;                   ///< the environment's file name, UTF-8
     std::string subtitle;                ///< "4096 × 2048 · GGX · rgba16f · generic"
-    ImageView<const float> environment;  ///< lat-long RGB, any size; empty: the first specular level stands for it
-    Mat3 world_to_source;                ///< turns the environment as the maps are turned
+    ImageView<const float> environment;  ///< lat-long RGB, any size; empty: the first specular level is shown instead
+    Mat3 world_to_source;                ///< the same as for the maps
     std::vector<PreviewLevel> specular;  ///< sharpest first
     std::vector<PreviewLevel> sheen;     ///< of Charlie's lobe, shown below the others
     const FilteredMap* irradiance_over_pi = nullptr;
@@ -34,7 +34,8 @@ struct PreviewInput {
     ImageView<const float> brdf;        ///< a BRDF table (brdf_table.h)
     int brdf_channels = 2;              ///< how many of its channels are shown, as red, green and blue
     std::string brdf_detail = "red scale, green bias";  ///< what these channels hold
-    std::optional<double> exposure_ev;  ///< stops; empty: from the environment's log-average luminance, put to 0.18
+    std::optional<double> exposure_ev;  ///< stops; empty: the exposure that brings the environment's log-average
+                                        ///< luminance to 0.18
     int width = 1600;                   ///< pixels, at least 800
     int threads = 0;
 };

@@ -81,7 +81,7 @@ inline UV disc_uv(DiscPoint p) {
 inline UV sphere_map_uv(const Vec3d& d) {
     const Vec3d n = d / length(d), h{n.x, n.y, n.z + 1};
     const double side = std::hypot(n.x, n.y);
-    // Behind, z + 1 has lost its digits: h_z / |h_xy| = (1 + z) / side = side / (1 - z).
+    // For directions near -Z, 1 + z has no digits left; instead h_z / |h_xy| = (1 + z) / side = side / (1 - z).
     if (n.z >= 0) return disc_uv({h.x / length(h), h.y / length(h)});
     if (side == 0) return disc_uv({1, 0});
     const double slope = side / (1 - n.z), r = 1 / std::sqrt(1 + slope * slope);
@@ -93,7 +93,7 @@ inline Vec3d sphere_map_direction(UV uv) {
     const double hz2 = std::max(0.0, 1 - p.squared()), hz = std::sqrt(hz2);
     return {2 * hz * p.x, 2 * hz * p.y, 2 * hz2 - 1};
 }
-/// d omega / (du dv) of a sphere map: it keeps areas, 4 pi over the disc's pi / 4.
+/// dω / (du dv) of a sphere map. The map preserves areas: 4 pi over the disc's area pi / 4.
 inline constexpr double k_sphere_map_jacobian = 16;
 
 /// The two halves of a dual paraboloid map, each a disc in a square picture of its own.
@@ -103,9 +103,9 @@ struct ParaboloidPoint {
     UV uv;
 };
 
-/// A half's point for a direction: front xy / (1 + z), back xy / (1 - z). Within the disc where z has the half's sign;
-/// around it the picture goes on (to infinity at the half's far pole), so that a linear lookup needs no seam.
-/// `d` need not be of unit length. (Heidrich and Seidel 1998.)
+/// The point of a half for a direction: front xy / (1 + z), back xy / (1 - z). It lies within the disc where z has the
+/// half's sign. The picture continues outside the disc (to infinity at the opposite pole), so a linear lookup meets no
+/// seam. `d` need not be of unit length. (Heidrich and Seidel 1998.)
 inline UV paraboloid_uv(ParaboloidHalf half, const Vec3d& d) {
     const double depth = length(d) + (half == ParaboloidHalf::front ? d.z : -d.z);
     return disc_uv({d.x / depth, d.y / depth});
@@ -121,7 +121,7 @@ inline Vec3d paraboloid_direction(ParaboloidHalf half, UV uv) {
     const double s = p.squared(), z = (1 - s) / (1 + s);
     return {2 * p.x / (1 + s), 2 * p.y / (1 + s), half == ParaboloidHalf::front ? z : -z};
 }
-/// d omega / (du dv) of either half: 16 / (1 + |p|^2)^2, from 16 in the middle to 4 at the rim.
+/// dω / (du dv) of either half: 16 / (1 + |p|^2)^2, from 16 in the middle to 4 at the rim.
 inline double paraboloid_jacobian(UV uv) {
     const double s = 1 + disc_point(uv).squared();
     return 16 / (s * s);

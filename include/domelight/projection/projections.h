@@ -19,44 +19,44 @@ struct UVBox {
 struct ProjectionPoint {
     int chart = 0;
     UV uv;
-    bool shown =
-        true;  ///< false: the projection leaves this direction out (behind a hemisphere); uv is then the nearest
+    /// false: the projection leaves this direction out (behind a hemisphere); uv is then the nearest.
+    bool shown = true;
 };
 
 /// The mathematics of one projection, in the picture's own frame: x to the right, y up, z out of the centre.
 ///
-/// A picture is made of charts: the six faces of a cube, the two halves of a dual paraboloid, else one. Each fills a
-/// rectangle, uv from 0 to 1, width : height = aspect().
+/// A picture consists of charts: the six faces of a cube, the two halves of a dual paraboloid, otherwise one. Each
+/// fills a rectangle with u and v from 0 to 1, whose width : height is aspect().
 class ProjectionShape {
   public:
     virtual ~ProjectionShape() = default;
     virtual int charts() const { return 1; }
     virtual double aspect() const { return 1; }
-    /// Solid angle of all that is shown: 4 pi for a full projection.
+    /// Solid angle of all directions shown: 4 pi for a full projection.
     virtual double coverage() const { return 4 * k_pi; }
-    /// Unit direction shown at a point. Also beyond the valid part, where the picture would go on.
+    /// Unit direction shown at a point. Defined outside the valid part too, as the continuation of the picture.
     virtual Vec3d direction(int chart, UV uv) const = 0;
     /// Inverse, for any d != 0.
     virtual ProjectionPoint locate(const Vec3d& d) const = 0;
-    /// Whether the point belongs to the map: within the disc.
+    /// Whether the point belongs to the map (for round maps: whether it lies within the disc).
     virtual bool valid(UV) const { return true; }
-    /// d omega / (du dv) of a chart, for valid points.
+    /// dω / (du dv) of a chart, for valid points.
     virtual double jacobian(UV uv) const = 0;
     /// Solid angle of the valid part of a box of a chart.
     virtual double solid_angle(const UVBox& box) const = 0;
-    /// The same for boxes between `u_edges` (one more than `out` has), all from v0 to v1.
+    /// The same for a row of boxes from v0 to v1 between consecutive `u_edges` (one more than `out` has elements).
     virtual void solid_angles(double v0, double v1, std::span<const double> u_edges, std::span<double> out) const {
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = solid_angle({u_edges[i], v0, u_edges[i + 1], v1});
     }
-    /// Places on different sides of a seam, where neighbouring directions lie apart in the picture, have different
-    /// charts or regions.
+    /// Points on different sides of a seam have different charts or different regions. (At a seam, neighbouring
+    /// directions lie apart in the picture.)
     virtual int region(const Vec3d&) const { return 0; }
-    /// locate() as a chart and region go on a little past their seams: for a direction on a seam that belongs to a
-    /// neighbour by a rounding error.
+    /// locate() with the given chart and region continued a little past their seams: for a direction on a seam that
+    /// falls into the neighbour because of a rounding error.
     virtual UV locate_in(int /*chart*/, int /*region*/, const Vec3d& d) const { return locate(d).uv; }
     /// Whether the picture's left and right edges meet.
     virtual bool wraps() const { return false; }
-    /// Height of the lat-long map in which the finest texels of a chart `size` texels high keep their size.
+    /// Height of the lat-long map whose texels are as fine as the finest texels of a chart `size` texels high.
     virtual int latlong_height(int size) const { return size; }
 };
 
@@ -67,7 +67,7 @@ enum class SampleGrid {
     both_on_edges,  ///< u = i / (W - 1), v = j / (H - 1)
 };
 
-/// A projection with its convention: which way the picture's centre, right and top look.
+/// A projection with its convention: the world directions of the picture's centre, right and top.
 ///
 ///     auto p = projection_from_name("angular/centre=+X,right=+Z");
 ///     Vec3d d = p->direction(0, {0.5, 0.5});  // (1, 0, 0)
@@ -82,7 +82,7 @@ class Projection {
     const Mat3& world_to_picture() const { return world_to_picture_; }
     SampleGrid grid() const { return grid_; }
     int charts() const { return shape_->charts(); }
-    /// The same picture, found by directions that `before` takes to the world's.
+    /// The same picture looked up with `before` applied to each direction first.
     Projection turned(const Mat3& before) const { return {name_, shape_, world_to_picture_ * before, grid_}; }
     bool full() const { return shape_->coverage() > 4 * k_pi - 1e-9; }
 
@@ -91,14 +91,14 @@ class Projection {
     bool valid(UV uv) const { return shape_->valid(uv); }
     double jacobian(UV uv) const { return shape_->jacobian(uv); }
 
-    /// The part of a chart of width x height texels that texel (x, y) stands for. Where samples lie on the edges the
-    /// outer ones stand for half as much.
+    /// The part of a chart of width x height texels that texel (x, y) represents. Where samples lie on the edges, the
+    /// outer ones represent half as much.
     UVBox texel_box(int x, int y, int width, int height) const;
     double texel_solid_angle(int x, int y, int width, int height) const {
         return shape_->solid_angle(texel_box(x, y, width, height));
     }
-    /// Those of row y, faster together. (Row height - 1 - y has the same, and so do the columns from the right: every
-    /// projection is symmetric.)
+    /// The solid angles of all texels of row y, computed faster together. (Every projection is symmetric: row height -
+    /// 1 - y has the same solid angles, and so have the columns counted from the right.)
     void texel_solid_angles(int y, int width, int height, std::span<double> out) const;
 
   private:

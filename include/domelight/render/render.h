@@ -1,5 +1,5 @@
 #pragma once
-// The truth: a scene under an environment by path tracing.
+// The reference picture: a scene under an environment, by path tracing.
 //
 //     auto scene = load_scene("helmet.glb");
 //     auto traced = RayScene::build(std::move(*scene));
@@ -39,25 +39,25 @@ class RayScene {
 
 /// Where light directions come from.
 enum class LightStrategy {
-    mis,          ///< both, weighted by the balance heuristic
+    mis,          ///< by both of the following, weighted by the balance heuristic
     environment,  ///< in proportion to radiance
-    brdf,         ///< by the surface
+    brdf,         ///< in proportion to the surface's BRDF
 };
 
 class LightMaps;
 
-/// What shows where no surface is. It does not light the scene.
+/// What is seen where there is no surface. It does not light the scene.
 enum class Background {
     environment,
-    blurred,      ///< the environment prefiltered for a roughness: RenderOptions::background_maps
+    blurred,      ///< the environment, prefiltered for a roughness: RenderOptions::background_maps
     colour,       ///< RenderOptions::background_colour
-    transparent,  ///< nothing: radiance is black there, opacity 0
+    transparent,  ///< nothing: the radiance is black there, and the opacity 0
 };
 
-/// How far a render is.
+/// The progress of a render.
 struct RenderStatus {
-    double samples = 0;  ///< of a pixel, mean
-    double noise = 0;    ///< standard error of L / (1 + L), rms over the pixels that have two samples or more
+    double samples = 0;  ///< of a pixel, on average
+    double noise = 0;    ///< standard error of L / (1 + L), rms over the pixels with two samples or more
     double seconds = 0;  ///< since the start
 };
 
@@ -69,46 +69,50 @@ struct RenderOptions {
     LightStrategy strategy = LightStrategy::mis;
     int samples = 64;  ///< of each pixel
     double noise =
-        0;  ///< > 0: samples go on (to `most_samples`) where a pixel's standard error, of L / (1 + L), is above this
+        0;  ///< > 0: a pixel gets more samples (up to `most_samples`) while the standard error of its L / (1 + L) is
+            ///< above this
     int most_samples = 65536;
-    double seconds = 0;  ///< > 0: stop after so long; the result then depends on the machine
+    double seconds = 0;  ///< > 0: stop after this time; the result then depends on the machine
     int bounces = 0;     ///< of indirect light; 0: direct light with shadows
-    /// How many surfaces a path may go through (KHR_materials_transmission), reflections inside a body counted, before
-    /// they count as bounces: what is seen through glass is direct light. Glass casts a full shadow: what it lets
-    /// through onto other surfaces is indirect light, and needs a bounce.
+    /// How many surfaces a path may pass through (KHR_materials_transmission; reflections inside a body count too)
+    /// before they count as bounces. What is seen through glass is direct light. Glass casts a full shadow: the light
+    /// that passes through it onto other surfaces is indirect light and needs a bounce.
     int refractions = 16;
     bool occlusion =
-        true;  ///< false: no shadows, and no indirect light: what a shader without them must be compared with. Glass
-               ///< then shows the environment in the direction refracted at its first surface, through its `thickness`
-    bool multiple_scattering = false;  ///< GGX's lost energy given back (Turquin 2019); glTF's own model does not
+        true;  ///< false: no shadows and no indirect light, for comparison with a shader that has neither. Glass then
+               ///< shows the environment in the direction refracted at its first surface, through its `thickness`
+    bool multiple_scattering = false;  ///< compensates the energy that GGX loses (Turquin 2019); not part of glTF's own
+                                       ///< model
     Background background = Background::environment;
     Vec3f background_colour;                     ///< linear radiance
-    float background_roughness = 0.35f;          ///< blurred: of the level that shows
+    float background_roughness = 0.35f;          ///< blurred: the roughness of the prefiltered level that is shown
     const LightMaps* background_maps = nullptr;  ///< blurred: must be set, and outlive the call
     /// Lights that were taken out of the environment (load_environment_lights): they light the scene beside its own.
     std::vector<PunctualLight> environment_lights;
     std::uint64_t seed = 0;
     int threads = 0;
     Progress progress;
-    /// Reference: told before each call of `progress`, and as seldom.
+    /// Reference only: called just before each call of `progress`.
     std::function<void(const RenderStatus&)> status;
-    /// Reference: where it is set, the picture as it stands (complete, with fewer samples) is handed over between
-    /// rounds whenever `checkpoint_wanted` says so, and once when `progress` has cancelled the rest. The final result
-    /// is the same.
+    /// Reference only: if set, called between rounds with the picture so far (complete, with fewer samples) whenever
+    /// `checkpoint_wanted` returns true, and once more when `progress` has cancelled the render. The final result does
+    /// not depend on it.
     std::function<void(const RenderResult&)> checkpoint;
     std::function<bool()> checkpoint_wanted;  ///< empty: always
 };
 
-/// Layers, each width x height; RGB radiance unless said otherwise. Means over the pixel's samples.
+/// Layers, each width x height; RGB radiance unless stated otherwise. Values are means over the pixel's samples.
 struct RenderResult {
     ImageF radiance;
-    ImageF opacity;            ///< 1 channel: the part of the pixel that surfaces cover
+    ImageF opacity;            ///< 1 channel: the part of the pixel that is covered by surfaces
     ImageF direct, indirect;   ///< of `radiance`, without the background
-    ImageF diffuse, specular;  ///< the same light by the first surface's lobe (emission is in neither)
+    ImageF diffuse, specular;  ///< the same light, split by the lobe of the first surface (emission is in neither)
     ImageF albedo, normal;     ///< of the first surface, in the world
-    ImageF depth;              ///< 1 channel: distance from the eye, mean of what was hit; infinite where nothing was
+    ImageF depth;              ///< 1 channel: mean distance from the eye to the surfaces hit; infinite if there are
+                               ///< none
     ImageF object;             ///< 1 channel: instance + 1 of the pixel's first sample, 0: none
-    /// Of the mean, of each channel of `radiance`, as if samples were independent: Sobol points make it an upper guess.
+    /// The variance of the mean of each channel of `radiance`, computed as if samples were independent. With Sobol
+    /// points it is an overestimate.
     ImageF variance;
     ImageF samples;      ///< 1 channel
     double noise = 0;    ///< standard error of L / (1 + L), mean over the picture (rms)
@@ -119,30 +123,30 @@ struct RenderResult {
     std::int64_t non_finite_samples = 0;
 };
 
-/// The sampler's options that suit the strategy: a bilinear density, with MIS compensation where the BRDF covers what
-/// it leaves out.
+/// The sampler options that suit the strategy: a bilinear density, with MIS compensation if the BRDF covers what that
+/// leaves out.
 EnvironmentSamplerOptions reference_sampler_options(LightStrategy strategy = LightStrategy::mis, int threads = 0);
 
-/// Same bits on any number of threads (unless stopped by the clock). Errors: "cancelled".
+/// The bits are the same on any number of threads (unless the time limit stops the render). Errors: "cancelled".
 Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSampler& sampler,
                                       const RenderOptions& options);
 
-/// Light that falls on an invisible ground under the scene, with it and without it: what a picture of the scene put
-/// into a photograph darkens it by.
+/// An invisible ground under the scene that receives its shadow, so that the picture can be placed into a photograph.
 struct ShadowCatcher {
-    float height = 0;  ///< of the ground, +Y
+    float height = 0;  ///< of the ground, along +Y
     int samples = 64;  ///< of each pixel
 };
 /// Puts the scene's shadow and the background into a picture that was rendered with Background::transparent and the
-/// same options. Where a camera ray passes the scene and meets the ground, the background is multiplied by E with the
-/// scene over E without it, E the irradiance of the environment and the scene's lights on the ground, each channel on
-/// its own, both from the same light directions, so that ground without shadow stays as it was to the last bit. Ground
-/// gives no light back to the scene. With a transparent background opacity becomes 1 - (1 - opacity) (E with / E
-/// without), of luminance, and radiance stays: a black shadow. Errors: "cancelled".
+/// same options. Where a camera ray misses the scene and meets the ground, each channel of the background is multiplied
+/// by E with the scene over E without it, where E is the irradiance on the ground from the environment and the scene's
+/// lights. Both are estimated from the same light directions, so ground without shadow is unchanged to the last bit.
+/// The ground reflects no light onto the scene. With a transparent background the opacity becomes 1 - (1 - opacity) (E
+/// with / E without), in luminance, and the radiance is unchanged: a black shadow. Errors: "cancelled".
 Result<void> catch_shadow(RenderResult& picture, const RayScene& scene, const EnvironmentSampler& sampler,
                           const ShadowCatcher& catcher, const RenderOptions& options);
 
-/// What of a scene's materials render_reference does not know: "clearcoat of 2 materials is left out", for a warning.
+/// Features of the scene's materials that render_reference does not support, as warnings: "clearcoat of 2 materials is
+/// left out".
 std::vector<std::string> not_rendered(const Scene& scene);
 
 /// A camera that looks from `eye` at `target`, +Y up.

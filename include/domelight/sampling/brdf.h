@@ -3,16 +3,17 @@
 #include "domelight/base/frame.h"
 #include "domelight/sampling/microfacet.h"
 
-/// BRDFs that can be drawn from. Each one has, in a local frame whose normal is +Z, V (towards the viewer) and L
-/// (towards the light) of unit length and pointing away from the surface:
+/// BRDFs that can be sampled. Each has the functions below. Directions are in a local frame whose normal is +Z; V
+/// (towards the viewer) and L (towards the light) have unit length and point away from the surface:
 ///
 ///   Vec3f evaluate(V, L)            the BRDF's value f, per steradian, without the cosine
 ///   float pdf_solid_angle(V, L)     density with which sample() draws L, per steradian
 ///   BrdfSample sample(V, u)         L, its density, and f L.z / density
 ///
-/// All are 0 unless V.z >= 0 and L.z > k_least_cosine. Directions that fall below the horizon count: they are drawn,
-/// with density 0 and weight 0, and an estimate divides by all draws. So pdf_solid_angle() integrates to 1 minus their
-/// share. Nothing is NaN or infinite, at any u, V.z >= 0 and parameter in range; V below the horizon gives zeros.
+/// All are 0 unless V.z >= 0 and L.z > k_least_cosine. A direction drawn below the horizon has density 0 and weight 0,
+/// and counts: an estimate divides by the number of all draws, so pdf_solid_angle() integrates to 1 minus the share of
+/// such directions. No result is NaN or infinite for any u, any V.z >= 0 and any parameter in range. V below the
+/// horizon gives zeros.
 namespace domelight {
 
 struct BrdfSample {
@@ -21,11 +22,11 @@ struct BrdfSample {
     Vec3f weight;               ///< evaluate(V, L) L.z / pdf_solid_angle; 0 where the density is
 };
 
-/// Alphas below this are taken as this: directions in float (6e-8) resolve a lobe of this width to about 1e-3, and at
-/// grazing angles, where the half vector magnifies their rounding by 1 / V.z, no better than that.
+/// Smaller alphas are raised to this value. Directions in float (6e-8) resolve a lobe of this width to about 1e-3, and
+/// less well at grazing angles, where the half vector magnifies their rounding by 1 / V.z.
 inline constexpr float k_least_brdf_alpha = 1e-4f;
 
-/// Light that comes in flatter than this counts as below the horizon: its square is still a normal float.
+/// Light whose cosine is not above this counts as below the horizon. The square of this value is still a normal float.
 inline constexpr float k_least_cosine = 1e-9f;
 
 namespace detail {
@@ -42,7 +43,7 @@ BrdfSample with_density(const Brdf& brdf, const Vec3f& V, const Vec3f& L) {
 
 }  // namespace detail
 
-/// A perfectly diffuse surface: f = albedo / pi, drawn by the cosine.
+/// A perfectly diffuse surface: f = albedo / pi, sampled in proportion to the cosine.
 struct LambertBrdf {
     Vec3f albedo{1, 1, 1};  ///< [0, 1]
 
@@ -58,7 +59,7 @@ struct LambertBrdf {
 };
 
 /// The modified Phong BRDF, f = specular (n + 2) / (2 pi) max(cos, 0)^n, with the angle between L and the mirror
-/// direction of V: Lafortune and Willems 1994. Drawn by (n + 1) / (2 pi) cos^n.
+/// direction of V: Lafortune and Willems 1994. Sampled with density (n + 1) / (2 pi) cos^n.
 struct PhongBrdf {
     float exponent = 1;       ///< n >= 0
     Vec3f specular{1, 1, 1};  ///< [0, 1]; the albedo at normal incidence
@@ -70,7 +71,7 @@ struct PhongBrdf {
         return detail::above(V, L) ? (exponent + 1) * lobe(V, L) : 0;
     }
     BrdfSample sample(const Vec3f& V, UnitPoint u) const {
-        // cos = (1 - u)^(1 / (n + 1)); 1 - cos, by expm1, because a narrow lobe lives there
+        // cos = (1 - u)^(1 / (n + 1)); computed as 1 - cos by expm1, so that narrow lobes keep their digits
         const float q = -std::expm1(std::log1p(-unit_float(u.x)) / (exponent + 1)), s = std::sqrt(q * (2 - q));
         const CirclePoint azimuth = circle_point(u.y);
         const Vec3f L = Frame<float>({-V.x, -V.y, V.z}).to_world({s * azimuth.x, s * azimuth.y, 1 - q});
@@ -94,15 +95,16 @@ enum class GgxNormals {
     half_vectors,  ///< D NdotH, the classic form (Walter et al. 2007): pdf = D NdotH / (4 VdotH)
     heitz,         ///< visible normals (Heitz 2018): pdf = G1 D / (4 NdotV)
     caps,          ///< the same density by spherical caps (Dupuy and Benyoub 2023)
-    bounded_caps,  ///< the same, less what reflects into the surface (Eto and Tokuyoshi 2023): the one to use
+    bounded_caps,  ///< the same without most normals that reflect into the surface (Eto and Tokuyoshi 2023): the
+                   ///< default
 };
 
 /// Specular reflection by GGX microfacets, f = F D G2 / (4 NdotL NdotV), height-correlated Smith, Schlick's Fresnel.
 template <GgxNormals normals = GgxNormals::bounded_caps>
 struct BasicGgxBrdf {
-    float alpha = 1;     ///< roughness^2, [0, 1]; below k_least_brdf_alpha taken as that
+    float alpha = 1;     ///< roughness^2, [0, 1]; raised to k_least_brdf_alpha at least
     Vec3f f0{1, 1, 1};   ///< reflectance at normal incidence, [0, 1]
-    Vec3f f90{1, 1, 1};  ///< and at grazing incidence
+    Vec3f f90{1, 1, 1};  ///< reflectance at grazing incidence
 
     Vec3f evaluate(const Vec3f& V, const Vec3f& L) const {
         if (!detail::above(V, L)) return {};
@@ -129,10 +131,10 @@ struct BasicGgxBrdf {
     Vec3f fresnel(const Vec3f& H) const {
         return fresnel_schlick(0.5f * std::sqrt(dot(H, H)), f0, f90);  // |V + L| = 2 VdotH
     }
-    /// D / pdf_solid_angle; H = V + L, not of unit length.
+    /// D / pdf_solid_angle. H = V + L need not have unit length.
     float normals_per_density(const Vec3f& V, const Vec3f& H) const {
         if (normals == GgxNormals::half_vectors) return 2 * dot(H, H) / H.z;  // 4 VdotH / NdotH
-        // 4 V.z / G1 = 2 (V.z + root), which V.z = 0 does no harm; the bound, as it was drawn with
+        // 4 V.z / G1 = 2 (V.z + root), which is also right for V.z = 0; with the bound of the cap that draw() uses
         const float bound = normals == GgxNormals::bounded_caps ? ggx_cap_bound(V, width()) : 1;
         return 2 * (bound * V.z + ggx_smith_root(V.z, width()));
     }
@@ -153,16 +155,16 @@ struct BasicGgxBrdf {
 using GgxBrdf = BasicGgxBrdf<>;
 
 /// Sheen: f = colour D V with the Charlie distribution (Estevez and Kulla 2017) and Neubelt and Pettineo's visibility,
-/// as glTF's KHR_materials_sheen has it. Drawn by half vectors, pdf = D NdotH / (4 VdotH), as the Khronos tools do.
+/// as in glTF's KHR_materials_sheen. Sampled by half vectors, pdf = D NdotH / (4 VdotH), as in the Khronos tools.
 ///
-/// The weight is 4 V NdotL VdotH / NdotH: at grazing V it grows like 1 / NdotH, so there the cosine draws as well. The
-/// model itself reflects more than it receives at grazing angles where alpha is small: an albedo of up to 1.34 at alpha
+/// The weight is 4 V NdotL VdotH / NdotH. At grazing V it grows like 1 / NdotH, and cosine sampling is no worse there.
+/// With small alpha the model itself reflects more than it receives at grazing angles: its albedo reaches 1.34 at alpha
 /// = 0.1, 0.93 at 0.25 and 0.63 at 1.
 struct CharlieBrdf {
-    float alpha = 1;        ///< roughness^2, [0, 1]; below k_least_charlie_alpha taken as that
+    float alpha = 1;        ///< roughness^2, [0, 1]; raised to k_least_charlie_alpha at least
     Vec3f colour{1, 1, 1};  ///< [0, 1]
 
-    /// Below it D is a spike at the horizon that no light gets into or out of.
+    /// For smaller alphas D is a spike at the horizon from which no light is reflected.
     static constexpr float k_least_charlie_alpha = 1e-3f;
 
     Vec3f evaluate(const Vec3f& V, const Vec3f& L) const {

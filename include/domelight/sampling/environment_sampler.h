@@ -14,35 +14,35 @@ namespace domelight {
 
 /// What a texel is drawn in proportion to.
 enum class LightWeight {
-    radiant_power,  ///< luminance (Rec. 709) times solid angle, sin theta: the right one
-    grayscale,  ///< the courses' textbook form: 0.2989 R + 0.5866 G + 0.1145 B without sin theta, which draws too much
-                ///< at the poles
+    radiant_power,  ///< luminance (Rec. 709) times the texel's solid angle (sin theta): the default
+    grayscale,  ///< the courses' textbook form: 0.2989 R + 0.5866 G + 0.1145 B without sin theta, which draws too many
+                ///< samples at the poles
 };
 
 struct EnvironmentSamplerOptions {
-    /// `bilinear` goes with a bilinear lookup of the radiance, every other method with the raw texel: a density of one
-    /// kind with a lookup of the other has many times the error beside a sun.
+    /// With `bilinear` the radiance is looked up bilinearly, with every other method as the raw texel. Mixing a density
+    /// of one kind with a lookup of the other would multiply the error beside a sun.
     DistributionMethod method = DistributionMethod::bilinear;
     LightWeight weight = LightWeight::radiant_power;
-    /// MIS compensation (Karlik et al. 2019): the mean is subtracted from the density, so that the dim half of the sky
-    /// is left to the other strategy. Only for use with one that covers it: alone, the sampler then misses light. Where
-    /// nothing would be left (a constant environment), the density stays as it is.
+    /// MIS compensation (Karlik et al. 2019): the mean is subtracted from the density, so that the dim part of the sky
+    /// is left to the other strategy. Use it only together with a strategy that covers the dim part; alone, the sampler
+    /// would miss light. If nothing would be left (a constant environment), the density stays as it is.
     bool compensate = false;
-    /// A part of the samples, [0, 1], drawn uniformly over the sphere (a defensive mixture): no direction's density
-    /// falls below this share of 1 / 4 pi.
+    /// The part of the samples, [0, 1], that is drawn uniformly over the sphere (a defensive mixture): every direction
+    /// has at least this share of the density 1 / 4 pi.
     double uniform_share = 0;
     int threads = 0;  ///< for building; 0: all
 };
 
 /// A light direction.
 struct LightSample {
-    float u = 0, v = 0;         ///< where it fell on the sampler's image, [0, 1)
+    float u = 0, v = 0;         ///< its position on the sampler's image, [0, 1)
     Vec3f direction;            ///< in the world, unit length, away from the surface
-    Vec3f radiance;             ///< arriving from there
+    Vec3f radiance;             ///< arriving from that direction
     float pdf_solid_angle = 0;  ///< density per steradian with which it was drawn, > 0
 };
 
-/// Light samples as a structure of arrays; every span as long as the points given.
+/// Light samples as a structure of arrays. Every span has as many elements as points are given.
 struct LightSampleSpans {
     std::span<float> u, v;
     std::span<float> x, y, z;  ///< direction
@@ -52,12 +52,12 @@ struct LightSampleSpans {
 
 /// Draws light directions from an environment. Immutable once built; any number of threads may draw.
 ///
-/// The image is a lat-long: a cube is first averaged over the texels of one four times as wide as a face
-/// (area_resample.h), whose radiance the samples then have. Everything returned is finite. An environment without light
-/// is drawn uniformly over the image.
+/// The sampler's image is a lat-long map. A cube is first averaged over the texels of one that is four times as wide as
+/// a face (area_resample.h), and samples have the radiance of that map. Everything returned is finite. An environment
+/// without light is sampled uniformly over the image.
 class EnvironmentSampler {
   public:
-    /// Reads and keeps an environment. Errors: what reading it gives; no texels.
+    /// Reads an environment and keeps it in memory. Errors: those of reading it; no texels.
     static Result<EnvironmentSampler> build(const Environment& environment, const EnvironmentSamplerOptions& options = {});
     /// A lat-long image (default convention up to `world_to_source`, 3 channels) in memory, which must outlive the
     /// sampler. Errors: no texels; a value that is NaN, infinite or negative (names the texel).
@@ -67,27 +67,28 @@ class EnvironmentSampler {
 
     /// A direction for a point of the unit square.
     LightSample sample(UnitPoint point) const;
-    /// Many at once: the same up to rounding, several times as fast.
+    /// Many samples at once: the same up to rounding, and several times as fast.
     void sample(std::span<const UnitPoint> points, const LightSampleSpans& out) const;
-    /// Density per steradian with which `direction` (any length) is drawn; 0 where it never is.
+    /// Density per steradian with which `direction` (any length) is drawn; 0 if it never is.
     float pdf_solid_angle(const Vec3f& direction) const;
     /// Radiance from `direction` (any length), by the lookup that goes with the method.
     Vec3f radiance(const Vec3f& direction) const;
     /// Radiance and density together, for the other strategy's half of multiple importance sampling.
     LightSample look_up(const Vec3f& direction) const;
-    /// Many at once: u, v, radiance and density for the directions that out.x, y, z hold (any length but 0; left as
-    /// they are). The same up to rounding, several times as fast. An empty span of densities: not asked for.
+    /// Many lookups at once: u, v, radiance and density for the directions in out.x, y, z (any length but 0; not
+    /// changed). The same up to rounding, and several times as fast. Leave the span of densities empty if they are not
+    /// needed.
     void look_up(const LightSampleSpans& out) const;
-    /// The point that sample() maps to a direction, where the method is invertible and no uniform share was asked for.
+    /// The point that sample() maps to a direction, if the method is invertible and there is no uniform share.
     std::optional<UnitPoint> invert(const Vec3f& direction) const;
 
     const EnvironmentSamplerOptions& options() const { return options_; }
     const Distribution2D& distribution() const { return *distribution_; }
     ImageView<const float> image() const { return image_; }
     const Mat3& world_to_source() const { return world_to_source_; }
-    /// What the compensation subtracted from the luminance; 0 without.
+    /// What the compensation subtracted from the luminance; 0 without compensation.
     double compensation() const { return compensation_; }
-    /// Bytes beside the pixels.
+    /// Bytes of the tables, without the pixels.
     std::size_t memory_bytes() const { return distribution_->memory_bytes(); }
 
   private:
@@ -106,8 +107,8 @@ class EnvironmentSampler {
     std::unique_ptr<Distribution2D> distribution_;
 };
 
-/// The tables as textures for a shader that draws for itself by binary search or the courses' loop: RG float, R the
-/// cumulative share up to and including the texel (the last is 1), G the density over the unit square. See
+/// The tables as textures for a shader that samples by binary search or by the courses' loop. RG float: R is the
+/// cumulative share up to and including the texel (1 for the last), G the density over the unit square. See
 /// docs/math/importance.md for the ten lines that read them.
 struct SamplingTextures {
     ImageF rows;     ///< 1 wide, height rows: the marginal

@@ -20,51 +20,51 @@ namespace domelight {
 struct LightExtractionOptions {
     int max_lights = 8;         ///< the strongest are kept, 0 .. 1024
     double least_share = 0.01;  ///< of the environment's luminance that a light must hold, 0 .. 1
-    /// All around a source, within the largest diameter, the luminance must fall below its peak over this, and the mean
-    /// of its surroundings lie below its own mean over this; 1.5 .. 1e6.
+    /// In every direction from a source, within the largest diameter, the luminance must fall below its peak divided by
+    /// this, and the mean of its surroundings must be below its own mean divided by this; 1.5 .. 1e6.
     double least_contrast = 4;
-    /// Widest angle across (degrees, above 0 and up to 30) that still counts as small; three texels always do. No
+    /// The largest diameter (degrees, above 0 and up to 30) that still counts as small; three texels always do. No
     /// lights are found in an image whose texels are wider than this.
     double largest_diameter_deg = 6;
-    double merge_deg = 1.5;  ///< sources closer than this (degrees, >= 0) are one light: a sun behind twigs
+    double merge_deg = 1.5;  ///< sources closer than this (degrees, >= 0) are merged into one light: a sun behind twigs
     int threads = 0;         ///< 0: all. The results do not depend on it
 };
 
-/// Errors: an option out of its range (named as on the command line).
+/// Errors: an option out of its range, which the error names.
 Result<void> check_light_extraction_options(const LightExtractionOptions& options);
 
-/// A directional or disc light. What it holds is what stood above its surroundings.
+/// A directional or disc light: the light of a source in excess of its surroundings.
 struct ExtractedLight {
-    Vec3d direction;      ///< towards the light, world, unit length: the middle of its luminance
+    Vec3d direction;      ///< towards the light, in the world, unit length: the centroid of its luminance
     double u = 0, v = 0;  ///< the same on the source image, 0..1
-    /// Of a uniform disc with the same second moment (a disc of diameter D has the variance D^2 / 16 on each axis),
-    /// texels' own width taken off and far skirts left out. Where it is not `resolved`: one texel's width, an upper
-    /// bound.
+    /// The diameter of a uniform disc with the same second moment (a disc of diameter D has the variance D^2 / 16 on
+    /// each axis), corrected for the texels' width and without distant glare. If the source is not `resolved`, this is
+    /// the width of one texel, an upper bound.
     double angular_diameter_deg = 0;
     bool resolved = false;  ///< whether the diameter is wider than a texel
     Vec3d irradiance;       ///< RGB on a surface that faces the light; in the image's radiance times steradian
     Vec3d mean_radiance;    ///< RGB: irradiance over the solid angle of a disc of that diameter
     Vec3d colour;           ///< irradiance over its largest channel: linear Rec. 709, 0..1
     double share = 0;       ///< of the environment's luminance over all directions, 0..1
-    double contrast = 0;  ///< its peak's luminance over the highest luminance along its rim; infinite in front of black
-    std::int64_t texels = 0;  ///< of the source image that it was taken from
+    double contrast = 0;    ///< the peak luminance over the highest luminance along the rim; infinite in front of black
+    std::int64_t texels = 0;  ///< how many texels of the source image it was taken from
 };
 
-/// Where the power went. Powers are sums of radiance times solid angle over the texels, per channel: the mean radiance
+/// The balance of power. Powers are sums of radiance times solid angle over the texels, per channel: the mean radiance
 /// times 4 pi.
 struct LightExtractionReport {
     Vec3d original_power, light_power, remainder_power;
     double unaccounted = 0;  ///< |original - lights - remainder| / original, the largest over the channels: rounding
     double texel_deg = 0;    ///< width of a texel, the larger of rows and columns (at the equator)
-    int candidates = 0;      ///< small sources that stood out, before share and number were looked at
+    int candidates = 0;      ///< small sources of enough contrast, before their share and their number were considered
     int left_out = 0;        ///< lights that were left in the remainder because of their share or their number
 };
 
 struct LightExtraction {
     std::vector<ExtractedLight> lights;  ///< the largest share first
-    /// The image without the lights. Where one stood, its surroundings continue across (harmonic interpolation), so
-    /// that no texel there is brighter than the rim; all other texels are the image's own. >= 0, and in no channel more
-    /// power than the image had.
+    /// The image without the lights. In place of a light its surroundings are continued (harmonic interpolation), so no
+    /// texel there is brighter than the rim; all other texels are unchanged. All values are >= 0, and no channel has
+    /// more power than the image had.
     ImageF remainder;
     LightExtractionReport report;
 };
@@ -74,8 +74,8 @@ struct LightExtraction {
 /// latlong          radiance, 3 channels, rows top to bottom, default convention up to `world_to_source`
 /// world_to_source  as in Environment: the lights' directions are the world's, the remainder stays as the source is
 ///
-/// A constant or a black image has no lights. Deterministic, the same bits on any number of threads.
-/// Errors: no texels; not 3 channels; a texel that is NaN, infinite or negative (named); an option out of its range.
+/// A constant or a black image has no lights. The bits are the same on any number of threads. Errors: no texels; not 3
+/// channels; a texel that is NaN, infinite or negative (named); an option out of its range.
 Result<LightExtraction> extract_lights(ImageView<const float> latlong, const LightExtractionOptions& options = {},
                                        const Mat3& world_to_source = {});
 

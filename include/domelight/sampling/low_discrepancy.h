@@ -10,7 +10,8 @@ namespace domelight {
 
 /// The bits of `i` in reverse order; as a fraction of 2^32, the base-2 radical inverse (van der Corput's sequence).
 constexpr std::uint32_t reverse_bits(std::uint32_t i) {
-    i = (i >> 24) | ((i >> 8) & 0xff00u) | ((i << 8) & 0xff0000u) | (i << 24);  // compilers make one instruction of it
+    i = (i >> 24) | ((i >> 8) & 0xff00u) | ((i << 8) & 0xff0000u) | (i << 24);  // compilers turn this into one
+                                                                                // instruction
     i = ((i & 0x0f0f0f0fu) << 4) | ((i & 0xf0f0f0f0u) >> 4);
     i = ((i & 0x33333333u) << 2) | ((i & 0xccccccccu) >> 2);
     i = ((i & 0x55555555u) << 1) | ((i & 0xaaaaaaaau) >> 1);
@@ -39,12 +40,12 @@ constexpr std::uint32_t halton(std::uint32_t index, int dimension) {
     return unit_fixed(double(mirrored) / double(scale));
 }
 
-/// Owen's nested uniform scrambling in base 2 of a fraction whose bits come in reverse (the highest bit of the fraction
-/// is bit 0): each bit is flipped or not by a hash of the bits above it and the seed.
+/// Owen's nested uniform scrambling in base 2 of a fraction whose bits are in reverse order (the highest bit of the
+/// fraction is bit 0): a hash of the seed and of the higher bits decides whether a bit is flipped.
 ///
 /// Additions, multiplications and `n ^= n * even` carry only upwards, so bit k of the result depends on bits 0..k alone
 /// (Laine and Karras 2011; Burley 2020, "Practical hash-based Owen scrambling"). The constants are Vegdahl's (2021),
-/// found by search for all flips being equally likely and independent.
+/// which a search found to make all flips equally likely and independent.
 constexpr std::uint32_t owen_scramble_reversed(std::uint32_t n, std::uint32_t seed) {
     n ^= n * 0x3d20adeau;
     n += seed;
@@ -59,12 +60,13 @@ constexpr std::uint32_t owen_scramble(std::uint32_t fraction, std::uint32_t seed
     return reverse_bits(owen_scramble_reversed(reverse_bits(fraction), seed));
 }
 
-/// halton(), scrambled by `key` as Owen 1995 has it: each digit goes through a permutation that depends on the digits
+/// halton(), scrambled by `key` following Owen 1995: each digit is permuted, and the permutation depends on the digits
 /// before it. Every coordinate is uniform in [0, 1) over the keys; elementary intervals keep their number of points.
 ///
-/// The permutations are affine, a digit + b mod base with a != 0: in a prime base any two digits then go to any two
-/// equally likely, which is all that the variance sees (Matousek 1998, "On the L2-discrepancy for anchored boxes").
-/// Digits count until base^k >= 2^24; below that cell the point is random.
+/// The permutations are affine: digit -> a digit + b mod base with a != 0. In a prime base every pair of digits is then
+/// mapped to every other pair with equal probability, and the variance depends on nothing else (Matousek 1998, "On the
+/// L2-discrepancy for anchored boxes"). Digits are used until base^k >= 2^24; within a cell of that size the point is
+/// random.
 constexpr std::uint32_t halton_scrambled(std::uint64_t key, std::uint32_t index, int dimension) {
     const std::uint32_t base = k_primes[dimension];
     std::uint64_t before = mix_bits(key);  // a hash of the digits so far
@@ -85,8 +87,9 @@ constexpr UnitPoint hammersley(std::uint32_t index, std::uint32_t count) {
     return {std::uint32_t((std::uint64_t(index) << 32) / count), reverse_bits(index)};
 }
 
-/// The binomial coefficients mod 2 applied to the bits of i: bit k of the result is the sum of C(j, k) times bit j.
-/// By Lucas, C(j, k) is odd where the bits of k lie within those of j, so a butterfly of five steps does it.
+/// The binomial coefficients mod 2 applied to the bits of i: bit k of the result is the sum of C(j, k) times bit j. By
+/// Lucas's theorem, C(j, k) is odd where every bit of k is also set in j, so a butterfly of five steps computes the
+/// sums.
 constexpr std::uint32_t pascal_transform(std::uint32_t i) {
     i ^= (i >> 1) & 0x55555555u;
     i ^= (i >> 2) & 0x33333333u;
@@ -103,7 +106,8 @@ constexpr UnitPoint sobol(std::uint32_t index) {
 }
 
 /// The Sobol sequence, shuffled and Owen-scrambled by `key` (Burley 2020). Each point is uniform over the keys, sets of
-/// 2^m points stay (0, m, 2)-nets, and two keys give independent sequences: pad with as many pairs as wanted.
+/// 2^m points stay (0, m, 2)-nets, and two keys give independent sequences, so any number of pairs of dimensions can be
+/// made.
 constexpr UnitPoint sobol_owen(std::uint64_t key, std::uint32_t index) {
     const std::uint64_t more = mix_bits(key);
     // The index is shuffled by scrambling it, too: aligned blocks of 2^m indices are mapped to such blocks.
@@ -124,13 +128,13 @@ constexpr UnitPoint r2(std::uint32_t index) {
     return {0x80000000u + index * a, 0x80000000u + index * b};
 }
 
-/// A rotation for each pixel of a picture that differs most between neighbours, so that their errors cancel where the
-/// eye (or a denoiser) averages: rotate(p, pixel_rotation(x, y)) turns one sequence into one for each pixel with noise
-/// of few low frequencies, like a blue-noise mask's but with nothing to look up.
+/// A rotation for each pixel of a picture. Rotations of neighbouring pixels differ most, so that the pixels' errors
+/// cancel where the eye (or a denoiser) averages. rotate(p, pixel_rotation(x, y)) makes a sequence for each pixel out
+/// of one, and the noise has little power at low frequencies, as with a blue-noise mask, but without a table.
 ///
-/// x is Roberts' dither mask (2018), x / g + y / g^2 mod 1 of the pixel. The second mask's slopes are from a search of
-/// 40000 for pairs whose rotations lie farthest apart: among pixels d <= 12 apart the distance on the torus is at least
-/// 0.35 / d, in either coordinate alone at least 0.17 / d^2 (random slopes: 0.1 and 0.05).
+/// x is Roberts' dither mask (2018), x / g + y / g^2 mod 1 of the pixel. The slopes of the second mask are the best of
+/// 40000 tried, by how far apart the rotations lie: for pixels d <= 12 apart the distance on the torus is at least 0.35
+/// / d, and in either coordinate alone at least 0.17 / d^2 (random slopes: 0.1 and 0.05).
 constexpr UnitPoint pixel_rotation(std::uint32_t pixel_x, std::uint32_t pixel_y) {
     constexpr std::uint32_t a = unit_fixed(0.7548776662466927), b = unit_fixed(0.5698402909980532);
     constexpr std::uint32_t c = unit_fixed(0.52152512), d = unit_fixed(0.3089682);

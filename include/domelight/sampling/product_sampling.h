@@ -6,24 +6,28 @@
 
 namespace domelight {
 
-/// Draws from the product of an environment and something else (a cosine, a BRDF lobe) by resampling: candidates from
-/// the environment, one of them kept in proportion to target / density (Talbot, Cline and Egbert 2005).
+/// Samples the product of an environment and another function (a cosine, a BRDF lobe) by resampling: candidates are
+/// drawn from the environment, and one of them is kept in proportion to target / density (Talbot, Cline and Egbert
+/// 2005).
 ///
-/// sampler      where candidates come from
-/// target       >= 0, what is to be drawn in proportion to: usually the luminance of f L NdotL; called once for each
-/// candidate candidates   1..64 points for them choice       the point whose x chooses among them returns      the
-/// candidate kept. 1 / pdf_solid_angle is an unbiased estimate of one over its density (Talbot 2005, eq. 3.6): use it
-/// as any
-///              sampler's, but not in MIS weights, which need a density that depends on the direction alone. 0 where no
-///              candidate had a target.
+// clang-format off
+/// sampler     draws the candidates
+/// target      the function to sample in proportion to, >= 0: usually the luminance of f L NdotL; called once for each
+///             candidate
+/// candidates  1..64 points, one for each candidate
+/// choice      the point whose x chooses among the candidates
+/// returns     the candidate kept. 1 / pdf_solid_angle is an unbiased estimate of one over its density (Talbot 2005,
+///             eq. 3.6). Use it like the density of any sampler, but not in MIS weights, which need a density that
+///             depends on the direction alone. It is 0 if no candidate had a target above 0.
+// clang-format on
 inline LightSample sample_product(const EnvironmentSampler& sampler,
                                   const std::function<float(const LightSample&)>& target,
                                   std::span<const UnitPoint> candidates, UnitPoint choice) {
     LightSample kept;
     double total = 0, xi = unit_double(choice.x);
     float kept_target = 0;
-    // Weighted reservoir: the i-th replaces what was kept with probability w_i / (w_1 + ... + w_i), by one number
-    // stretched again and again.
+    // Weighted reservoir sampling: the i-th candidate replaces the one kept so far with probability w_i / (w_1 + ... +
+    // w_i). All decisions use one random number, which is rescaled to [0, 1) after each.
     for (const UnitPoint& point : candidates) {
         const LightSample candidate = sampler.sample(point);
         const float t = target(candidate);

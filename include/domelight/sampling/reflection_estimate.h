@@ -1,6 +1,6 @@
 #pragma once
-// The reflection integral under an environment, L_o = int f(V, L) L_i(L) NdotL dL, by every strategy of the lecture
-// notes.
+// The reflection integral under an environment, L_o = ∫ f(V, L) L_i(L) NdotL dL, estimated by every strategy that
+// courses on importance sampling teach.
 
 #include "domelight/sampling/brdf.h"
 #include "domelight/sampling/environment_sampler.h"
@@ -11,7 +11,7 @@
 
 namespace domelight {
 
-/// A surface to light: its BRDF in the local frame of brdf.h (normal +Z), behind three functions.
+/// A surface to be lit: its BRDF in the local frame of brdf.h (normal +Z), given by three functions.
 struct Surface {
     Vec3d normal{0, 1, 0};  ///< in the world, unit length
     Vec3d view{0, 1, 0};    ///< towards the viewer, unit length, not below the surface
@@ -19,7 +19,7 @@ struct Surface {
     std::function<BrdfSample(const Vec3f& V, UnitPoint u)> sample;
     std::function<float(const Vec3f& V, const Vec3f& L)> pdf_solid_angle;
 };
-/// Of any of brdf.h's BRDFs.
+/// A surface with any BRDF of brdf.h.
 template <typename Brdf>
 Surface make_surface(const Vec3d& normal, const Vec3d& view, const Brdf& brdf) {
     return {normal, view, [brdf](const Vec3f& V, const Vec3f& L) { return brdf.evaluate(V, L); },
@@ -39,25 +39,25 @@ enum class Strategy {
     product,      ///< a few candidates from the environment, one of them kept in proportion to f L NdotL / p (resampled
                   ///< importance sampling, Talbot 2005)
 };
-/// "riemann", "uniform", ...; as in the enumeration with - for _.
+/// The enumerators' names with - in place of _: "riemann", "uniform", ..., "mis-balance".
 std::string strategy_name(Strategy strategy);
 
 struct EstimateOptions {
-    int samples =
-        1024;  ///< directions looked at in all; the MIS forms give half to each strategy, product counts its candidates
+    /// Directions evaluated in all; the MIS forms use half for each strategy, product counts its candidates.
+    int samples = 1024;
     Sequence sequence = Sequence::random;
     std::uint64_t seed = 1;
-    int candidates = 8;  ///< of `product` for each sample kept
+    int candidates = 8;  ///< product: candidates for each sample kept
 };
 
 struct Estimate {
     Vec3d radiance;        ///< the estimate of L_o
-    Vec3d standard_error;  ///< of it, from the samples' variance; meaningful for Sequence::random, an upper guess for
-                           ///< the others, 0 for riemann
-    int samples = 0;       ///< directions looked at
+    Vec3d standard_error;  ///< of the estimate, from the samples' variance: right for Sequence::random, too large for
+                           ///< the other sequences, 0 for riemann
+    int samples = 0;       ///< directions evaluated
 };
 
-/// L_o by one strategy. `sampler` gives the radiance for all of them; the MIS forms may take one with compensation.
+/// L_o by one strategy. The radiance comes from `sampler` for all of them; the MIS forms accept one with compensation.
 Estimate estimate_reflection(const Surface& surface, const EnvironmentSampler& sampler, Strategy strategy,
                              const EstimateOptions& options = {});
 

@@ -24,8 +24,8 @@ enum class Sequence {
 /// and, where count = m n, of x. Each point alone is uniform over the keys, for every count from 1 to 2^31.
 ///
 /// Chiu, Shirley and Wang 1994, "Multi-jittered sampling", by hashed permutations as in Kensler 2013. Each row and each
-/// column has a permutation of its own: with his common ones the error of smooth integrands falls like N^-3/4, not
-/// N^-1.
+/// column has a permutation of its own: with Kensler's shared permutations the error of smooth integrands falls like
+/// N^-3/4 instead of N^-1.
 inline UnitPoint stratified(std::uint64_t key, std::uint32_t index, std::uint32_t count) {
     const std::uint64_t m = std::uint64_t(std::sqrt(double(count))), n = (count + m - 1) / m;
     const std::uint64_t s = permute(index, count, key), row = s / m;
@@ -54,7 +54,7 @@ constexpr UnitPoint random_point(std::uint64_t seed, std::uint32_t index, std::u
     return {words[0], words[1]};
 }
 
-/// A random rotation of the torus for a seed and a pair of dimensions; none for seed 0.
+/// A random rotation of the torus for a seed and a pair of dimensions; no rotation for seed 0.
 constexpr UnitPoint seed_rotation(std::uint64_t seed, std::uint32_t pair) {
     const std::uint64_t key = seed == 0 ? 0 : derive_key(seed, pair);
     return {std::uint32_t(key >> 32), std::uint32_t(key)};
@@ -84,7 +84,7 @@ inline UnitPoint unit_point(Sequence sequence, std::uint64_t seed, std::uint32_t
         case Sequence::sobol:
             return seed == 0 && pair == 0 ? sobol(index) : sobol_owen(derive_key(seed, pair), index);
         case Sequence::r2:
-            // The same lattice for every pair, so in another order: aligned blocks of 2^m points keep their points.
+            // Every pair uses the same lattice, but in another order: aligned blocks of 2^m points keep their points.
             return rotate(r2(pair == 0 ? index : owen_scramble(index, std::uint32_t(derive_key(seed, ~pair)))),
                           seed_rotation(seed, pair));
     }

@@ -1,6 +1,6 @@
 #pragma once
-// What is lit: surfaces, their materials and textures, lights and cameras, in the world of glTF 2.0: metres,
-// right-handed, +Y up.
+// A scene: surfaces with materials and textures, lights and cameras, in the world of glTF 2.0: metres, right-handed, +Y
+// up.
 
 #include "domelight/image/rgba8_image.h"
 #include "domelight/base/result.h"
@@ -22,22 +22,22 @@ struct Affine {
     Vec3f point(const Vec3f& p) const { return vector(p) + translation; }
     /// a * b: b first.
     Affine operator*(const Affine& b) const { return {vector(b.x), vector(b.y), vector(b.z), point(b.translation)}; }
-    /// Turns a normal (a plane, not a vector); not of unit length. By the cofactors, so that a flat scale leaves it
-    /// finite.
+    /// Transforms a normal (as a plane, not as a vector); the result is not of unit length. Uses the cofactors, so that
+    /// it stays finite when one axis is scaled to 0.
     Vec3f normal(const Vec3f& n) const { return cross(y, z) * n.x + cross(z, x) * n.y + cross(x, y) * n.z; }
     float determinant() const { return dot(cross(x, y), z); }
 };
 
-/// How a material reads an image.
+/// How a material looks up an image.
 struct SceneTexture {
     enum class Wrap : std::uint8_t { repeat, clamp, mirror };
     int image = -1;    ///< of Scene::images; -1: none, every channel 1
     int texcoord = 0;  ///< which set of texture coordinates, 0 or 1
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool nearest = false;
-    /// KHR_texture_transform: uv' = translation * rotation * scale * uv; a positive rotation is counter-clockwise as
-    /// seen with v running down (the GLSL in the extension's text turns the other way, its sample model and other
-    /// readers do not).
+    /// KHR_texture_transform: uv' = translation * rotation * scale * uv. A positive rotation is counter-clockwise as
+    /// seen with v running down. (The GLSL in the extension's text turns the other way, but its sample model and other
+    /// readers do not.)
     float offset_u = 0, offset_v = 0, rotation = 0, scale_u = 1, scale_v = 1;
     explicit operator bool() const { return image >= 0; }
 };
@@ -48,7 +48,7 @@ inline float f0_of_reflectance(float reflectance) {
     return 0.16f * reflectance * reflectance;
 }
 /// The same reflectance as the index of refraction that has this F0 = ((ior - 1) / (ior + 1))^2: 0.5 is 1.5, glTF's
-/// default. A glTF material may say it as extras.reflectance, where it has no KHR_materials_ior.
+/// default. A glTF material without KHR_materials_ior may state it as extras.reflectance.
 inline float ior_of_reflectance(float reflectance) {
     return (1 + 0.4f * reflectance) / (1 - 0.4f * reflectance);
 }
@@ -60,11 +60,11 @@ struct Material {
 
     std::string name;
     bool unlit = false;    ///< KHR_materials_unlit: the base colour, and nothing else
-    bool lambert = false;  ///< extras.lambert: a pure Lambert surface of the base colour, no specular
+    bool lambert = false;  ///< extras.lambert: a pure Lambert surface of the base colour, without specular reflection
     bool phong =
         false;  ///< a modified Phong surface: base colour diffuse (1 - metalness), specular f0, exponent from roughness
-    /// extras.separableMasking: Smith's masking as G1(l) G1(v), as older renderers have it, instead of the
-    /// height-correlated G2; to compare with them.
+    /// extras.separableMasking: Smith's masking as G1(l) G1(v) instead of the height-correlated G2, for comparison with
+    /// older renderers.
     bool separable_masking = false;
     bool double_sided = false;
     AlphaMode alpha_mode = AlphaMode::opaque;
@@ -122,11 +122,11 @@ struct Mesh {
     int triangle_count() const { return int(indices.size() / 3); }
 };
 
-/// A mesh put into the world.
+/// A mesh placed in the world.
 struct Instance {
     int mesh = 0;
     Affine to_world;
-    std::string name;  ///< of the node, else of the mesh: what tables call the object
+    std::string name;  ///< of the node, otherwise of the mesh: the object's name in tables
 };
 
 /// KHR_lights_punctual.
@@ -146,7 +146,7 @@ struct Camera {
     float fov_y = 0.6f;  ///< radians
     bool orthographic = false;
     float half_height = 1;  ///< orthographic: metres
-    float aspect = 0;       ///< width / height of the picture that it was made for; 0: not said
+    float aspect = 0;       ///< width / height of the picture that it was made for; 0: not stated
     std::string name;
 };
 
@@ -157,29 +157,29 @@ struct Scene {
     std::vector<Instance> instances;
     std::vector<PunctualLight> lights;
     std::vector<Camera> cameras;
-    std::vector<std::string> warnings;  ///< what was mended, and what was left out
+    std::vector<std::string> warnings;  ///< what was repaired, and what was left out
 
-    /// The box that holds everything, in the world; empty scenes: [0, 0].
+    /// The bounding box of everything, in the world; [0, 0] for an empty scene.
     struct Box {
         Vec3f low, high;
     };
     Box bounds() const;
-    std::int64_t triangle_count() const;  ///< instances counted
+    std::int64_t triangle_count() const;  ///< over all instances
 };
 
 struct SceneOptions {
-    std::int64_t max_bytes = std::int64_t(4) << 30;  ///< refuses a scene that would need more memory than this
-    /// KHR_lights_punctual speaks of lux and candela: intensities are divided by this, unless the file says what one
-    /// unit of its environment's irradiance is in lux (extras.lux_per_unit of the light or of the asset, as
-    /// `domelight lights` writes it).
+    std::int64_t max_bytes = std::int64_t(4) << 30;  ///< a scene that would need more memory is refused
+    /// KHR_lights_punctual has lux and candela: intensities are divided by this, unless the file says what one unit of
+    /// its environment's irradiance is in lux (extras.lux_per_unit of the light or of the asset, as `domelight lights`
+    /// writes it).
     float lux_per_unit = 683;
     int threads = 0;  ///< for decoding textures; 0: all
 };
 
 /// Reads glTF 2.0 (.gltf, .glb), .obj or .ply. Errors name the file and what is wrong in it: broken JSON, missing
 /// buffers and textures, paths out of the file's folder, cyclic nodes, indices and accessors out of range, extensions
-/// that are required and unknown, no triangles. Mended with a warning: NaN vertices and degenerate triangles (left
-/// out), normals of no length (recomputed).
+/// that are required and unknown, no triangles. Repaired with a warning: NaN vertices and degenerate triangles (left
+/// out), normals of length 0 (recomputed).
 Result<Scene> load_scene(const std::filesystem::path& file, const SceneOptions& options = {});
 
 /// Lights that were taken out of an environment: what `domelight lights` writes as lights.gltf.
@@ -191,10 +191,10 @@ struct EnvironmentLights {
 /// Reads the lights of a glTF 2.0 file, with or without triangles. Errors: as load_scene, and a file that is not glTF.
 Result<EnvironmentLights> load_environment_lights(const std::filesystem::path& file, const SceneOptions& options = {});
 
-/// Scenes for when there is none: "spheres" (roughness from left to right, metal above dielectric), "ball" (a material
-/// ball on a plinth), "furnace" (one white sphere). Errors: another name.
+/// Built-in scenes: "spheres" (roughness from left to right, metal above dielectric), "ball" (a material ball on a
+/// plinth), "furnace" (one white sphere). Errors: another name.
 Result<Scene> built_in_scene(const std::string& name);
-/// The names that built_in_scene knows.
+/// The names that built_in_scene accepts.
 std::vector<std::string> built_in_scene_names();
 
 }  // namespace domelight

@@ -41,29 +41,29 @@ int encoding_bytes(Encoding encoding);                         ///< of a block
 int encoding_channels(Encoding encoding);                      ///< that carry data: 3, or 2 (red and green)
 double encoding_max(Encoding encoding);                        ///< largest value a channel can hold
 
-/// How hard the encodings that have to search for the best block (bc6h, astc) try; the others take no notice.
-/// fast: a few candidates. standard: nearly all that can be had. high: the last tenths of a decibel. exhaustive: every
-/// mode and partition there is, a yardstick for the others.
+/// How thoroughly the encodings that search for the best block (bc6h, astc) search; the others ignore it. fast: a few
+/// candidates. standard: nearly the best quality. high: some tenths of a decibel more. exhaustive: every mode and
+/// partition, for comparison.
 enum class EncodingQuality { fast, standard, high, exhaustive };
 std::string encoding_quality_name(EncodingQuality quality);  ///< "fast", "default", "high", "exhaustive"
 Result<EncodingQuality> encoding_quality_from_name(const std::string& name);
 
-/// What an encoding did to a level.
+/// The errors of an encoded level.
 struct EncodingReport {
     std::int64_t clipped_texels = 0;
-    double clipped_energy =
-        0;  ///< radiant power lost by clipping over the level's power, 0..1, solid-angle weighted luminance
+    /// Radiant power lost by clipping over the level's power, 0..1, solid-angle weighted luminance.
+    double clipped_energy = 0;
     double rms_error = 0;  ///< relative RMS error of the stored values against the float ones, clipped texels left out
-    /// dB, of log2(v + 1e-4 of the level's mean luminance) channel by channel, against the range of that over the
-    /// level; clipped texels left out. Infinite where nothing was lost.
+    /// dB: the error of log2(v + 1e-4 of the level's mean luminance), channel by channel, against the range of this
+    /// logarithm over the level; clipped texels left out. Infinite if nothing was lost.
     double log_psnr = std::numeric_limits<double>::infinity();
 };
 
-/// Encoded texels: like any byte vector, but one made by size alone is not cleared.
+/// Encoded texels: a byte vector that is not cleared when it is made with a size alone.
 using TexelBytes = std::vector<std::uint8_t, LargeAllocator<std::uint8_t>>;
 
-/// A GPU texture in memory: levels, each of all faces (cube: 6, +X -X +Y -Y +Z -Z, OpenGL's orientation; else 1),
-/// rows of texels or of blocks tightly packed. A level that is no whole number of blocks wide or high takes one more.
+/// A GPU texture in memory. A level holds all faces (cube: 6, +X -X +Y -Y +Z -Z in OpenGL's orientation; otherwise 1)
+/// as tightly packed rows of texels or blocks. A width or height that is no whole number of blocks is rounded up.
 struct Texture {
     Encoding encoding = Encoding::rgba16f;
     int width = 0, height = 0;
@@ -72,7 +72,7 @@ struct Texture {
     std::map<std::string, std::string> metadata;  ///< key/value data, UTF-8 without terminator
     int level_width(int l) const { return std::max(1, width >> l); }
     int level_height(int l) const { return std::max(1, height >> l); }
-    /// Blocks (where texels stand alone: texels) in a row of a level, and rows of them.
+    /// The number of blocks (or of texels, if they are encoded one by one) in a row of a level, and of such rows.
     int level_columns(int l) const { return in_blocks(level_width(l)); }
     int level_rows(int l) const { return in_blocks(level_height(l)); }
     std::size_t face_bytes(int l) const {
@@ -83,8 +83,8 @@ struct Texture {
     int in_blocks(int texels) const { return (texels + encoding_block(encoding) - 1) / encoding_block(encoding); }
 };
 
-/// Encodes float RGB maps (each level half the size of the one before) as a texture. Clips what the encoding cannot
-/// hold and says so, one report a level. Deterministic on any number of threads.
+/// Encodes float RGB maps (each level half the size of the one before) as a texture. Values that the encoding cannot
+/// hold are clipped and reported, with one report a level. The bytes are the same on any number of threads.
 Texture encode_texture(std::span<const FilteredMap> levels, Encoding encoding, int threads,
                        std::vector<EncodingReport>* reports = nullptr,
                        EncodingQuality quality = EncodingQuality::standard);
@@ -103,22 +103,22 @@ Result<void> write_ktx2(const std::filesystem::path& file, const Texture& textur
                         Supercompression compression = Supercompression::none);
 Result<void> write_ktx1(const std::filesystem::path& file, const Texture& texture);
 Result<void> write_dds(const std::filesystem::path& file, const Texture& texture);
-/// DDS with the header from before DX10, for tools that know no other: half and float RGBA and RG; rgbm, rgbd and rgbp
-/// as RGBA bytes, of which it cannot say what they mean.
+/// DDS with the header from before DX10, for tools that read no other: half and float RGBA and RG; rgbm, rgbd and rgbp
+/// as RGBA bytes, whose meaning the file cannot state.
 Result<void> write_dds9(const std::filesystem::path& file, const Texture& texture);
 
-/// What any KTX2, KTX1 or DDS file says about itself; also for formats whose texels we do not decode.
+/// The header of any KTX2, KTX1 or DDS file, including formats whose texels we do not decode.
 struct TextureInfo {
     std::string container, format;  ///< "KTX2", "VK_FORMAT_R16G16B16A16_SFLOAT"
     std::string supercompression;   ///< "none", "zstd", ...
     int width = 0, height = 0, depth = 0, faces = 1, layers = 0, levels = 1;
     std::map<std::string, std::string> metadata;
     bool decodable = false;   ///< read_texture can decode it
-    bool eight_bits = false;  ///< a channel: made for a screen, or RGBM and its like
+    bool eight_bits = false;  ///< 8 bits a channel: a picture for a screen, or RGBM and similar
 };
 Result<TextureInfo> read_texture_info(const std::filesystem::path& file);
-/// Reads a texture in one of our encodings, or in half or float RGB or R (which gain the missing channels). Checks
-/// every size and offset against the file before it allocates; refuses what would need more than 2 GiB.
+/// Reads a texture in one of our encodings, or in half or float RGB or R (the missing channels are added). Every size
+/// and offset is checked against the file before memory is allocated; a texture that needs more than 2 GiB is refused.
 Result<Texture> read_texture(const std::filesystem::path& file);
 
 }  // namespace domelight

@@ -17,19 +17,21 @@ struct BrdfTableOptions {
     int threads = 0;
 };
 
-/// Channels of the table, each float; u = NdotV, v = roughness (row 0 is the smoothest), at texel centres (i + 1/2) /
-/// size.
-///   0  scale: int D G Vis (1 - Fc) NdotL dl     1  bias: int ... Fc ...     (specular reflectance = F0 scale + bias)
-///   2  charlie: directional albedo of the sheen lobe
-/// with Fc = (1 - VdotH)^5. By Gauss-Legendre quadrature (docs/math/prefilter.md), maximum error <= 1e-5.
+/// The BRDF table: u = NdotV, v = roughness (row 0 is the smoothest), at texel centres (i + 1/2) / size. Its float
+/// channels are
+// clang-format off
+///   0  scale    ∫ D Vis (1 - Fc) NdotL dl       so that the specular reflectance is F0 scale + bias,
+///   1  bias     ∫ D Vis Fc NdotL dl             with Vis = G / (4 NdotL NdotV) and Fc = (1 - VdotH)^5
+///   2  charlie  the directional albedo of the sheen lobe
+// clang-format on
+/// Computed by Gauss-Legendre quadrature (docs/math/prefilter.md) with an error of at most 1e-5.
 ImageF brdf_table(const BrdfTableOptions& options = {});
 
-/// The multiple-scattering form that Filament reads: (int Fc ..., int ...) = (bias, scale + bias), third channel as
-/// above.
+/// The multiple-scattering form that Filament reads: (∫ D Vis Fc NdotL dl, ∫ D Vis NdotL dl) = (bias, scale + bias).
+/// The third channel is the same.
 ImageF brdf_table_multiscatter(ImageView<const float> table);
 
-/// The split-sum's integrateBRDF as the courses have it: Hammersley points and GGX half vectors (Karis 2013), for
-/// comparison.
+/// The courses' integrateBRDF for split-sum, for comparison: Hammersley points and GGX half vectors (Karis 2013).
 ImageF brdf_table_montecarlo(const BrdfTableOptions& options, int samples);
 
 /// The default table (128^2, correlated), computed when the library was built.

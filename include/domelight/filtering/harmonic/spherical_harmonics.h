@@ -18,8 +18,8 @@ enum class ShWindow { none, hann, lanczos };
 /// ringing, more blur.
 void sh_window(std::span<Vec3d> coefficients, ShWindow window);
 
-/// E / pi coefficients from radiance ones: band l times A_l / pi (1, 2/3, 1/4, 0, -1/24, ...; Ramamoorthi and Hanrahan
-/// 2001, eq. 8).
+/// The coefficients of E / pi from those of the radiance: band l is multiplied by A_l / pi (1, 2/3, 1/4, 0, -1/24, ...;
+/// Ramamoorthi and Hanrahan 2001, eq. 8).
 std::vector<Vec3d> sh_irradiance_over_pi(std::span<const Vec3d> radiance);
 
 /// Value of the expansion in a direction.

@@ -24,16 +24,16 @@ struct ZonalKernel {
     /// The clamped cosine max(c, 0) / pi: convolving with it gives E / pi. The same as ggx at alpha = 1.
     static ZonalKernel cosine() { return {Lobe::ggx, 1}; }
 
-    /// Density per steradian at angle `theta` (radians, 0..pi) from the axis. From the angle, not its cosine: 1 - c
-    /// keeps its digits.
+    /// Density per steradian at angle `theta` (radians, 0..pi) from the axis. The argument is the angle and not its
+    /// cosine c, because 1 - c would lose its digits near the axis.
     double density(double theta) const;
 
-    /// The eigenvalues k_l = 2 pi int K(c) P_l(c) dc for l = 0..band_limit, k_0 = 1. In double, absolute error below
+    /// The eigenvalues k_l = 2 pi ∫ K(c) P_l(c) dc for l = 0..band_limit, k_0 = 1. In double, absolute error below
     /// 1e-9.
     std::vector<double> coefficients(int band_limit) const;
 
-    /// Angle (radians) that is the kernel's natural length: b = 2 alpha / sqrt(1 - alpha^2) for ggx, the same notion
-    /// for the others.
+    /// The kernel's characteristic width as an angle (radians): b = 2 alpha / sqrt(1 - alpha^2) for ggx, and the
+    /// corresponding angle for the other lobes.
     double angular_width() const;
 };
 

@@ -7,10 +7,11 @@
 namespace domelight {
 
 struct ConvertOptions {
-    Mat3 turn;           ///< moves the light: what came from d comes from turn * d (orthogonal, may mirror)
+    Mat3 turn;           ///< turns the light: what came from direction d then comes from turn * d (orthogonal, may
+                         ///< mirror)
     int width = 0;       ///< of a chart of the target, in texels
     int height = 0;      ///< likewise
-    bool sharp = false;  ///< reproject() also where "exact" would do: sharper by up to 4 dB, ten times the time
+    bool sharp = false;  ///< uses reproject() even where "exact" is possible: sharper by up to 4 dB, ten times as slow
     int threads = 0;
     Progress progress = {};
 };
@@ -27,7 +28,7 @@ struct Conversion {
 /// by reproject().
 Result<Conversion> convert(const Environment& environment, const Projection& target, const ConvertOptions& options);
 
-/// The height of a target's charts in which its finest texels are as fine as the source's.
+/// The height of the target's charts at which its finest texels are as fine as the source's.
 int matched_height(const Environment& environment, const Projection& target);
 
 }  // namespace domelight

@@ -9,20 +9,20 @@
 
 namespace domelight {
 
-/// How to understand an environment's file where it does not say so itself.
+/// How to interpret an environment's file where the file does not say so itself.
 struct EnvironmentOptions {
     /// auto | latlong | cube-cross | cube-strip | cube-faces, or any other of projections.h, with its convention:
     /// "angular/centre=+Z", "mirror-ball/fov=20".
     std::string projection = "auto";
     /// Lat-long convention: default, usd, mitsuba, openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]", or pbrt
-    /// (the equal-area octahedral square); empty: what the file says, else default.
+    /// (the equal-area octahedral square). Empty: the convention that the file states, otherwise default.
     std::string latlong = "";
     /// PNG, JPEG and DDS of eight bits a channel: auto (= srgb) | srgb | gamma22 | linear; DDS also rgbm | rgbd | rgbp
     std::string decode = "auto";
     double rotate_y_deg = 0;  ///< turns the light about +Y: +X moves towards +Z
     std::string up = "+Y";    ///< the world axis (of the file's author) that the image's top shows: +Y, +Z, ...
     double exposure = 0;      ///< stops: radiance is multiplied by 2^exposure
-    std::int64_t max_bytes = std::int64_t(1) << 30;  ///< refuses images whose decoding would need more memory than this
+    std::int64_t max_bytes = std::int64_t(1) << 30;  ///< images whose decoding would need more memory are refused
     int threads = 0;                                 ///< for decoding; 0: all
 };
 

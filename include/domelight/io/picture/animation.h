@@ -16,8 +16,8 @@ struct AnimationOptions {
 };
 
 /// An animated WebP that repeats for ever. `frame(i)` gives the pixels of frame i (sRGB, 3 or 4 channels, all of one
-/// size); one is held at a time. Errors: no frames; a size that is not the first one's or beyond WebP's 16383; what
-/// `frame` returns; writing.
+/// size); only one frame is in memory at a time. Errors: no frames; a frame of another size than the first, or larger
+/// than WebP's 16383; an error from `frame`; a failure to write.
 Result<void> write_webp_animation(const std::filesystem::path& file, int frames,
                                   const std::function<Result<Image<std::uint8_t>>(int)>& frame,
                                   const AnimationOptions& options = {});

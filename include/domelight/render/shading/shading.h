@@ -1,5 +1,5 @@
 #pragma once
-// What a real-time engine draws: a scene lit by the maps that `bake` writes, each model as its shader has it.
+// A scene as a real-time engine draws it, lit by the maps that `bake` writes. Each model follows its shader.
 
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
 #include "domelight/filtering/kernel/zonal_kernel.h"
@@ -10,29 +10,31 @@
 
 namespace domelight {
 
-/// The maps of a bake, as a shader binds them. Lookups are in world directions.
+/// The maps of a bake. Lookups take world directions.
 class LightMaps {
   public:
-    /// Reads what `domelight bake -o DIR` wrote for the generic engine, with either lobe: specular.ktx2,
-    /// irradiance.ktx2, sh.json, brdf.ktx2, roughness or exponent by level from manifest.json. Errors name the file.
+    /// Reads a bake for the generic engine (`domelight bake -o DIR`) with either lobe: specular.ktx2, irradiance.ktx2,
+    /// sh.json, brdf.ktx2, roughness or exponent by level from manifest.json. Errors name the file.
     static Result<LightMaps> load(const std::filesystem::path& folder);
-    /// Bakes them in memory as the generic engine has them. lobe: ggx, or phong_brdf with its default exponents.
+    /// Bakes the maps of the generic engine in memory. lobe: ggx, or phong_brdf with its default exponents.
     static Result<LightMaps> bake(ImageView<const float> latlong, const Mat3& world_to_source, int threads = 0,
                                   Lobe lobe = Lobe::ggx);
     ~LightMaps();
     LightMaps(LightMaps&&) noexcept;
     LightMaps& operator=(LightMaps&&) noexcept;
 
-    /// What the specular chain was convolved with: ggx, or one of Phong's.
+    /// The lobe of the specular chain: ggx, or one of Phong's.
     Lobe lobe() const;
-    /// The prefiltered environment, between the two levels nearest in roughness; seamless across edges.
+    /// The prefiltered environment, interpolated between the two levels nearest in roughness, without seams at the
+    /// edges of faces.
     Vec3f specular(const Vec3f& direction, float roughness) const;
-    /// The same by exponent, of a Phong chain; wider than its last level on towards the irradiance (exponent 0).
+    /// The same for a Phong chain, by exponent. Below the exponent of the last level it is interpolated towards the
+    /// irradiance (exponent 0).
     Vec3f phong(const Vec3f& direction, float exponent) const;
     /// E / pi by the irradiance cube, or by the nine spherical-harmonic coefficients.
     Vec3f irradiance_over_pi(const Vec3f& normal) const;
     Vec3f irradiance_over_pi_sh(const Vec3f& normal) const;
-    /// Scale and bias of the BRDF table, bilinear.
+    /// Scale and bias from the BRDF table, by bilinear lookup.
     struct ScaleBias {
         float scale, bias;
     };
@@ -45,21 +47,21 @@ class LightMaps {
 };
 
 enum class ShadingModel {
-    split_sum,  ///< Karis 2013: prefiltered environment times BRDF table, and irradiance below
+    split_sum,  ///< Karis 2013: prefiltered environment times BRDF table, plus diffuse light from the irradiance
     stretched,  ///< the same with nine lookups instead of one, so that reflections stretch at grazing angles
     phong,      ///< two maps prefiltered with the modified Phong BRDF (n = v = r for the specular one)
     mirror,     ///< reflection mapping: the sharp environment in the mirror direction
-    refract,    ///< and refraction mapping: Snell's law at the front surface, mixed with the reflection by Fresnel
+    refract,    ///< refraction mapping: Snell's law at the front surface, mixed with the reflection by the Fresnel term
 };
 /// "split-sum", "stretched", "phong", "mirror", "refract".
 std::string shading_model_name(ShadingModel model);
 
 /// The texture that reflection and refraction mapping look up.
 enum class MapLookup {
-    environment,      ///< none: the environment as it was read
+    environment,      ///< no texture: the environment as it was read
     cube,             ///< size: of a face
     latlong,          ///< size: its height
-    sphere_map,       ///< OpenGL's, centre +Z: size of the square; -Z is all of its rim
+    sphere_map,       ///< OpenGL's, centre +Z: size of the square; -Z covers the whole rim
     dual_paraboloid,  ///< Heidrich and Seidel 1998, about +Z and -Z: size of each square
 };
 /// "environment", "cube", "latlong", "sphere-map", "dual-paraboloid".
@@ -80,24 +82,26 @@ struct ShadingOptions {
     ShadingModel model = ShadingModel::split_sum;
     MapLookup lookup = MapLookup::environment;  ///< mirror and refract: the texture they read
     int lookup_size = 512;                      ///< its size in texels, 1 .. 8192
-    bool sh_irradiance = false;                 ///< nine coefficients instead of the irradiance cube
+    bool sh_irradiance = false;                 ///< nine harmonics instead of the irradiance cube
     bool bent_lookup =
-        false;  ///< the lookup leans from the mirror direction to the normal (Lagarde and de Rousiers 2014, 4.9.3)
+        false;  ///< the lookup is moved from the mirror direction towards the normal (Lagarde and de Rousiers 2014,
+                ///< 4.9.3)
     bool multiple_scattering = false;  ///< Fdez-Aguera 2019
     DiffuseWeight diffuse_weight = DiffuseWeight::energy;
     bool occlusion = true;  ///< occlusion textures, with specular occlusion (Lagarde and de Rousiers 2014, 4.10.2)
 };
 
-/// What of a scene's materials a model does not know, for a warning; of mirror and refract, which know next to nothing
-/// of materials, not said.
+/// Features of the scene's materials that a model does not support, as warnings. Empty for mirror and refract, which
+/// ignore most of a material.
 std::vector<std::string> not_rendered(const Scene& scene, ShadingModel model);
-/// The lobe whose chain a model reads.
+/// The lobe of the specular chain that a model needs.
 Lobe shading_lobe(ShadingModel model);
 
-/// Draws with one of them: the same camera, samples and layers (radiance, opacity, diffuse, specular, albedo, normal,
-/// depth, object) as render_reference. No shadows: compare with RenderOptions::occlusion = false. `environment` is the
-/// background and what mirror and refract read. The scene's lights and RenderOptions::environment_lights are added with
-/// the material's BRDF; mirror and refract show each as a narrow highlight. Errors: maps of another lobe than the model's; "cancelled".
+/// Draws the scene with a shading model: the same camera, samples and layers (radiance, opacity, diffuse, specular,
+/// albedo, normal, depth, object) as render_reference. No shadows: compare with RenderOptions::occlusion = false.
+/// `environment` is used for the background, and by mirror and refract. The scene's lights and
+/// RenderOptions::environment_lights are added with the material's BRDF; mirror and refract show each as a narrow
+/// highlight. Errors: maps of another lobe than the model's; "cancelled".
 Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment,
                                    const ShadingOptions& shading, const RenderOptions& options);
 

@@ -10,11 +10,11 @@ namespace domelight {
 
 /// Alias tables of `count` discrete distributions over `items` items each, in quanta of 2^-32 (Walker 1974; Vose 1991).
 ///
-/// The 2^32 quanta are shared out exactly as in GuidedRows, then cut up and packed into 2^bits cells of equal size,
-/// 2^bits >= items: the first `split` quanta of a cell belong to the item of the cell's number, the rest to its alias.
-/// With xi's upper bits for the cell and its lower bits for the place in it, nothing is rounded: each item is drawn for
-/// exactly as many of the 2^32 numbers xi as it owns quanta, and cell and alias together take just 32 bits, which
-/// leaves the other half of an entry for the item's quanta, hence its density.
+/// The 2^32 quanta are distributed exactly as in GuidedRows, then packed into 2^bits cells of equal size, 2^bits >=
+/// items: the first `split` quanta of a cell belong to the item with the cell's number, the rest to its alias. The
+/// upper bits of xi choose the cell, the lower bits the position in it, so nothing is rounded: each item is drawn for
+/// exactly as many of the 2^32 numbers xi as it owns quanta. Alias and split together take 32 bits, so the other half
+/// of an entry can hold the item's quanta, and hence its density.
 struct AliasRows {
     struct Entry {
         std::uint32_t last_quantum;     ///< quanta of the cell's own item, less 1
@@ -28,26 +28,26 @@ struct AliasRows {
     /// Fills distribution `row` from the sums of its weights up to and including each item (sums.back() > 0).
     void fill(int row, std::span<const float> weights, std::span<const double> sums);
 
-    /// An item, which of its quanta's positions, and how many it has.
+    /// An item, the position within it, and how many quanta it has.
     struct Draw {
         int item;
-        double t;  ///< position in the item, in (0, 1): in the part of the cell that is the item's
+        double t;  ///< position in the item, in (0, 1): the position in that part of the cell that belongs to the item
         double quanta;
     };
     Draw draw(int row, std::uint32_t xi) const;
-    /// Quanta of an item, one of a weight of zero included.
+    /// Quanta of an item; 0 for an item of weight zero.
     double quanta_or_none(int row, int item) const;
     const Entry* row(int row) const { return entries.data() + (std::size_t(row) << bits); }
     std::size_t memory_bytes() const { return entries.size() * sizeof(Entry); }
 };
 
-/// Marginal and conditional draws by alias tables: one fetch for a row, one or two for a column, no search.
+/// Marginal and conditional sampling by alias tables: one fetch for a row, one or two for a column, no search.
 ///
-/// The fastest method where points are random. It takes neighbouring points apart, so a low-discrepancy set loses what
-/// it is good for, and a lattice does worse than random points: Hammersley points' lower bits, which choose between
+/// The fastest method for random points. Neighbouring points are separated, so a low-discrepancy set loses its
+/// advantage, and a lattice does worse than random points: the lower bits of Hammersley points, which choose between
 /// item and alias, are all alike (4096 of them on a 4096 x 2048 sunrise: relative error 0.46, random points 0.04).
-/// Densities are those of GuidedDistribution, to the bit. Resolves 2^32 positions in each direction. 8 bytes a texel
-/// where the width is a power of two, else up to twice that.
+/// Densities are those of GuidedDistribution, to the bit. 2^32 positions are resolved in each direction. 8 bytes a
+/// texel where the width is a power of two, otherwise up to twice that.
 class AliasDistribution final : public Distribution2D {
   public:
     /// Errors: as make_distribution.

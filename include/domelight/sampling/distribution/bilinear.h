@@ -1,5 +1,5 @@
 #pragma once
-// A continuous density: bilinear between texel centres, as a bilinear lookup reads the radiance. docs/math/sampling.md
+// A continuous density, bilinear between texel centres like the radiance of a bilinear lookup. docs/math/sampling.md
 // derives it.
 
 #include "domelight/sampling/distribution/distribution.h"
@@ -12,24 +12,24 @@ namespace domelight {
 /// Cumulative tables, shapes and guides of `count` piecewise-linear densities of `items` segments each, in quanta of 1
 /// / (2^32 - 1).
 ///
-/// A segment has a whole number of quanta, at least one unless it is zero at both ends, and a shape: the density falls
-/// or rises linearly in it, from 2 r to 2 (1 - r) times its average.
+/// A segment has a whole number of quanta, at least one unless the density is zero at both ends, and a shape r: the
+/// density changes linearly from 2 r to 2 (1 - r) times its average.
 struct BilinearRows {
     static constexpr std::uint32_t k_total = 0xffffffffu;
     int count = 0, items = 0;
     int shift = 0;  ///< guide cell of xi: xi >> shift
-    /// [count][items + 1], then 16 more: quanta before each segment, from 0 to k_total, less 2^31: signed, as vectors
-    /// convert to double.
+    /// [count][items + 1], then 16 unused: quanta before each segment, from 0 to k_total, minus 2^31. They are signed
+    /// because vector instructions convert signed integers to double.
     std::vector<std::int32_t, LargeAllocator<std::int32_t>> edges;
     std::vector<std::uint16_t, LargeAllocator<std::uint16_t>> shape;  ///< [count][items]: r in 1 / 65535
-    std::vector<std::uint16_t, LargeAllocator<std::uint16_t>>
-        guide;  ///< [count][cells + 8]: first segment that ends at the cell's first quantum or later
+    /// [count][cells + 8]: first segment that ends at the cell's first quantum or later.
+    std::vector<std::uint16_t, LargeAllocator<std::uint16_t>> guide;
 
     BilinearRows() = default;
     BilinearRows(int count, int items);
     /// Fills row `row` from the densities at the segments' ends, begins[i] and ends[i]; one of them is positive.
     void fill(int row, std::span<const double> begins, std::span<const double> ends);
-    /// A row of zeros: uniform, where anything asks.
+    /// Makes a row of zeros uniform, in case it is ever drawn from.
     void fill_uniform(int row);
     void copy(int from, int to);
 
@@ -47,14 +47,15 @@ struct BilinearRows {
 /// p(u, v) = bilinear interpolation of the weights between texel centres / mean weight; u wraps around, v is clamped in
 /// the half rows at the top and the bottom. The mean of the weights is the interpolation's integral, exactly.
 ///
-/// First v by its marginal: H + 1 segments (half a row, linear, ..., half a row). At v = (j + 1/2 + t) / H the density
-/// along u is the mixture of rows j and j + 1 in proportion to (1 - t) S_j and t S_{j+1}, with S a row's sum; its
-/// cumulative function is the mixture of theirs, and the root lies between the two rows' own, which the guides bracket.
-/// Choosing one of the rows at random would be exact too, but neither monotone nor invertible.
+/// First v is drawn by its marginal, which has H + 1 segments (half a row, linear, ..., half a row). At v = (j + 1/2 +
+/// t) / H the density along u is the mixture of rows j and j + 1 in proportion to (1 - t) S_j and t S_{j+1}, with S the
+/// sum of a row. Its cumulative function is the mixture of theirs, and its root lies between the roots of the two rows,
+/// which the guide tables bracket. Choosing one of the rows at random would be exact too, but neither monotone nor
+/// invertible.
 ///
-/// Monotone in both directions (u from 1/2 / W on, around the seam). invert(sample(p)) == p exactly, but for a few
-/// quanta of 2^-32 where a row outweighs its neighbour by 10^4 or more: there (u, v) in double no longer say enough. 8
-/// bytes a texel.
+/// Monotone in both directions (u from 1/2 / W on, around the seam). invert(sample(p)) == p exactly, except where a row
+/// outweighs its neighbour by 10^4 or more: there (u, v) in double are not precise enough, and the result is off by a
+/// few quanta of 2^-32. 8 bytes a texel.
 class BilinearDistribution final : public Distribution2D {
   public:
     /// Errors: as make_distribution.
@@ -74,17 +75,16 @@ class BilinearDistribution final : public Distribution2D {
     }
 
   private:
-    BilinearRows
-        rows_;  // one density of height + 1 segments; its shapes are not used, row_begins_ says them more finely
-    // For each row, segments from centre to centre; the last one goes around. The first and the last row stand there
-    // twice, so that segment s of v always lies between rows s and s + 1 of the table.
+    // one density of height + 1 segments; its shapes are not used, because row_begins_ holds them more precisely.
+    BilinearRows rows_;
+    // For each row, the segments from centre to centre; the last one crosses the seam. The first and the last row are
+    // stored twice, so that segment s of v always lies between rows s and s + 1 of the table.
     BilinearRows columns_;
-    std::vector<double>
-        row_begins_;  // [height + 1]: the marginal's value at the beginning of each segment, in quanta a segment
+    // [height + 1]: the marginal's value at the beginning of each segment, in quanta a segment.
+    std::vector<double> row_begins_;
 };
 
-/// The same density in double by linear search, as one would write it down: what BilinearDistribution is tested
-/// against.
+/// The same density in double by linear search, in the simplest form. BilinearDistribution is tested against it.
 class PlainBilinearDistribution final : public Distribution2D {
   public:
     /// Errors: as make_distribution.

@@ -4,11 +4,11 @@
 
 namespace domelight {
 
-/// Marginal and conditional inverse transform by binary search of cumulative sums in float, as renderers do it
-/// (pbrt-v4's PiecewiseConstant2D). Simple, and here as the yardstick.
+/// Marginal and conditional inverse transform by binary search of cumulative sums in float, as in other renderers
+/// (pbrt-v4's PiecewiseConstant2D). It is here for comparison.
 ///
-/// Its densities are the differences of the stored sums, so they agree with what is drawn; but a texel of less than
-/// 2^-24 of its row's sum is lost.
+/// Its densities are the differences of the stored sums, so they agree with the samples. But a texel of less than 2^-24
+/// of its row's sum is never drawn.
 class BinaryDistribution final : public Distribution2D {
   public:
     /// Errors: as make_distribution.

@@ -10,24 +10,24 @@ namespace domelight {
 
 /// Cumulative tables of `count` discrete distributions over `items` items each, in quanta of 2^-32, with guide tables.
 ///
-/// Item i of a distribution owns q_i of the 2^32 quanta: none if its weight is zero, else at least one, 2^32 together.
-/// A draw is the item that owns quantum xi. The guide (Chen and Asau 1974; the "indexed search" or cutpoint method of
-/// Devroye 1986, III.2.4) has about as many cells as items; cell k names the first item that owns a quantum of k 2^32 /
-/// cells or more, where the search for any xi in the cell begins: two or three steps on average, however the weights
-/// are spread.
+/// Item i of a distribution owns q_i of the 2^32 quanta: none if its weight is zero, otherwise at least one, and 2^32
+/// in all. The item drawn for xi is the one that owns quantum xi. The guide table (Chen and Asau 1974; the "indexed
+/// search" or cutpoint method of Devroye 1986, III.2.4) has about as many cells as items. Cell k holds the first item
+/// that owns a quantum of number k 2^32 / cells or more. The search for any xi in the cell starts there and takes two
+/// or three steps on average, whatever the weights.
 struct GuidedRows {
     int count = 0, items = 0;
     int shift = 0;  ///< cell of xi: xi >> shift
-    std::vector<std::uint32_t, LargeAllocator<std::uint32_t>>
-        last;  ///< [count][1 + items], then 16 more: the last quantum of items -1, 0, 1, ...
-    std::vector<std::uint16_t, LargeAllocator<std::uint16_t>>
-        guide;  ///< [count][cells + 8]: 8 to spare, so that a row can be filled blindly
+    /// [count][1 + items], then 16 more: the last quantum of items -1, 0, 1, ...
+    std::vector<std::uint32_t, LargeAllocator<std::uint32_t>> last;
+    /// [count][cells + 8]: 8 unused, so that a row can be filled in whole vectors.
+    std::vector<std::uint16_t, LargeAllocator<std::uint16_t>> guide;
 
     GuidedRows() = default;
     GuidedRows(int count, int items);
     /// Fills distribution `row` from the sums of its weights up to and including each item (sums.back() > 0).
     void fill(int row, std::span<const float> weights, std::span<const double> sums);
-    /// Leaves distribution `row` without quanta: it must never be drawn from.
+    /// Leaves distribution `row` without quanta. It must never be sampled.
     void fill_none(int row);
 
     int cells() const { return int((std::uint64_t(1) << 32) >> shift); }
@@ -42,14 +42,14 @@ struct GuidedRows {
     }
     /// Number of the first quantum that item i owns, if it owns any.
     std::uint32_t first_quantum(int row, int i) const { return last_of(row)[i - 1] + 1; }
-    /// Quanta of item i, 0 .. 2^32, of one with a positive weight.
+    /// Quanta of item i, 1 .. 2^32; its weight must be positive.
     std::uint64_t quanta(int row, int i) const { return std::uint64_t(last_of(row)[i] - first_quantum(row, i)) + 1; }
-    /// Quanta of any item.
+    /// Quanta of any item, 0 .. 2^32.
     std::uint64_t quanta_or_none(int row, int i) const;
     std::size_t memory_bytes() const { return last.size() * sizeof(last[0]) + guide.size() * sizeof(guide[0]); }
 };
 
-/// A piecewise-constant density over [0, 1), drawn in constant time.
+/// A piecewise-constant density over [0, 1), sampled in constant time.
 class GuidedDistribution1D {
   public:
     /// weights   n weights, finite, >= 0; all zero: the uniform density. Errors: none or more than 65535 weights; one
@@ -73,8 +73,8 @@ class GuidedDistribution1D {
 
 /// Marginal and conditional inverse transform by guide tables.
 ///
-/// Monotone: a stratified or low-discrepancy set of points stays one in every row. A texel of positive weight is never
-/// lost, one of zero weight never drawn, and pdf_uv is computed from the very quanta that the draw uses. A UnitPoint
+/// Monotone: a stratified or low-discrepancy set of points stays one in every row. A texel of positive weight can
+/// always be drawn, one of zero weight never, and pdf_uv is computed from the same quanta as the sample. A UnitPoint
 /// stands for the middle of its quantum, and invert(sample(p)) == p exactly. 6 bytes a texel.
 class GuidedDistribution final : public Distribution2D {
   public:

@@ -8,9 +8,9 @@ namespace domelight {
 /// at each level the unit square is split left : right by the light in the two halves of the cell, then top : bottom
 /// within the half drawn.
 ///
-/// Points near each other stay near each other in both directions, so low-discrepancy points give the least error of
-/// all methods; it is also the slowest. Not monotone (a column's border depends on the row), but invertible. 4 bytes a
-/// texel and a third.
+/// Neighbouring points stay neighbours in both directions, so with low-discrepancy points this method has the least
+/// error of all. It is also the slowest. It is not monotone (a column's border depends on the row), but invertible. It
+/// needs 5.3 bytes a texel.
 class HierarchicalDistribution final : public Distribution2D {
   public:
     /// Errors: as make_distribution.

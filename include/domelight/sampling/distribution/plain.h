@@ -1,5 +1,5 @@
 #pragma once
-// The textbook's way to draw from a piecewise-constant density, in double: what the fast methods are tested against.
+// The textbook's way to sample a piecewise-constant density, in double. The fast methods are tested against it.
 
 #include "domelight/sampling/distribution/distribution.h"
 
@@ -23,10 +23,11 @@ class PlainDistribution1D {
         double pdf;  ///< density per unit of x
         int index;   ///< of the value drawn, whose density is never zero
     };
-    /// Looks for the interval with P(x_i) <= xi < P(x_{i+1}) from the left. xi in [0, 1).
+    /// Searches for the interval with P(x_i) <= xi < P(x_{i+1}) from the left. xi in [0, 1).
     Sample sample_linear(double xi) const;
-    /// The loop of a fragment shader: walks along the values, taking each off what is left of xi * sum(f), until one is
-    /// larger than the rest; the rest over that value is the position in it. Needs no cumulative table.
+    /// The loop of a fragment shader: subtracts the values one after the other from xi * sum(f), until a value is
+    /// larger than what remains. The remainder over that value is the position in the interval. No cumulative table is
+    /// needed.
     Sample sample_walk(double xi) const;
     double pdf(double x) const;
     /// P(x), the xi that gives x.
@@ -42,8 +43,8 @@ class PlainDistribution1D {
     double sum_;                               // of the values given
 };
 
-/// Marginal and conditional (ibid., A.5.1): the row by the rows' averages, then the column by the row's values;
-/// p(u, v) = p(v) p(u | v) = (row average / total average) (f / row average) = f / total average.
+/// Marginal and conditional sampling (ibid., A.5.1): the row by the rows' averages, then the column by the row's
+/// values; p(u, v) = p(v) p(u | v) = (row average / total average) (f / row average) = f / total average.
 class PlainDistribution2D final : public Distribution2D {
   public:
     enum class Search { linear, walk };

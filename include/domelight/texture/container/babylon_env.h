@@ -20,16 +20,16 @@ struct BabylonEnv {
     double lod_scale = 0.8;  ///< level = lod_scale log2(width alpha)
 };
 
-/// The polynomial Babylon wants, from a world's radiance coefficients (nine or more): it undoes one convolution and one
-/// change of sign when it makes harmonics of it again, so both are put in here.
+/// The polynomial that Babylon expects, from a world's radiance coefficients (nine or more). When Babylon turns it back
+/// into harmonics it undoes one convolution and one change of sign, so both are included here.
 QuadraticPolynomial babylon_polynomial(std::span<const Vec3d> radiance);
 
-/// Writes version 2. `cube`: square faces, a power of two wide, with every level down to 1. Errors: anything else;
-/// what the system says.
+/// Writes version 2. `cube` must have square faces, a power of two wide, and every level down to 1. Errors: any other
+/// cube; a failure to write.
 Result<void> write_env(const std::filesystem::path& file, const BabylonEnv& env, int threads = 0);
 
-/// Versions 1 and 2. Every size and place is checked against the file, and a picture's size against its level, before
-/// memory is taken for it.
+/// Reads versions 1 and 2. Every size and offset is checked against the file, and a picture's size against its level,
+/// before memory is allocated for it.
 Result<BabylonEnv> read_env(const std::filesystem::path& file);
 
 }  // namespace domelight
