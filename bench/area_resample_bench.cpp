@@ -26,7 +26,7 @@ ImageF environment(int width, int height) {
     return image;
 }
 
-/// int g d omega of the green channel: the row tents' integrals against sin theta in closed form.
+/// ∫ g dω of the green channel: the row tents' integrals against sin theta in closed form.
 double light(ImageView<const float> image) {
     const double h = k_pi / image.height;
     double sum = 0;

@@ -16,7 +16,7 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// What became of one environment.
+/// The result for one environment.
 struct BakeOutcome {
     std::vector<std::string> environment;
     std::filesystem::path folder;
@@ -26,7 +26,7 @@ struct BakeOutcome {
     double seconds = 0;
 };
 
-/// A few lines on stdout: what is where, how long it took.
+/// A few lines on stdout: the files, and how long the bake took.
 void print_summary(const BakeOutcome& outcome);
 
 /// The document of bake --json:

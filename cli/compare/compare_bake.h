@@ -1,5 +1,5 @@
 #pragma once
-// domelight compare --bake THEIRS --env SRC: anybody's baked specular cube against the exact filter.
+// domelight compare --bake THEIRS --env SRC: a specular cube baked by any tool, compared with the exact filter.
 
 #include "domelight/io/environment/open_environment.h"
 

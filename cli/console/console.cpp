@@ -68,7 +68,7 @@ Progress ProgressBar::callback() {
 bool ProgressBar::update(std::string_view stage, double done) {
     using Seconds = std::chrono::duration<double>;
     const auto now = std::chrono::steady_clock::now();
-    // Ten times a second, or the terminal is what takes the time.
+    // At most ten times a second, because drawing on the terminal takes time.
     if (!on_ || (stage == stage_ && done < 1 && Seconds(now - drawn_).count() < 0.1)) return true;
     if (stage != stage_) start_ = now;
     stage_ = stage;
@@ -77,7 +77,7 @@ bool ProgressBar::update(std::string_view stage, double done) {
     std::string line = fmt::format("{}  {:<8} [{}{}] {:3.0f} %", title_, stage, std::string(full, '#'),
                                    std::string(24 - full, '.'), 100 * done);
     if (!detail_.empty()) line += "  " + detail_;
-    // By what has been done so far; too early it would jump about.
+    // Estimated from what has been done so far; earlier the estimate would be unstable.
     const double spent = Seconds(now - start_).count();
     if (spent > 1 && done > 0.01 && done < 1) line += fmt::format("  {} left", clock_text(spent / done * (1 - done)));
     // A line that wraps could not be taken back.

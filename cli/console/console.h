@@ -13,7 +13,7 @@ namespace domelight::cli {
 
 enum ExitCode { exit_done = 0, exit_failed = 1, exit_usage = 2 };
 
-/// What every command has.
+/// The parts that every command has.
 struct CommonOptions {
     std::optional<int> threads;
     bool json = false, quiet = false;

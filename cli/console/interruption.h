@@ -4,8 +4,8 @@
 
 namespace domelight::cli {
 
-/// While an object of this class lives, the first SIGINT or SIGTERM only asks the work to stop, so that it may end in
-/// order; a second one ends the program at once, as it would without this. One at a time.
+/// While an object of this class exists, the first SIGINT or SIGTERM only asks the work to stop, so that it can end in
+/// order; a second one ends the program at once. There can be only one such object at a time.
 class Interruption {
   public:
     Interruption();

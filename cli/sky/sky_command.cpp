@@ -56,7 +56,7 @@ Result<void> check(const SkyWords& w) {
     return within("--ground-albedo", w.sky.ground_albedo, 0, 1);
 }
 
-/// Rows on their way to a writer, with the progress told and the range noted.
+/// Passes rows to a writer, reports the progress, and records the range.
 class WatchedRows : public RowSource {
   public:
     WatchedRows(RowSource& rows, Progress progress) : rows_(rows), progress_(std::move(progress)) {}

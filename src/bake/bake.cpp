@@ -25,7 +25,7 @@
 namespace domelight {
 namespace {
 
-/// Adds the time from its making to its end to a stage.
+/// Adds the time from its construction to its destruction to a stage.
 class StageClock {
   public:
     StageClock(std::vector<StageTime>& stages, const char* stage) : stages_(stages), stage_(stage) {}
@@ -70,7 +70,7 @@ std::string map_convention(const EnginePlan& plan, const BakedMap& map) {
                        cube_mirror_direction(engine.mirror), engine.mirror == CubeMirror::none ? "d" : "(x, y, z)");
 }
 
-/// What a texture file says about itself, whatever becomes of the manifest.
+/// The metadata of a texture file, so that it can be used without the manifest.
 std::map<std::string, std::string> map_metadata(const EnginePlan& plan, const BakedMap& map,
                                                 const std::vector<LevelPlan>& levels) {
     std::map<std::string, std::string> metadata{{"domelight.version", version()},
@@ -119,7 +119,7 @@ class EngineBake {
         report_.sh.files.reserve(2);
     }
 
-    /// Encodes and writes everything, or starts to.
+    /// Encodes and writes everything, or starts to do so.
     void start(FilterJob::Maps& maps, const FilterResult& result, std::vector<StageTime>& stages) {
         const StageClock clock(stages, "encode");
         report_.sh =
@@ -293,7 +293,7 @@ class EngineBake {
     Staging staging_;
     ImageF brdf_;  ///< as it is stored, with a third channel in any case
     Image<std::uint8_t> preview_;
-    Background background_;  // last: it waits for its tasks before the rest goes
+    Background background_;  // the last member: it waits for its tasks before the other members are destroyed
 };
 
 std::vector<std::filesystem::path> source_files(const Environment& environment, const BakeOptions& options) {
@@ -316,7 +316,7 @@ SourceReport describe_source(const Environment& environment, const std::vector<s
     return source;
 }
 
-/// The environment's name in file names: its file's without the extension.
+/// The environment's name in file names: the name of its file without the extension.
 std::string stem_of(const std::vector<std::filesystem::path>& files) {
     return files.empty() ? "sky" : files.front().stem().string();
 }

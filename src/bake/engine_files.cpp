@@ -73,7 +73,7 @@ void write_playcanvas(BakedMap& report, std::span<FilteredMap> levels, const Map
                   [atlas](const auto& file) { return write_playcanvas_atlas(file, *atlas); });
 }
 
-/// Levels as OpenEXR's `envmap` wants them: samples on the edges, its own lat-long centre.
+/// Levels as required for OpenEXR's `envmap`: samples on the edges, and its own lat-long centre.
 ImageF openexr_level(const FilteredMap& level, int threads) {
     if (level.cube.empty()) {
         const ProjectedImage source{*projection_from_name("latlong"), level.latlong};
@@ -95,7 +95,7 @@ void write_openexr(BakedMap& report, std::span<FilteredMap> levels, const MapFor
     exr.half = format.encoding == Encoding::rgba16f;
     exr.attributes = format.metadata;
     exr.threads = options.threads;
-    // A convention of its own is not what the attribute stands for.
+    // The attribute would be wrong for another convention.
     const bool envmap = format.mirror == CubeMirror::none && format.latlong_quarters == 0 && report.projection.empty();
     if (envmap) exr.envmap = cube ? "cube" : "latlong";
     if (exr.half) encode_chain(report, levels, format, options);  // half floats clip alike in every container

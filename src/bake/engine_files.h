@@ -1,5 +1,5 @@
 #pragma once
-// Files of a bake that are more than a chain of texels: an engine's own container, and OpenEXR with levels.
+// The files of a bake that are not plain chains of texels: engines' own containers, and OpenEXR with levels.
 
 #include "bake/outputs.h"
 

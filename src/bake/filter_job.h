@@ -19,7 +19,7 @@ class FilterJob {
     /// Reads the environment once, to its last row, and computes everything.
     Result<void> run(const Environment& environment, const BakeOptions& options);
 
-    /// An engine's maps, handed out and taken back so that the next engine finds them.
+    /// An engine's maps. They are lent to one engine and returned for the next.
     struct Maps {
         std::vector<FilteredMap> specular, sheen;
         FilteredMap irradiance_over_pi;
@@ -32,7 +32,7 @@ class FilterJob {
     const FilterResult& result(std::size_t engine) const { return results_[engines_[engine].run]; }
     std::int64_t clamped() const;
     int band_limit() const;
-    /// SHA-256 of the rows that were read, as float32: what stands for the source's hash where there is no file.
+    /// SHA-256 of the rows that were read, as float32: used as the source's hash if there is no file.
     const std::string& rows_sha256() const { return rows_sha256_; }
 
   private:

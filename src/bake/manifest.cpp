@@ -59,7 +59,8 @@ Json environment_json(const EnvironmentOptions& e) {
             {"rotate_y_deg", e.rotate_y_deg}, {"up", e.up},           {"exposure", e.exposure}};
 }
 
-/// Every option that has a say in the bytes, resolved: two bakes with equal options of equal sources are equal.
+/// Every option that affects the bytes, with defaults filled in: two bakes of equal sources with equal options are
+/// equal.
 Json options_json(const EnginePlan& plan, const BakeOptions& o) {
     Json json{{"for", plan.engine->name},
               {"layout", plan.layout == Layout::cube ? "cube" : "latlong"},
@@ -184,7 +185,7 @@ Json vectors_json(const std::vector<Vec3d>& vectors) {
 
 /// Every {"file", "sha256"} below `json` names a file in `folder` with that hash, and none lacks its hash.
 bool files_match(const Json& json, const std::filesystem::path& folder, int depth = 0) {
-    if (depth > 16) return false;  // nothing of ours
+    if (depth > 16) return false;  // not a manifest of ours
     if (json.is_object() && json.contains("file") && json.contains("sha256")) {
         if (!json["file"].is_string() || !json["sha256"].is_string()) return false;
         const auto hash = sha256_file(folder / json["file"].get<std::string>());
@@ -262,7 +263,7 @@ bool manifest_matches(const std::filesystem::path& folder, const EnginePlan& pla
     // This plan was made without opening the source. The hashes are equal, so the source's size is the stored one.
     if (plan.size_of_source && json["options"].is_object() && json["options"].contains("size"))
         wanted["size"] = json["options"]["size"];
-    // By their text, in which they were stored.
+    // Compared by their text, in which they were stored.
     if (json_text(json["options"]) != json_text(wanted)) return false;
     for (const auto& [key, value] : json.items())
         if (key != "source" && !files_match(value, folder)) return false;

@@ -10,9 +10,9 @@
 
 namespace domelight {
 
-/// What manifest.json says of the source.
+/// The part of manifest.json about the source.
 struct SourceReport {
-    std::string file;  ///< without its folder, so that the bytes do not depend on where it lies; six faces: their names
+    std::string file;  ///< without its folder, so that the bytes do not depend on its location; six faces: their names
     std::string sha256;
     std::string format, projection;
     int width = 0, height = 0;

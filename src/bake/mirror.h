@@ -8,8 +8,8 @@
 
 namespace domelight {
 
-/// Moves texels so that texture(cube, M d) gives what texture(cube, d) gave, M being how an engine's lookup differs.
-/// Its own inverse.
+/// Moves texels so that texture(cube, M d) gives what texture(cube, d) gave, where M is the mirroring of an engine's
+/// lookup. Its own inverse.
 inline void mirror_cube(Cubemap& cube, CubeMirror mirror) {
     if (cube.empty()) return;
     switch (mirror) {
@@ -24,9 +24,9 @@ inline void mirror_cube(Cubemap& cube, CubeMirror mirror) {
     }
 }
 
-/// Moves the columns of a lat-long map in the default convention by quarter turns: to what a convention shows whose
-/// centre lies that many quarters further to the right. -n undoes n. The width is a multiple of 4, or `quarters` is
-/// even and the width too.
+/// Moves the columns of a lat-long map in the default convention by quarter turns: to a convention whose centre lies
+/// that many quarter turns further to the right. -n undoes n. The width is a multiple of 4, or `quarters` is even and
+/// the width too.
 inline void turn_latlong(ImageF& map, int quarters) {
     if (map.empty()) return;
     const int columns = map.width() * ((quarters % 4 + 4) % 4) / 4;

@@ -70,7 +70,8 @@ Result<TextureLayout> layout_of(const ChainEncoder& encoder, Container container
     }
 }
 
-/// Compressed levels must be complete before the first byte can be placed: encoded now, the rest in the background.
+/// Compressed levels must be complete before the position of the first byte is known, so they are encoded now; the rest
+/// is done in the background.
 void write_compressed_chain(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
                             const BakeOptions& options, const std::filesystem::path& path, Background& background) {
     std::vector<EncodingReport> encoded;
@@ -197,7 +198,7 @@ void write_map(BakedMap& report, std::span<FilteredMap> levels, const MapFormat&
     } else {
         write_chain(report, levels, format, options, staging, background);
     }
-    for (FilteredMap& level : levels) {  // back, for the picture and the next engine
+    for (FilteredMap& level : levels) {  // undone, for the picture and the next engine
         mirror_cube(level.cube, format.mirror);
         turn_latlong(level.latlong, -format.latlong_quarters);
     }

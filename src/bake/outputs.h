@@ -13,14 +13,14 @@
 
 namespace domelight {
 
-/// Writing and hashing that goes on beside the rest of a bake. With one thread each task runs at once.
+/// Writing and hashing in the background of a bake. With one thread each task runs immediately.
 class Background {
   public:
     explicit Background(int threads) : at_once_(threads == 1) {}
     ~Background() { (void)!wait(); }
-    /// `task` must not use what it does not own and what may go before wait() returns.
+    /// `task` must own everything that it uses, unless that exists until wait() returns.
     void start(std::function<Result<void>()> task);
-    /// Counts something that has been done already among the tasks, for the sake of its error.
+    /// Counts finished work among the tasks, so that its error is reported in order.
     void done(Result<void> result);
     /// Waits for all tasks; their first error in the order they were started.
     Result<void> wait();
@@ -30,7 +30,7 @@ class Background {
     std::vector<std::future<Result<void>>> tasks_;
 };
 
-/// How one map is to be stored.
+/// How one map is stored.
 struct MapFormat {
     Encoding encoding = Encoding::rgba16f;
     /// In OpenEXR: 32-bit floats instead of halves where halves would clip a level (fits_half()).
@@ -42,15 +42,15 @@ struct MapFormat {
     int latlong_quarters = 0;  ///< turn_latlong()
     std::string name;          ///< without extension
     std::map<std::string, std::string> metadata;
-    /// For containers that hold diffuse light too: radiance coefficients, and E / pi as a map (in the default
+    /// For containers that also hold diffuse light: radiance coefficients, and E / pi as a map (in the default
     /// convention).
     std::span<const Vec3d> radiance_sh = {};
     const FilteredMap* irradiance_over_pi = nullptr;
 };
 
-/// Encodes a map's levels now and writes them, or starts to. Fills in `report`, whose role, lobe, quantity, layout and
-/// levels (one for each of `levels`) are set; its file names are valid at once, its hashes after `background.wait()`.
-/// `report` must stay where it is until then.
+/// Encodes a map's levels now and writes them, or starts to do so. Fills in `report`, whose role, lobe, quantity,
+/// layout and levels (one for each of `levels`) are set; its file names are valid at once, its hashes after
+/// `background.wait()`. `report` must not be moved until then.
 void write_map(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
                Staging& staging, Background& background);
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int k_max_size = 16384;
 
-/// Levels that halving gives from `size` down to 1.
+/// The number of levels from `size` down to 1 by halving.
 int most_levels(int size) {
     return std::bit_width(unsigned(size));
 }
@@ -33,7 +33,7 @@ LevelPlan glossy_level(Lobe lobe, int size, double roughness) {
     level.spec.size = size;
     level.spec.mirror = roughness == 0;
     level.spec.kernel = {lobe, level.alpha};
-    if (level.spec.mirror) level.spec.kernel.width = 1;  // not used; any valid one
+    if (level.spec.mirror) level.spec.kernel.width = 1;  // not used; any valid kernel
     return level;
 }
 
@@ -92,15 +92,15 @@ bool is_openexr(Container container) {
     return container == Container::exr || container == Container::exr_mip;
 }
 
-/// How many levels a lat-long map of a height can have in one texture. Its width halves with its height only while that
-/// is even: below 130 x 65 a texture has 65 x 32, which is no lat-long shape.
+/// The number of levels that a lat-long map of a height can have in one texture. The width is twice the height only
+/// while the height can be halved: below 130 x 65 a texture has 65 x 32, which is not the shape of a lat-long map.
 int most_texture_levels(int height) {
     int levels = 1;
     for (; height % 2 == 0; height /= 2) ++levels;
     return levels;
 }
 
-/// Containers that one engine alone has: what goes into them is laid down there.
+/// Containers that only one engine has, with fixed contents.
 bool own_container(Container container) {
     return container == Container::env || container == Container::gltf || container == Container::playcanvas_atlas;
 }
@@ -127,7 +127,7 @@ Result<int> level_count(const Engine& engine, const BakeOptions& o, int size, La
 Result<void> plan_encoding(EnginePlan& plan, const BakeOptions& o) {
     const Engine& engine = *plan.engine;
     plan.container = o.format.value_or(engine.container);
-    // An engine's encoding belongs to its container: another container starts from half floats.
+    // An engine's encoding belongs to its container: with another container the default is half floats.
     plan.encoding = o.encoding.value_or(plan.container == engine.container ? engine.encoding : Encoding::rgba16f);
     plan.zstd = o.zstd.value_or(plan.container == Container::ktx2 && engine.zstd);
     if (plan.zstd && plan.container != Container::ktx2)
@@ -184,7 +184,7 @@ Result<void> plan_environment_only(EnginePlan& plan, const BakeOptions& o, const
     return {};
 }
 
-/// What a container of one engine alone cannot do without.
+/// The requirements of a container that only one engine has.
 Result<void> check_own_container(const EnginePlan& plan, const BakeOptions& o) {
     if (!own_container(plan.container)) return {};
     const std::string name = container_name(plan.container);

@@ -8,7 +8,7 @@
 
 namespace domelight {
 
-/// One level of a chain with its kernel and what is recorded of it.
+/// One level of a chain, with its kernel and the values that are recorded of it.
 struct LevelPlan {
     LevelSpec spec;
     double roughness = 0, alpha = 0, exponent = 0;
@@ -29,10 +29,10 @@ struct EnginePlan {
     BrdfForm brdf_form = BrdfForm::none;
     std::optional<PanoramaSpec> panorama;  ///< the environment as one image, where the engine takes it
     bool size_of_source = false;           ///< the only map is a panorama, as large as the environment
-    int latlong_quarters = 0;  ///< how far the engine's lat-long maps are turned: turn_latlong() of bake/mirror.h
+    int latlong_quarters = 0;  ///< the quarter turns of the engine's lat-long maps: turn_latlong() of bake/mirror.h
 };
 
-/// What to make for an engine. Errors: options that contradict each other or the engine; `where` is the option.
+/// Plans the bake for an engine. Errors: options that contradict each other or the engine; `where` is the option.
 ///
 /// environment   null before it is opened: an image that is to be as large as the source then has some other size
 Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& options, const Environment* environment);

@@ -103,7 +103,7 @@ ShReport make_sh_report(std::span<const Vec3d> radiance, int bands, ShWindow win
 
 namespace {
 
-/// Nine numbers even where fewer bands were asked for: the missing ones are 0.
+/// Nine numbers even if fewer bands were asked for: the missing ones are 0.
 std::vector<Vec3d> nine(const ShReport& sh) {
     std::vector<Vec3d> radiance = sh.radiance;
     radiance.resize(9);

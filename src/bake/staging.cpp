@@ -25,13 +25,13 @@ Result<Staging> Staging::open(const fs::path& folder) {
 Staging::~Staging() {
     std::error_code ignored;
     for (const File& file : files_) fs::remove(file.temporary, ignored);
-    // Only empty ones go: a folder that got its files stays.
+    // Only empty folders are removed: a folder that has its files stays.
     for (auto p = created_folders_.rbegin(); p != created_folders_.rend(); ++p) ::rmdir(p->c_str());
 }
 
 fs::path Staging::stage(const std::string& name) {
     const std::lock_guard lock(*mutex_);
-    // The ending of the name stays: some writers look at it.
+    // The ending of the name is kept, because some writers depend on it.
     const fs::path temporary = folder_ / (".domelight-" + std::to_string(::getpid()) + "-" +
                                           std::to_string(files_.size()) + fs::path(name).extension().string());
     files_.push_back({name, temporary, std::make_unique<TemporaryFileGuard>(temporary.string())});
@@ -49,7 +49,7 @@ Result<void> Staging::move_to_place(const File& file) const {
 
 Result<void> Staging::commit(const std::string& last) {
     std::error_code ignored;
-    for (const File& file : files_)  // what moving would stumble on half way
+    for (const File& file : files_)  // obstacles that would otherwise stop the moving half way
         if (std::filesystem::is_directory(folder_ / file.name, ignored))
             return Error{"is a folder, but a file of that name is to be written", (folder_ / file.name).string(),
                          "Move it away, or name another folder."};

@@ -12,20 +12,21 @@
 
 namespace domelight {
 
-/// The files of one bake on their way into a folder. Each is first written under a temporary name in that folder (the
-/// same file system, so that moving is instant); commit() moves all of them to their names. What has not been committed
-/// is removed, also on signals the program handles.
+/// The files of one bake before they are complete. Each is first written under a temporary name in the target folder
+/// (on the same file system, so that moving is instant); commit() moves all of them to their names. Files that have not
+/// been committed are removed, even on signals that the program handles.
 class Staging {
   public:
-    /// Creates the folder where it is missing. Errors name it.
+    /// Creates the folder if it is missing. Errors name it.
     static Result<Staging> open(const std::filesystem::path& folder);
     Staging(Staging&&) = default;
     Staging& operator=(Staging&&) = delete;
     ~Staging();
 
-    /// Where to write what will be called `name` (relative, may contain folders). Safe to call from several threads.
+    /// The path at which to write the file that will be called `name` (relative, may contain folders). Safe to call
+    /// from several threads.
     std::filesystem::path stage(const std::string& name);
-    /// Moves everything to its place, `last` (the manifest, which vouches for the others) at the end.
+    /// Moves every file to its place, `last` (the manifest, which lists the others) at the end.
     Result<void> commit(const std::string& last);
 
   private:

@@ -6,7 +6,7 @@
 
 namespace domelight {
 
-/// A RowSource that shows every block of rows to somebody else on its way: one reading serves several uses.
+/// A RowSource that also passes every block of rows to a function, so that one reading serves several uses.
 class TapRowSource : public RowSource {
   public:
     using Tap = std::function<void(ImageView<const float> rows)>;

@@ -10,8 +10,8 @@
 
 namespace domelight {
 
-/// An array of trivial values on a 64-byte boundary, as the SIMD kernels want it; large ones straight from the system,
-/// in large pages. Moves, does not copy. Zeroed unless asked otherwise.
+/// An array of trivial values on a 64-byte boundary, for SIMD kernels. Large arrays are allocated from the system
+/// directly, in large pages. It can be moved but not copied, and is zeroed unless asked otherwise.
 template <typename T>
 class AlignedArray {
     static_assert(std::is_trivial_v<T>);

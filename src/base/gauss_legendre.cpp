@@ -12,7 +12,7 @@
 namespace domelight {
 namespace {
 
-constexpr int k_block = 16;  ///< nodes that run through the recurrence side by side
+constexpr int k_block = 16;  ///< the number of nodes for which the recurrence is evaluated together
 
 /// P_n and P_{n-1} at several cosines: (k + 1) P_{k+1} = (2k + 1) x P_k - k P_{k-1}.
 void legendre_pair(int n, const std::array<double, k_block>& x, std::array<double, k_block>& p,

@@ -33,13 +33,13 @@ void solve(std::vector<double>& a, std::vector<double>& b, int n, int columns) {
 InterpolationTaps::InterpolationTaps(int taps, double band, double decay) : taps_(taps), degree_(taps + 2) {
     assert(taps >= 2 && taps <= 16 && taps % 2 == 0 && band > 0 && band < 1);
     const int n = taps_, nodes = degree_ + 1, steps = 512;
-    // Normal equations of min int W |sum_k w_k e^{i w (k - t)} - 1|^2, with a Lagrange multiplier for sum w = 1.
+    // Normal equations of min ∫ W |sum_k w_k e^{i w (k - t)} - 1|^2, with a Lagrange multiplier for sum w = 1.
     std::vector<double> matrix((n + 1) * (n + 1), 0.0), right((n + 1) * nodes, 0.0), t(nodes);
     for (int q = 0; q < nodes; ++q) t[q] = 0.5 - 0.5 * std::cos(k_pi * (q + 0.5) / nodes);
     std::vector<double> lag(n), rhs(n * nodes);
     for (int s = 0; s < steps; ++s) {
         const double omega = k_pi * band * (s + 0.5) / steps, x = decay * (s + 0.5) / steps;
-        // (1 + x) e^{-x} has the shape of x K_1(x) to a few tens of per cent, which is all a weight needs.
+        // (1 + x) e^{-x} approximates x K_1(x) to a few tens of per cent, which is enough for a weight.
         const double amplitude = (1 + x) * std::exp(-x), weight = (amplitude * amplitude + 1e-10) / steps;
         for (int d = 0; d < n; ++d) lag[d] += weight * std::cos(omega * d);
         for (int k = 0; k < n; ++k)
@@ -62,7 +62,8 @@ InterpolationTaps::InterpolationTaps(int taps, double band, double decay) : taps
     }
     solve(vandermonde, values, nodes, n);
     coefficients_ = std::move(values);
-    // Rounding must not cost constancy: make each power's coefficients sum to what a sum of 1 asks for.
+    // Constants must be kept in spite of rounding: the coefficients of each power are adjusted so that the weights sum
+    // to 1.
     for (int d = 0; d < nodes; ++d) {
         double sum = d == 0 ? -1 : 0;
         for (int k = 0; k < n; ++k) sum += coefficients_[d * n + k];

@@ -10,8 +10,8 @@ namespace domelight {
 ///
 /// f(i + t) ~ sum_k w_k(t) f(i + k - (taps / 2 - 1)), k = 0..taps-1, t in [0, 1]. The weights are the least-squares
 /// optimum for a signal whose amplitude falls as x K_1(x), x = decay * omega / (pi band): the spectrum of a
-/// GGX-filtered environment, so that the strong low frequencies are exact to 1e-6 and the last ones, which no longer
-/// matter, pay for it. They sum to exactly 1: a constant stays constant.
+/// GGX-filtered environment, so that the strong low frequencies are exact to 1e-6, at the expense of the highest ones,
+/// which no longer matter. They sum to exactly 1: a constant stays constant.
 class InterpolationTaps {
   public:
     /// taps    even, 2..16

@@ -8,7 +8,7 @@
 #endif
 #endif
 #if defined(__SANITIZE_ADDRESS__) || !defined(__linux__)
-#define DOMELIGHT_PLAIN_MEMORY 1  // the sanitizer watches the edges of its own memory only
+#define DOMELIGHT_PLAIN_MEMORY 1  // the sanitizer only checks memory that it has allocated itself
 #endif
 
 #ifndef DOMELIGHT_PLAIN_MEMORY
@@ -43,7 +43,7 @@ std::size_t round_up(std::size_t bytes) {
 }  // namespace
 
 void* allocate_large(std::size_t bytes) {
-    // One huge page more than asked for, so that a start on its boundary can be cut out.
+    // One huge page more than asked for, so that the start can be aligned to its boundary.
     const std::size_t size = round_up(bytes), room = size + k_huge_page;
     if (room < bytes) throw std::bad_alloc();
     void* start = ::mmap(nullptr, room, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -52,7 +52,7 @@ void* allocate_large(std::size_t bytes) {
     const std::size_t skip = (k_huge_page - reinterpret_cast<std::uintptr_t>(first) % k_huge_page) % k_huge_page;
     if (skip > 0) ::munmap(first, skip);
     if (k_huge_page > skip) ::munmap(first + skip + size, k_huge_page - skip);
-    ::madvise(first + skip, size, MADV_HUGEPAGE);  // a wish: where it is refused, small pages do
+    ::madvise(first + skip, size, MADV_HUGEPAGE);  // only a hint: if it is refused, small pages are used
     return first + skip;
 }
 

@@ -12,8 +12,8 @@
 namespace domelight {
 namespace {
 
-/// A thread that runs one piece of work after the other and sleeps in between. Starting a thread for each costs some
-/// 50 us, and a bake has hundreds of parallel loops.
+/// A thread that runs one piece of work after the other and sleeps in between. Starting a thread takes about 50 us, and
+/// a bake has hundreds of parallel loops.
 class Helper {
   public:
     Helper() : thread_([this] { serve(); }) {}
@@ -24,13 +24,14 @@ class Helper {
     Helper(const Helper&) = delete;
     Helper& operator=(const Helper&) = delete;
 
-    /// Asks for `work()`, which must last until finish() returns.
+    /// Starts `work()`, which must exist until finish() returns.
     void start(const std::function<void()>& work) {
         work_ = &work;
         state_.store(k_asked, std::memory_order_release);
         state_.notify_one();
     }
-    /// Waits for the work's end; work not yet begun is taken back (another has done it all by then).
+    /// Waits for the end of the work; work that has not begun is cancelled (the other threads have done all of it by
+    /// then).
     void finish() {
         int asked = k_asked;
         if (state_.compare_exchange_strong(asked, k_idle)) return;
@@ -56,17 +57,18 @@ class Helper {
 
     std::atomic<int> state_{k_idle};
     const std::function<void()>* work_ = nullptr;
-    std::jthread thread_;  // last: it uses the rest, and its end is waited for first
+    std::jthread thread_;  // the last member: it uses the others, and its end is awaited first
 };
 
 /// The helpers of one thread that calls parallel_for. Each caller has its own, so calls from several threads do not
-/// meet.
+/// interfere.
 std::vector<std::unique_ptr<Helper>>& helpers_of_this_thread() {
     thread_local std::vector<std::unique_ptr<Helper>> helpers;
     return helpers;
 }
 
-/// Whether this thread is inside a parallel loop: a loop inside it runs on this thread alone, whose helpers are taken.
+/// Whether this thread is inside a parallel loop. An inner loop runs on this thread alone, because its helpers are
+/// busy.
 thread_local bool t_inside = false;
 
 }  // namespace
@@ -87,7 +89,7 @@ void parallel_for(int count, int threads, const std::function<void(int)>& task) 
     }
     std::atomic<int> next{0};
     std::atomic<bool> failed{false};
-    std::exception_ptr failure;  // written by whoever sets `failed`
+    std::exception_ptr failure;  // written by the thread that sets `failed`
     const std::function<void()> work = [&] {
         t_inside = true;
         try {

@@ -222,7 +222,7 @@ Fit fit_level(const TexelSample& sample, std::span<const Vec3f> exact, double sc
         fit.scale = weighted_median(ratios);
     }
     if (!(fit.scale > 0)) fit.scale = 1;
-    // Differences of what is nearly black say nothing: below a thousandth of the mean they count as less.
+    // Relative differences of nearly black values mean nothing: below a thousandth of the mean they count less.
     const double floor = 1e-3 * sample.mean;
     double squared = 0, weight = 0, difference = 0, power = 0;
     for (std::size_t k = 0; k < count; ++k) {

@@ -12,7 +12,7 @@ namespace domelight {
 /// The signed permutations of the axes, the identity first.
 const std::vector<Mat3>& cube_orientations();
 
-/// Texels of a level that are looked at.
+/// The texels of a level that are compared.
 struct TexelSample {
     int size = 0;
     std::vector<int> texels;       ///< indices into the strip, y size + x

@@ -67,7 +67,7 @@ void draw_boxes(ImageView<std::uint8_t> image, int left, int top, const Fit& fit
     });
 }
 
-/// Averages of radiance, shown: what a camera further away would have seen.
+/// Radiance is averaged before the tone map, as by a camera further away.
 void draw_picture(ImageView<std::uint8_t> image, int left, int top, const Fit& fit, ImageView<const float> picture,
                   const Display& display, int threads) {
     draw_boxes(image, left, top, fit, picture.width, picture.height, threads, [&](const Box& b) -> Colour8 {

@@ -8,7 +8,7 @@
 
 namespace domelight {
 
-/// A map of numbers and the colours it is shown in.
+/// A map of numbers and the colours in which it is shown.
 struct HeatMap {
     ImageView<const float> values;  ///< one channel
     std::string title;              ///< "HDR-FLIP, mean 0.034"
@@ -24,8 +24,8 @@ double scale_for(ImageView<const float> values, Mask mask = {});
 /// mask are grey.
 Image<std::uint8_t> heat_picture(const HeatMap& map, Mask mask = {});
 
-/// What a comparison's sheet shows: two pictures as a display would at one exposure, their signed difference, and a map
-/// of the perceived one.
+/// The contents of a comparison sheet: two pictures as on a display at the same exposure, their signed difference, and
+/// a map of the perceived difference.
 struct CompareSheet {
     std::string title, subtitle;
     std::string test_name, reference_name;

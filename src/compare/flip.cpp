@@ -87,7 +87,7 @@ float hyab(const Vec3f& a, const Vec3f& b) {
     return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z);
 }
 
-/// Compresses large differences (eq. 5 and 6): to [0, 1], what is below k_pc of the largest taking k_pt of it.
+/// Compresses differences to [0, 1] (eq. 5 and 6): those below k_pc of the largest are mapped to [0, k_pt].
 float redistribute(float difference) {
     static const float largest = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), k_qc);
     const float d = std::pow(difference, k_qc), knee = k_pc * largest;
@@ -162,7 +162,7 @@ struct FeatureFilters {
     }
 };
 
-// --- one image as the two pipelines see it ---
+// --- one image as input of the two pipelines ---
 
 struct Seen {
     ImageF lab;          ///< filtered, Hunt-adjusted CIELAB, 3 channels

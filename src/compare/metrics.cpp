@@ -19,7 +19,7 @@ float tone_mapped(float v) {
     return v > 0 ? v / (1 + v) : 0;
 }
 
-/// Adds up what `row(y)` returns, rows side by side on threads and then in order.
+/// Adds up the results of `row(y)`: rows are computed in parallel and added in order.
 template <typename Sums, typename Row>
 Sums sum_rows(int height, int threads, Row row) {
     std::vector<Sums> rows(std::size_t(height), Sums{});
@@ -52,7 +52,7 @@ struct ErrorSums {
     }
 };
 
-/// All but the structural similarity.
+/// All figures except the structural similarity.
 Errors errors_of(const ErrorSums& s) {
     Errors e;
     e.pixels = s.pixels;

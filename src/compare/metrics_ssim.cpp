@@ -57,7 +57,8 @@ ImageF ssim(ImageView<const float> test, ImageView<const float> reference, Mask 
             for (int i = 0; i < 6; ++i) m[i] = *planes[i].at(x + k_reach, y + k_reach);
             const double a = m[1] / m[0], b = m[2] / m[0];
             const double aa = std::max(m[3] / m[0] - a * a, 0.0), bb = std::max(m[4] / m[0] - b * b, 0.0);
-            // What rounding leaves of flat windows must not correlate by more than itself: equal images have exactly 1.
+            // The covariance of flat windows, which is only rounding, is limited by the variances, so that equal images
+            // have exactly 1.
             const double most = std::sqrt(aa * bb), ab = std::clamp(m[5] / m[0] - a * b, -most, most), mean_a = a + 0.5,
                          mean_b = b + 0.5;
             *result.at(x, y) = float((2 * mean_a * mean_b + k_c1) * (2 * ab + k_c2) /

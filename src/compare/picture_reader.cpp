@@ -60,7 +60,7 @@ Result<Picture> read_plain(std::shared_ptr<const FileBytes> bytes, const ReaderO
             }
     picture.format = facts.format;
     picture.high_dynamic_range = facts.format != "PNG" && facts.format != "JPEG";
-    if (picture.high_dynamic_range) picture.warnings = facts.warnings;  // of the others they tell of environments
+    if (picture.high_dynamic_range) picture.warnings = facts.warnings;  // the other warnings are about environments
     return picture;
 }
 
@@ -121,7 +121,8 @@ Result<Picture> read_exr_picture(std::shared_ptr<const FileBytes> bytes, const P
         picture.rgb = std::move(*pixels);
         picture.format = "OpenEXR";
     }
-    // The variance is the picture's, not a layer's. Sizes differ where an environment's data window is the picture.
+    // The variance belongs to the picture, not to a layer. Sizes differ if the picture is the data window of an
+    // environment.
     const bool same = (*layers)->width() == picture.rgb.width() && (*layers)->height() == picture.rgb.height();
     if (same && options.layer.empty())
         if (auto ok = read_variance(**layers, options, picture); !ok) return ok.error();

@@ -9,13 +9,13 @@
 
 namespace domelight {
 
-/// A picture for comparing: what it holds is kept, NaN too; nothing is repaired.
+/// A picture to be compared: all values are kept, NaN too; nothing is repaired.
 struct Picture {
     std::string format;  ///< "OpenEXR", "PNG", "KTX2", ...
     ImageF rgb;          ///< linear Rec. 709 radiance; a cube: its faces +X -X +Y -Y +Z -Z one below the other
     bool high_dynamic_range = true;  ///< false: 8 or 16 bits for a screen, decoded from sRGB to [0, 1]
     bool cube = false;
-    ImageF variance;  ///< of the pixels' values, 3 channels; empty: not known. From the layer "variance" (or Variance),
+    ImageF variance;  ///< of the pixels' values, 3 channels; empty: unknown. From the layer "variance" (or Variance),
                       ///< see below
     ImageF objects;  ///< index of the object seen, one channel, 0 for none; empty: not known. From the layer or channel
                      ///< "object"
@@ -27,8 +27,8 @@ struct Picture {
 struct PictureOptions {
     std::string layer = {};  ///< OpenEXR: which layer or channel; empty: the unnamed one, else the first with colour
     int level = 0;           ///< textures: which level
-    /// What a file's layer "variance" holds: that of the pixel's value, or that of one sample, to be divided by the
-    /// channel "samples".
+    /// The meaning of a file's layer "variance": the variance of the pixel's value, or that of one sample, to be
+    /// divided by the channel "samples".
     std::string variance = "pixel";  ///< pixel | sample
     std::int64_t max_bytes = std::int64_t(1) << 30;
     int threads = 0;

@@ -2,7 +2,7 @@
 
 namespace domelight {
 
-/// For an engine of one's own: cube 512^2 down to 8^2 in seven levels, roughness = level / (levels - 1), half floats,
+/// For your own engine: cube 512^2 down to 8^2 in seven levels, roughness = level / (levels - 1), half floats,
 /// the true irradiance E.
 Engine generic_engine() {
     Engine e;

@@ -8,12 +8,13 @@
 namespace domelight {
 namespace {
 
-/// Degrees beyond this cost seconds; what they would add is stated in docs/math/prefilter.md.
+/// Higher degrees would cost seconds; docs/math/prefilter.md states what they would add.
 constexpr int k_most_degrees = 3072;
 constexpr int k_least_degrees = 256;
 /// b L at the band limit L.
 constexpr double k_decay = 16.6, k_decay_split = 11;
-/// From here on a lobe counts as narrow: a sun is then 10^6 times what is dark beside it, and float expansions round.
+/// Lobes below this width count as narrow: a sun is then 10^6 times as bright as its dark surroundings, and the
+/// rounding of float expansions matters.
 constexpr int k_split_degrees = 600;
 constexpr double k_split_exponent = 500;
 
@@ -86,8 +87,8 @@ FilterPlan make_filter_plan(const FilterOptions& options, bool sums_directly) {
         return std::pair(a.narrow, a.band_limit) > std::pair(b.narrow, b.band_limit);
     });
 
-    // The interpolation between rows and rings is made for spectra that have fallen off at the band limit: coefficients
-    // that are wanted as they are lie in its first third.
+    // The interpolation between rows and rings assumes spectra that have decayed at the band limit. Coefficients that
+    // are themselves a result must therefore lie in its first third.
     plan.wide_band_limit = std::max(64, 3 * (options.sh_bands - 1));
     plan.band_limit = plan.wide_band_limit;
     for (const Need& need : needs) {

@@ -8,9 +8,9 @@
 
 namespace domelight {
 
-/// How the exact filter goes about its levels: which band limit each one needs, and which are synthesised together.
+/// The plan of the exact filter: the band limit that each level needs, and which levels are synthesised together.
 struct FilterPlan {
-    /// Levels that share a grid; the walk over the Legendre functions serves them all.
+    /// Levels that share a grid. The Legendre functions are computed once for all of them.
     struct Group {
         int band_limit = 0;
         RingGrid grid;
@@ -21,8 +21,8 @@ struct FilterPlan {
 
     int band_limit = 0;       ///< of the analysis
     int wide_band_limit = 0;  ///< of all levels that are not narrow
-    /// There are narrow levels: what outshines the rest by far is better taken out of a lat-long image before it is
-    /// expanded (BrightSplit).
+    /// There are narrow levels, so texels much brighter than the rest should be removed from a lat-long image before it
+    /// is expanded (BrightSplit).
     bool split = false;
     std::vector<Group> groups;
     std::vector<int> direct;  ///< levels that are summed over the rows (DirectSums), indices of FilterOptions::specular
@@ -31,12 +31,12 @@ struct FilterPlan {
 /// sums_directly   whether levels may be summed over the rows of a lat-long image; else all are expanded
 FilterPlan make_filter_plan(const FilterOptions& options, bool sums_directly);
 
-/// Degrees that a lobe needs for the accuracy that docs/math/prefilter.md states; fewer where the brightest texels are
-/// taken out (`split`).
+/// The degrees that a lobe needs for the accuracy stated in docs/math/prefilter.md; fewer if the brightest texels are
+/// removed (`split`).
 int required_band_limit(const ZonalKernel& kernel, bool split);
 
-/// Whether the clamp at the horizon leaves a tail that a strong sun shows: what is left out is then summed over the
-/// brightest texels.
+/// Whether the clamp at the horizon leaves a tail that a strong sun makes visible. The truncated part is then summed
+/// over the brightest texels.
 bool leaves_residual(const ZonalKernel& kernel);
 
 }  // namespace domelight

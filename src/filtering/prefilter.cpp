@@ -20,7 +20,7 @@
 namespace domelight {
 namespace {
 
-/// Image rows that pass through at once: few enough to stay in cache from the reader to the last consumer.
+/// The number of image rows processed together: few enough to stay in the cache from the reader to the last step.
 constexpr int k_chunk_rows = 64;
 
 const Error k_cancelled{"cancelled", "", ""};
@@ -105,7 +105,7 @@ class Synthesis {
     /// The environment's brightest texels as point lights, fine enough for a band limit.
     using Bright = std::function<BrightPoints(int band_limit)>;
 
-    /// `narrow`: the spectrum for narrow lobes, without what `split` holds; null where nothing was taken out.
+    /// `narrow`: the spectrum for narrow lobes, without what `split` holds; null if nothing was removed.
     Synthesis(const Spectrum& spectrum, const Spectrum* narrow, const BrightSplit* split, Bright bright,
               const FilterOptions& options, FilterResult& result)
         : spectrum_(spectrum),

@@ -14,8 +14,8 @@ struct ColourPrimaries {
     Xy red{0.640, 0.330}, green{0.300, 0.600}, blue{0.150, 0.060}, white{0.3127, 0.3290};  ///< ITU-R BT.709 by default
 };
 
-/// RGB of these primaries to CIE XYZ with Y = 1 for white (SMPTE RP 177-1993, section 3.3). Nothing if they do not span
-/// a plane.
+/// RGB of these primaries to CIE XYZ with Y = 1 for white (SMPTE RP 177-1993, section 3.3). Empty if they lie on a
+/// line.
 std::optional<Mat3> rgb_to_xyz(const ColourPrimaries& primaries);
 
 /// RGB of these primaries to linear Rec. 709. Where the whites differ, the light is adapted (Bradford), so that grey

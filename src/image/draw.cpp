@@ -61,7 +61,7 @@ std::string fit_text(std::string_view text, FontSize size, int width) {
         next_code_point(rest);
         characters.push_back(before.substr(0, before.size() - rest.size()));
     }
-    // Keep more and more from both ends, the end being where a file's name differs from the next one's.
+    // Keep more and more from both ends, because file names often differ at the end.
     const auto shortened = [&](std::size_t keep) {
         std::string out;
         for (std::size_t i = 0; i < (keep + 1) / 2; ++i) out += characters[i];

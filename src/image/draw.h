@@ -19,7 +19,7 @@ struct Rect {
     int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// Everything here draws on 3-channel images and leaves alone what lies outside them.
+/// All functions draw on 3-channel images and ignore pixels outside them.
 
 void fill(ImageView<std::uint8_t> image, Rect where, Colour8 colour);
 /// The one-pixel line around the inside of a rectangle.

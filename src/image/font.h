@@ -15,11 +15,11 @@ const font_data::Glyph& font_glyph(FontSize size, std::uint32_t code);
 int font_ascent(FontSize size);   ///< pixels from the baseline up to the top of capitals and accents
 int font_descent(FontSize size);  ///< pixels from the baseline down
 
-/// Takes the next code point off UTF-8 `text`; a malformed byte gives U+FFFD and is skipped.
+/// Removes the next code point from UTF-8 `text`; a malformed byte is skipped and gives U+FFFD.
 std::uint32_t next_code_point(std::string_view& text);
 
 /// A glyph of "+-XYZ" at any size: signed distance to its outline in em, positive inside, at (x right of the pen, y
-/// above the baseline) in em. Where `code` is none of these, or far outside, a large negative number.
+/// above the baseline) in em. For any other `code`, or far outside the glyph, a large negative number.
 float font_field(char code, float x, float y);
 /// Advance of such a glyph in em, 0 where there is none.
 float font_field_advance(char code);

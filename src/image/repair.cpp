@@ -31,7 +31,7 @@ bool limit_texel(float* texel, float largest) {
     return found;
 }
 
-/// Fills the texels that hold a NaN from their nearest neighbours that do not.
+/// Fills texels with a NaN from their nearest neighbours without one.
 void fill_not_a_number(std::span<float> rgb, bool wraps, RepairReport& report) {
     const int width = int(rgb.size() / 3);
     std::vector<int> good;

@@ -19,13 +19,13 @@ namespace domelight {
 /// enough for int arithmetic.
 inline constexpr int k_max_image_side = 65536;
 
-/// What a file says about the image in it.
+/// The properties of the image in a file.
 struct ImageFacts {
     enum class Envmap { none, latlong, cube };  ///< OpenEXR's attribute of that name
 
     std::string format;  ///< "Radiance HDR", ...
     int width = 0, height = 0;
-    float largest = 0;  ///< the largest finite value the format can hold: what infinity becomes
+    float largest = 0;  ///< the largest finite value of the format, which replaces infinity
     Envmap envmap = Envmap::none;
     std::optional<Mat3> to_rec709 = std::nullopt;  ///< the file's primaries to linear Rec. 709, where they differ
     std::vector<std::string> warnings;
@@ -37,13 +37,13 @@ struct ReaderOptions {
     int threads = 0;
 };
 
-/// An image file being decoded from the top row down. Pixels are RGB as stored (linear, but in the file's own
+/// An image file that is decoded from the top row down. Pixels are RGB as stored (linear, but in the file's own
 /// primaries, and with its NaNs, infinities and negative values).
 class ImageReader {
   public:
     virtual ~ImageReader() = default;
     const ImageFacts& facts() const { return facts_; }
-    /// The next `rows.height` rows (at most what is left). True: every value is known to lie in [0,
+    /// Reads the next `rows.height` rows (no more than are left). True: every value is known to lie in [0,
     /// k_largest_radiance].
     virtual Result<bool> read(ImageView<float> rows) = 0;
 
@@ -68,7 +68,7 @@ Result<std::unique_ptr<ImageReader>> open_jpeg_reader(std::shared_ptr<const File
 /// An error unless 1 <= width, height <= k_max_image_side.
 Result<void> check_image_size(std::int64_t width, std::int64_t height);
 
-/// Text from a file, fit for a message: at most `longest` characters, those that cannot be printed replaced.
+/// Text from a file, for use in a message: at most `longest` characters, with unprintable ones replaced.
 std::string printable(std::string_view text, std::size_t longest = 40);
 
 }  // namespace domelight

@@ -8,8 +8,8 @@
 namespace domelight {
 
 /// Exposure, the punchy AgX tone map and the sRGB transfer function, to 8 bits, by tables: within one code of
-/// srgb_encode(tonemap(exposure * radiance, Tonemap::agx_punchy)) at a fortieth of its cost. In two halves, because the
-/// first one is linear: what is interpolated between texels need only pass it once a texel.
+/// srgb_encode(tonemap(exposure * radiance, Tonemap::agx_punchy)) at a fortieth of its cost. It has two halves, because
+/// the first one is linear and can be applied once to each texel before interpolation.
 class AgxDisplay {
   public:
     explicit AgxDisplay(float exposure);

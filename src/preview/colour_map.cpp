@@ -23,7 +23,7 @@ Vec3d linear_of_oklch(double lightness, double chroma, double hue) {
             -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
 }
 
-/// The same with the chroma reduced until a display can show it: lightness and hue are what a reader goes by.
+/// The same with the chroma reduced until a display can show the colour, because readers judge by lightness and hue.
 Colour8 shown(double lightness, double chroma, double hue) {
     const auto fits = [](const Vec3d& v) { return std::min({v.x, v.y, v.z}) >= 0 && std::max({v.x, v.y, v.z}) <= 1; };
     double low = 0, high = chroma;

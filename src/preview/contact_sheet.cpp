@@ -25,7 +25,8 @@ constexpr Colour8 k_background{24, 25, 28}, k_bright{232, 234, 238}, k_text{205,
     k_edge{52, 54, 60};
 constexpr int k_margin = 32, k_gap = 16, k_line = 20;  // pixels; k_line: from one line of small text to the next
 constexpr double k_key = 0.18;
-constexpr double k_smooth_alpha = 0.03;  // wider lobes than this leave no detail as fine as the chrome balls' pixels
+constexpr double k_smooth_alpha = 0.03;  // lobes wider than this have no detail as fine as the pixels of the chrome
+                                         // balls
 
 /// A picture on the sheet, drawn row by row (`row` counts from the top of `where`), so that threads can share it.
 struct Panel {
@@ -45,8 +46,8 @@ std::string number(double v) {
     return fmt::format("{:.3g}", v);
 }
 
-/// A ball of some diameter under an orthographic view along -Z: what each of its pixels looks up. Drawn once for all
-/// maps of a layout.
+/// A ball of some diameter under an orthographic view along -Z: the lookups of each of its pixels. Computed once for
+/// all maps of a layout.
 struct Ball {
     bool cube, chrome;
     int size, samples;             ///< samples^2 a pixel
@@ -133,7 +134,7 @@ class Sheet {
               FontSize size = FontSize::small) {
         texts_.push_back({x, baseline, std::move(s), size, colour, align});
     }
-    /// Two lines below a picture: what it is, and of what kind.
+    /// Two lines below a picture: its name and its kind.
     void caption(int x, int y, int width, const std::string& name, const std::string& detail);
     double sh_difference() const;
 
@@ -162,7 +163,7 @@ Sheet::Sheet(const PreviewInput& input) : in_(input), width_(std::max(input.widt
     levels_.resize(in_.specular.size());
     sheen_.resize(in_.sheen.size());
     const int s = (width_ - 2 * k_margin - 60) / 5;
-    // What the panels look up, made small first; each on its own.
+    // The maps that the panels look up, reduced first, each by itself.
     const std::size_t levels = levels_.size();
     parallel_for(int(levels + sheen_.size()) + 3, in_.threads, [&](int i) {
         if (i == 0) {
@@ -195,7 +196,7 @@ Sheet::Sheet(const PreviewInput& input) : in_(input), width_(std::max(input.widt
     const double ev = std::clamp(in_.exposure_ev.value_or(automatic), -60.0, 60.0);
     look_ = AgxDisplay(float(std::exp2(ev)));
     if (!sh_.empty() && !irradiance_.empty()) sh_difference_ = sh_difference();
-    // From here on the maps are for showing only.
+    // From here on the maps are only displayed.
     std::vector<PreviewMap*> maps{&environment_, &irradiance_, &sh_};
     for (PreviewMap& level : levels_) maps.push_back(&level);
     for (PreviewMap& level : sheen_) maps.push_back(&level);
@@ -294,7 +295,7 @@ void Sheet::level_grid(const std::vector<PreviewLevel>& levels, const std::vecto
         }
         const PreviewLevel& level = levels[std::size_t(i)];
         const PreviewMap& map = maps[std::size_t(i)];
-        // Where a rough lobe has smoothed the level, one look-up a pixel shows all there is.
+        // If a rough lobe has smoothed the level, one lookup for each pixel is enough.
         const bool fine = map_size(*level.map) > 64 && level.alpha < k_smooth_alpha;
         ball_panel(x, y, cell, map, true, fine ? 2 : 1);
         if (map.is_cube())

@@ -35,7 +35,7 @@ void draw_environment(ImageView<std::uint8_t> sheet, Rect where, PreviewMap map,
 /// The points at `away` radians from a direction, on the picture: a line two pixels wide, stretched with the picture
 /// near the poles and cut at its edges.
 ///
-/// Every pixel is asked how far it is from the line: the distance from the ring over its slope on the picture.
+/// The distance of every pixel from the line is computed: the distance from the ring over its slope on the picture.
 void draw_ring(ImageView<std::uint8_t> sheet, Rect where, const Vec3d& direction, double away) {
     const auto angle = [&](double x, double y) {
         const Vec3d d = latlong_direction({x / where.width, y / where.height});
@@ -88,7 +88,7 @@ Image<std::uint8_t> lights_sheet(const LightsSheetInput& in) {
     Image<std::uint8_t> sheet(width, total, 3);
     fill(sheet.view(), {0, 0, width, total}, k_background);
 
-    // The remainder's brightness decides the exposure: a sun says nothing about how bright the rest should look.
+    // The exposure is chosen for the remainder, because the sun does not determine how bright the rest should look.
     const double average = log_average_luminance(in.remainder);
     const AgxDisplay look(float(average > 0 ? std::clamp(0.18 / average, 1e-18, 1e18) : 1));
     const Rect left{k_margin, top, picture, height}, right{width - k_margin - picture, top, picture, height};

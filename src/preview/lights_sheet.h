@@ -8,7 +8,7 @@
 
 namespace domelight {
 
-/// What a picture of extracted lights shows; only read during the call.
+/// The contents of a picture of extracted lights; only used during the call.
 struct LightsSheetInput {
     std::string title;                   ///< the environment's file name, UTF-8
     ImageView<const float> environment;  ///< lat-long RGB, any size

@@ -12,13 +12,13 @@ namespace {
 
 constexpr Colour8 k_paper{255, 255, 255}, k_ink{30, 34, 40}, k_quiet{110, 116, 124}, k_grid{218, 221, 226},
     k_fine_grid{238, 240, 243};
-/// Told apart by people with any colour vision, in this order first (Okabe and Ito 2008, without the yellow, which
-/// white paper swallows, and with three more).
+/// Colours that people with any colour vision can distinguish, the most distinct first (Okabe and Ito 2008, without the
+/// yellow, which is invisible on white paper, and with three more).
 constexpr Colour8 k_palette[] = {{213, 94, 0},   {0, 114, 178}, {0, 158, 115}, {204, 121, 167}, {230, 159, 0},
                                  {86, 180, 233}, {0, 0, 0},     {130, 90, 60}, {130, 136, 144}};
 constexpr int k_line = 20;
 
-/// An axis with its ends settled.
+/// An axis whose ends are determined.
 struct Scale {
     bool logarithmic = false;
     double low = 0, high = 1;  ///< of the values; of their base-10 logarithms if logarithmic
@@ -77,7 +77,7 @@ std::vector<Tick> logarithmic_ticks(const Scale& s) {
         }
         if (decades <= 8)
             for (int m = 2; m < 10; ++m) {
-                // Less than one decade: the multiples need numbers, or the axis has none.
+                // Less than one decade: the multiples need numbers, because otherwise the axis has none.
                 const bool number = s.high - s.low < 1.2 && (m == 2 || m == 5);
                 ticks.push_back({m * base, number ? fmt::format("{:.3g}", m * base) : "", ""});
             }
@@ -122,7 +122,7 @@ void draw_tick(ImageView<std::uint8_t> image, int x, int baseline, const Tick& t
     draw_text(image, x + text_width(t.text, FontSize::small), baseline - 6, t.exponent, FontSize::small, k_quiet);
 }
 
-/// A part of a picture as one of its own, so that nothing drawn there reaches beyond it.
+/// A part of a picture as a separate picture, so that nothing is drawn outside it.
 ImageView<std::uint8_t> part(ImageView<std::uint8_t> image, Rect r) {
     const int x0 = std::clamp(r.x, 0, image.width), y0 = std::clamp(r.y, 0, image.height);
     const int x1 = std::clamp(r.x + r.width, x0, image.width), y1 = std::clamp(r.y + r.height, y0, image.height);
@@ -133,7 +133,7 @@ ImageView<std::uint8_t> part(ImageView<std::uint8_t> image, Rect r) {
 void draw_segment(ImageView<std::uint8_t> image, PlotLine line, double& walked, double x0, double y0, double x1,
                   double y1, Colour8 colour) {
     if (line == PlotLine::solid) return stroke(image, x0, y0, x1, y1, 2.2, colour);
-    // So many pixels on and off, going on from the segment before
+    // Numbers of pixels on and off, continued from the segment before
     const double length = std::hypot(x1 - x0, y1 - y0), on = line == PlotLine::dotted ? 1 : 7, period = on + 5;
     double at = 0;
     while (at < length && length < 1e5) {

@@ -14,7 +14,7 @@ enum class PlotScale { linear, logarithmic };
 struct PlotAxis {
     std::string label;
     PlotScale scale = PlotScale::linear;
-    /// Ends of the axis; empty: as wide as the series need.
+    /// Ends of the axis; empty: determined by the series.
     std::optional<std::array<double, 2>> range;
 };
 
@@ -38,11 +38,11 @@ struct Plot {
     std::vector<PlotSeries> series;
 };
 
-/// The palette's colours, over and over: told apart with any colour vision, the first eight better than the rest.
+/// The palette's colours, repeated: they can be distinguished with any colour vision, the first eight best.
 Colour8 plot_colour(std::size_t i);
 
-/// Draws into a part of an image (3 channels), which it first makes white. At least about 240 x 160 pixels are needed
-/// for anything to be seen.
+/// Draws into a part of an image (3 channels), which is cleared to white first. About 240 x 160 pixels are needed at
+/// least.
 void draw_plot(ImageView<std::uint8_t> image, Rect where, const Plot& plot);
 /// A picture of its own. The same bytes everywhere.
 Image<std::uint8_t> draw_plot(const Plot& plot, int width = 1000, int height = 640);

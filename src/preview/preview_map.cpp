@@ -11,7 +11,7 @@ namespace {
 
 constexpr int k_most_samples = 4;
 
-/// Which texels of a row or column stand for one of `count` cells: up to 4 spread over it.
+/// The texels of a row or column that represent one of `count` cells: up to 4, spread over it.
 struct Cell {
     int samples = 0;
     int at[k_most_samples];
@@ -71,7 +71,7 @@ void PreviewMap::make_cube(const Cubemap& cube, int most) {
     block_ = stride * stride;
     texels_.resize(std::size_t(block_) * 6);
     for (int f = 0; f < 6; ++f) shrink(cube.face(f), n, n, &texels_[std::size_t(f) * std::size_t(block_)]);
-    // A border texel is the neighbour's that lies where the face's plane would go on.
+    // A border texel is the neighbour's texel where the face's plane would continue.
     const auto copy = [&](int f, int x, int y) {
         const MapPlace p = cube_place(Vec3f(cube_direction(f, {(double(x) - 0.5) / n, (double(y) - 0.5) / n})));
         const int px = std::clamp(int(p.u * float(n)), 0, n - 1), py = std::clamp(int(p.v * float(n)), 0, n - 1);

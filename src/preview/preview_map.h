@@ -38,8 +38,8 @@ inline MapPlace cube_place(const Vec3f& d) {
 
 MapPlace latlong_place(const Vec3f& d);
 
-/// A map made small and quick to look up: faces of at most `most` texels (lat-long: 2 most rows), averaged over boxes,
-/// with a border taken from the neighbours so that bilinear look-ups go on across edges.
+/// A map reduced for fast lookups: faces of at most `most` texels (lat-long: 2 most rows), averaged over boxes, with a
+/// border taken from the neighbours so that bilinear look-ups go on across edges.
 class PreviewMap {
   public:
     PreviewMap() = default;

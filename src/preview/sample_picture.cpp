@@ -19,7 +19,7 @@ namespace {
 constexpr Colour8 k_background{24, 25, 28}, k_bright{232, 234, 238}, k_quiet{150, 155, 163};
 constexpr int k_margin = 16, k_head = 66, k_foot = 52;
 
-/// A dark page with room for a lat-long picture, its title above and something below.
+/// A dark page with space for a lat-long picture, its title above and a part below.
 struct Page {
     Image<std::uint8_t> image;
     Rect where;
@@ -88,7 +88,7 @@ void draw_legend(Page& page, double low, double high, const std::string& unit) {
     for (int i = 0; i < bar.width; ++i)
         fill(page.image.view(), {bar.x + i, bar.y, 1, bar.height}, heat(double(i) / (bar.width - 1)));
     const int first = int(std::ceil(low - 1e-9)), last = int(std::floor(high + 1e-9));
-    // No label over its neighbour.
+    // Labels must not overlap.
     const double apart = bar.width / std::max(high - low, 1e-9);
     const int step = std::max(1, int(std::ceil(46 / apart)));
     for (int k = first; k <= last; ++k) {
@@ -131,8 +131,8 @@ Image<std::uint8_t> sample_picture(const EnvironmentSampler& sampler, std::span<
                                    const SamplePictureOptions& options) {
     Page page = make_page(options);
     draw_environment(page.image.view(), page.where, sampler, 0.8, options.threads);
-    // Dots as large as their number leaves room for; all rims first, so that no dot is hidden under another's rim.
-    // Where there are too many to be told apart they turn into a haze.
+    // Dots as large as their number leaves room for; all rims first, so that no dot is hidden under another's rim. If
+    // there are too many to be distinguished they become a haze.
     const double each =
         page.where.width * std::sqrt(0.5 / std::max<double>(1, double(samples.size())));  // pixels from one to the next
     const double scale = std::max(1.0, page.where.width / 1024.0);
@@ -165,7 +165,7 @@ Image<std::uint8_t> density_picture(const EnvironmentSampler& sampler, DensityMe
         largest = std::max<double>(largest, v);
     }
     double high = std::log10(largest), low = std::max(std::log10(least), high - 8);
-    if (!(high - low > 0.5)) {  // flat: half a decade around it, so that the legend has something to say
+    if (!(high - low > 0.5)) {  // constant: half a decade around it, so that the legend has a range
         const double middle = (high + low) / 2;
         high = middle + 0.5;
         low = middle - 0.5;

@@ -10,7 +10,7 @@
 
 namespace domelight {
 
-/// What stands above a picture of samples.
+/// The title of a picture of samples.
 struct SamplePictureOptions {
     std::string title, subtitle;  ///< UTF-8
     int width = 1024;             ///< pixels of the environment, which is half as high

@@ -6,8 +6,8 @@
 
 namespace domelight {
 
-/// Four floats that the processor takes at once: a colour and a spare. (GCC's and Clang's vector extension; other
-/// processors than x86 have their own such registers.)
+/// Four floats that the processor handles together: a colour and an unused one. (GCC's and Clang's vector extension;
+/// other processors than x86 have their own such registers.)
 struct alignas(16) Texel4 {
     typedef float Vector __attribute__((vector_size(16)));
     typedef std::int32_t Integers __attribute__((vector_size(16)));

@@ -45,9 +45,9 @@ Vec3f aces(const Vec3f& v) {
             -0.00327f * r - 0.07276f * g + 1.07602f * b};
 }
 
-/// Reinhard et al. 2002, eq. 4, on luminance, so that hue and saturation stay: L (1 + L / white^2) / (1 + L). What is
-/// as bright as `white` becomes 1; the paper takes the picture's largest luminance for it, which here would make every
-/// picture of a series another.
+/// Reinhard et al. 2002, eq. 4, on luminance, so that hue and saturation stay: L (1 + L / white^2) / (1 + L). The
+/// luminance `white` becomes 1. The paper uses the largest luminance of the picture, but then the pictures of a series
+/// would not be comparable.
 Vec3f reinhard(const Vec3f& v) {
     constexpr float white = k_reinhard_white;
     const float l = luminance(v);
@@ -90,7 +90,7 @@ float srgb_decode(float v) {
 }
 
 double log_average_luminance(ImageView<const float> image) {
-    // Texels, not averages, are looked at, so that a sun stays a few of them.
+    // Single texels are used, not averages, so that a sun remains a few of them.
     const int step_x = std::max(1, image.width / 512), step_y = std::max(1, image.height / 256);
     std::vector<float> values;
     std::vector<double> weights;

@@ -11,7 +11,7 @@
 
 namespace domelight {
 
-/// How radiance becomes a colour that a display can show.
+/// The mapping from radiance to a colour that a display can show.
 enum class Tonemap {
     none,     ///< clipped
     neutral,  ///< Khronos PBR Neutral (2024): colours below 0.8 as they are, highlights rolled off without a change of
@@ -20,7 +20,7 @@ enum class Tonemap {
     agx_punchy,  ///< AgX with its "punchy" look: more contrast and saturation
     aces,        ///< ACES 1.0's RRT and sRGB ODT, by Hill's fit (2016)
     reinhard,    ///< Reinhard et al. 2002, eq. 4, on luminance: `k_reinhard_white` becomes white
-    gamma22,     ///< clipped, and shown by the power 1 / 2.2 in place of the sRGB curve
+    gamma22,     ///< clipped, and encoded by the power 1 / 2.2 instead of the sRGB curve
 };
 
 /// The luminance that `reinhard` makes white.
@@ -65,9 +65,9 @@ struct Display {
     }
 };
 
-/// Log-average luminance of a lat-long image (3 channels) over solid angle (Reinhard et al. 2002, eq. 1), each
-/// luminance counted as no less than a thousandth of the mean so that black surroundings do not decide. 0 for a black
-/// image. At most about 512 x 256 of the texels are read.
+/// Log-average luminance of a lat-long image (3 channels) over solid angle (Reinhard et al. 2002, eq. 1), where
+/// luminances below a thousandth of the mean are raised to it, so that black surroundings do not dominate. 0 for a
+/// black image. At most about 512 x 256 of the texels are read.
 double log_average_luminance(ImageView<const float> latlong);
 
 }  // namespace domelight

@@ -9,8 +9,8 @@ namespace domelight {
 BorderedCube::BorderedCube(const Cubemap& source)
     : size_(source.size()), texels_(std::size_t(18) * (size_ + 2) * (size_ + 2)) {
     const int n = size_;
-    // The texel across the edge from texel (x, y), one step outside: a step's thousandth outside the edge is already on
-    // the neighbour.
+    // The texel across the edge from texel (x, y), which lies one step outside: a point a thousandth of a step outside
+    // the edge already belongs to the neighbour.
     const auto across = [&](int f, int x, int y) {
         const auto coordinate = [&](int i) { return std::clamp((i + 0.5) / n, -1e-3 / n, 1 + 1e-3 / n); };
         const CubePoint p = cube_point(cube_direction(f, {coordinate(x), coordinate(y)}));

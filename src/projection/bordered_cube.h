@@ -9,7 +9,7 @@ namespace domelight {
 
 /// A cubemap's RGB texels with a border of one texel around each face, taken from across the edges; a corner of the
 /// border is the mean of the three texels that meet there. Bilinear interpolation of a bordered face, up to the face's
-/// edge, is the cube's reconstruction: it goes on across edges.
+/// edge, is the cube's reconstruction, which is continuous across edges.
 class BorderedCube {
   public:
     explicit BorderedCube(const Cubemap& source);

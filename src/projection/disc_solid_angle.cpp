@@ -8,7 +8,7 @@ namespace domelight {
 
 namespace {
 
-/// int cap dphi along the segment from a to b inside the disc; dphi = (x dy - y dx) / r^2.
+/// ∫ cap dφ along the segment from a to b inside the disc; dφ = (x dy - y dx) / r^2.
 double along(DiscPoint a, DiscPoint b, const std::function<double(double)>& cap) {
     static const GaussLegendre &few = gauss_legendre(5), &many = gauss_legendre(24);
     const double dx = b.x - a.x, dy = b.y - a.y, turn = a.x * dy - a.y * dx;  // x dy - y dx is the same all along
@@ -22,7 +22,7 @@ double along(DiscPoint a, DiscPoint b, const std::function<double(double)>& cap)
         for (std::size_t k = 0; k < few.x.size(); ++k) sum += few.w[k] * integrand(0.5 * (1 + few.x[k]));
         return 0.5 * sum * turn;
     }
-    // At the rim cap may end like a square root: the nodes gather at both ends, s = (1 + sin(pi x / 2)) / 2.
+    // At the rim cap may behave like a square root, so the nodes are denser at both ends: s = (1 + sin(pi x / 2)) / 2.
     for (std::size_t k = 0; k < many.x.size(); ++k) {
         const double t = 0.5 * k_pi * many.x[k];
         sum += many.w[k] * std::cos(t) * integrand(0.5 * (1 + std::sin(t)));
@@ -48,7 +48,7 @@ double disc_solid_angle(const UVBox& box, const std::function<double(double)>& c
         if (s1 > s0) parts.push_back({{a.x + s0 * dx, a.y + s0 * dy}, {a.x + s1 * dx, a.y + s1 * dy}});
     }
     if (parts.empty()) {
-        // Outside, or all around the disc.
+        // Either outside the disc, or containing the whole disc.
         const bool around = low.x <= 0 && low.y <= 0 && high.x >= 0 && high.y >= 0 &&
                             std::min({-low.x, -low.y, high.x, high.y}) >= 1 - 1e-12;
         return around ? 2 * k_pi * cap(1) : 0;

@@ -8,7 +8,7 @@
 
 namespace domelight {
 
-/// Where a lat-long image puts the world, and where on it the samples lie (docs/conventions.md).
+/// The orientation of a lat-long image in the world, and the positions of its samples (docs/conventions.md).
 struct LatlongConvention {
     using Grid = SampleGrid;
     Vec3d centre{1, 0, 0};  ///< world direction at the image's centre
@@ -16,7 +16,7 @@ struct LatlongConvention {
     Vec3d up{0, 1, 0};      ///< at the top row
     Grid grid = Grid::centres;
 
-    /// World direction to the direction at which the default convention would show the same point of the image.
+    /// Maps a world direction to the direction at which the default convention shows the same point of the image.
     /// Orthogonal; mirrors where right = -(centre x up).
     Mat3 world_to_default() const { return {{centre, up, right}}; }
 };

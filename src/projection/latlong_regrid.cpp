@@ -29,7 +29,7 @@ class RegriddedRows : public RowSource {
             if (const auto filled = fill_until(lower); !filled) return filled;
             blend(window_.row(upper % 2), window_.row(lower % 2), position - upper, rows.row(y));
         }
-        // Hand over the source's last row as well, so that its report is complete.
+        // Read the source's last row as well, so that its report is complete.
         return next_row_ == height() ? fill_until(height() - 1) : Result<void>();
     }
 

@@ -46,7 +46,7 @@ std::string names() {
     return text;
 }
 
-/// Which way the picture looks, and what else the words after the slash say.
+/// The orientation of the picture, and the other settings after the slash.
 struct Convention {
     Vec3d centre, right, up;
     SampleGrid grid = SampleGrid::centres;

@@ -19,14 +19,14 @@ class CubeShape : public ProjectionShape {
         const CubePoint p = cube_point(d);
         return {p.face, p.uv, true};
     }
-    /// On the face's plane, also beyond its edges.
+    /// A direction on the face's plane, even beyond its edges.
     UV locate_in(int chart, int, const Vec3d& d) const override {
         const Vec3d n = cube_direction(chart, {0.5, 0.5}), right = cube_direction(chart, {1, 0.5}) - n,
                     down = cube_direction(chart, {0.5, 1}) - n;
         const double depth = dot(d, n);
         return {0.5 * (dot(d, right) / depth + 1), 0.5 * (dot(d, down) / depth + 1)};
     }
-    /// d omega = ds dt / (1 + s^2 + t^2)^(3/2), s = 2 u - 1, t = 2 v - 1.
+    /// dω = ds dt / (1 + s^2 + t^2)^(3/2), s = 2 u - 1, t = 2 v - 1.
     double jacobian(UV uv) const override {
         const double s = 2 * uv.u - 1, t = 2 * uv.v - 1, q = 1 + s * s + t * t;
         return 4 / (q * std::sqrt(q));

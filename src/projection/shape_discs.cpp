@@ -22,7 +22,7 @@ class DiscShape : public ProjectionShape {
 
 class SphereMapShape : public DiscShape {
   public:
-    /// Past the rim the picture goes on as on the way back: through -Z to the other side.
+    /// Beyond the rim the picture continues through -Z to the other side.
     Vec3d direction(int, UV uv) const override {
         const DiscPoint p = disc_point(uv);
         const double r = std::sqrt(p.squared());
@@ -52,7 +52,7 @@ class HemisphereShape : public DiscShape {
         if (d.z >= 0) return {0, disc_uv({d.x / length(d), d.y / length(d)}), true};
         return {0, side > 0 ? disc_uv({d.x / side, d.y / side}) : disc_uv({1, 0}), false};
     }
-    /// d omega = dx dy / z.
+    /// dω = dx dy / z.
     double jacobian(UV uv) const override { return 4 / std::sqrt(std::max(1e-300, 1 - disc_point(uv).squared())); }
     int region(const Vec3d& d) const override { return d.z < 0; }
     int latlong_height(int size) const override { return int(std::ceil(0.5 * k_pi * size)); }
@@ -63,7 +63,7 @@ class HemisphereShape : public DiscShape {
 
 class AngularShape : public DiscShape {
   public:
-    /// r = rho / pi (Debevec's light probes). Past the rim rho goes on beyond pi.
+    /// r = rho / pi (Debevec's light probes). Beyond the rim rho continues beyond pi.
     Vec3d direction(int, UV uv) const override {
         const DiscPoint p = disc_point(uv);
         const double r = std::sqrt(p.squared()), s = r > 0 ? std::sin(k_pi * r) / r : k_pi;
@@ -131,7 +131,7 @@ class MirrorBallShape : public DiscShape {
   public:
     explicit MirrorBallShape(double fov)
         : half_(0.5 * fov), tangent_(std::tan(half_)), distance_(1 / std::sin(half_)) {}
-    /// All but the cone behind the ball that the camera would see beside it.
+    /// Everything except the cone behind the ball, which the camera would see beside the ball.
     double coverage() const override { return 2 * k_pi * (1 + std::cos(half_)); }
     Vec3d direction(int, UV uv) const override {
         const DiscPoint p = disc_point(uv);
@@ -159,8 +159,8 @@ class MirrorBallShape : public DiscShape {
     double cap(double r) const override { return 2 * std::pow(std::sin(0.5 * angle(r)), 2); }
 
   private:
-    /// The angle from +Z of what is seen at the distance r: the ray leaves the camera at the angle a, tan a = r tan(fov
-    /// / 2), and meets the ball at the angle b from +Z, sin(a + b) = D sin a; the normal's angle counts twice.
+    /// The angle from +Z of the direction seen at the distance r: the ray leaves the camera at the angle a, tan a = r
+    /// tan(fov / 2), and meets the ball at the angle b from +Z, sin(a + b) = D sin a; the normal's angle counts twice.
     double angle(double r) const {
         const double a = std::atan(r * tangent_);
         return 2 * std::asin(std::min(1.0, distance_ * std::sin(a))) - a;

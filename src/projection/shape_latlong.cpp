@@ -13,7 +13,7 @@ class LatlongShape : public ProjectionShape {
         return {d.z, d.y, d.x};
     }
     ProjectionPoint locate(const Vec3d& d) const override { return {0, latlong_uv({d.z, d.y, d.x}), true}; }
-    /// omega = int int sin(pi v) pi dv 2 pi du.
+    /// omega = ∫∫ sin(pi v) pi dv 2 pi du.
     double jacobian(UV uv) const override { return 2 * k_pi * k_pi * std::sin(k_pi * uv.v); }
     double solid_angle(const UVBox& b) const override {
         // cos a - cos b = 2 sin((a + b) / 2) sin((b - a) / 2): no cancellation in thin rows.

@@ -7,7 +7,7 @@ namespace domelight {
 
 namespace {
 
-/// A point of the square |x|, |y| <= 1 (y up) that may lie past an edge: the picture goes on there mirrored at the
+/// A point of the square |x|, |y| <= 1 (y up) that may lie beyond an edge: there the picture continues mirrored at the
 /// edge's middle.
 DiscPoint into_square(DiscPoint p) {
     if (std::abs(p.x) > 1) p = {std::copysign(2, p.x) - p.x, -p.y};
@@ -46,7 +46,7 @@ struct Polygon {
 
 /// Solid angle of a plane triangle of directions. (Van Oosterom and Strackee 1983.)
 double triangle_solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-    // a . (b x c), of differences: small triangles keep their digits.
+    // a . (b x c), computed from differences so that small triangles keep their digits.
     const double volume = std::abs(dot(a, cross(b - a, c - a)));
     const double la = length(a), lb = length(b), lc = length(c);
     return 2 * std::atan2(volume, la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
@@ -62,7 +62,7 @@ class OctahedralShape : public ProjectionShape {
         const double sum = ax + ay + octant_sign(region, 2) * d.z, x = ax / sum, y = ay / sum;
         return region & 4 ? disc_uv({sx * (1 - y), sy * (1 - x)}) : disc_uv({sx * x, sy * y});
     }
-    /// On the face |x| + |y| + |z| = 1: d omega = dx dy / |d|^3.
+    /// On the face |x| + |y| + |z| = 1: dω = dx dy / |d|^3.
     double jacobian(UV uv) const override {
         const double q = length(on_octahedron(disc_point(uv)));
         return 4 / (q * q * q);

@@ -15,7 +15,7 @@ std::shared_ptr<const ProjectionShape> make_mirror_ball_shape(double fov);
 std::shared_ptr<const ProjectionShape> make_angular_shape();
 /// One half of a dual paraboloid: the one with z > 0.
 std::shared_ptr<const ProjectionShape> make_paraboloid_shape();
-/// The map read at xy / (z - 1): the half with z < 0, turned by half.
+/// The map looked up at xy / (z - 1): the half with z < 0, turned by half a turn.
 std::shared_ptr<const ProjectionShape> make_paraboloid_opposite_shape();
 std::shared_ptr<const ProjectionShape> make_dual_paraboloid_shape();
 std::shared_ptr<const ProjectionShape> make_octahedral_shape();

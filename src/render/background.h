@@ -1,11 +1,11 @@
 #pragma once
-// What shows where no surface is.
+// What is seen where there is no surface.
 
 #include "domelight/render/shading/shading.h"
 
 namespace domelight {
 
-/// Errors: blurred without maps.
+/// Errors: a blurred background without maps.
 inline Result<void> check_background(const RenderOptions& o) {
     if (o.background != Background::blurred || o.background_maps) return {};
     return Error{"a blurred background has no maps to be read from", "", "Set RenderOptions::background_maps."};

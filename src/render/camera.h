@@ -7,11 +7,11 @@
 
 namespace domelight {
 
-/// A camera's rays through the pixels of a picture.
+/// The rays of a camera through the pixels of a picture.
 class CameraRays {
   public:
     CameraRays(const Camera& camera, int width, int height);
-    /// Through a point of pixel (x, y).
+    /// The ray through a point of pixel (x, y).
     Ray through(int x, int y, UnitPoint within) const;
 
   private:

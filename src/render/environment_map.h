@@ -1,5 +1,5 @@
 #pragma once
-// The environment as reflection mapping binds it: resampled into one texture, looked up bilinearly.
+// The environment for reflection mapping: resampled into one texture and looked up bilinearly.
 
 #include "domelight/projection/projection.h"
 #include "domelight/render/shading/shading.h"
@@ -10,14 +10,15 @@
 
 namespace domelight {
 
-/// Bilinear across a bordered cube's faces; direction of any length but 0.
+/// Bilinear lookup across the faces of a bordered cube; the direction may have any length but 0.
 Vec3f look_up(const BorderedCube& cube, const Vec3f& direction);
 
-/// An environment in one of the textures that MapLookup lists. Each texel is the source's mean over it: by exact
-/// overlap for cube and lat-long, over 8 x 8 points for the two discs.
+/// An environment in one of the textures of MapLookup. Each texel is the mean of the source over it: by exact overlap
+/// for cube and lat-long, over 8 x 8 points for the two kinds of disc.
 class EnvironmentMap {
   public:
-    /// `source` must outlive the map: MapLookup::environment reads it. size: as ShadingOptions::lookup_size.
+    /// `source` must outlive the map, because it is used by MapLookup::environment. size: as
+    /// ShadingOptions::lookup_size.
     EnvironmentMap(const EnvironmentSampler& source, MapLookup lookup, int size, int threads);
     /// Radiance from a direction in the world, of any length but 0.
     Vec3f radiance(const Vec3f& direction) const;

@@ -8,9 +8,9 @@
 
 namespace domelight {
 
-constexpr int k_tile = 16;  ///< pixels a tile is wide and high
+constexpr int k_tile = 16;  ///< width and height of a tile in pixels
 
-/// What a pixel's samples add up to.
+/// The sums over a pixel's samples.
 struct PixelSums {
     Vec3d radiance, squares;
     Vec3f direct, indirect, diffuse, specular, albedo, normal;
@@ -27,7 +27,7 @@ struct PixelSums {
         ++non_finite;
         return false;
     }
-    /// Standard error of L / (1 + L), by its slope.
+    /// Standard error of L / (1 + L), from that of L by the derivative.
     double noise() const;
     Vec3d variance_of_mean() const;
 };
@@ -53,8 +53,8 @@ class Film {
         const int t = y / k_tile * across_ + x / k_tile;
         return tiles_[t][std::size_t(y % k_tile) * columns(t) + x % k_tile];
     }
-    /// Standard error where it counts: the largest of a pixel's and its neighbours', for a pixel's own guess may be
-    /// lucky.
+    /// The standard error that decides about more samples: the largest of a pixel's and its neighbours', because a
+    /// pixel's own estimate may be too low by chance.
     double noise_about(int x, int y) const {
         double most = 0;
         for (int j = std::max(0, y - 1); j <= std::min(height_ - 1, y + 1); ++j)
@@ -68,12 +68,12 @@ class Film {
     std::vector<std::vector<PixelSums>> tiles_;
 };
 
-/// How far all is, kept up to date tile by tile. A tile's own sums may only be written by others before or after its
+/// The progress of the whole picture, updated tile by tile. No other thread may write the sums of a tile during its
 /// call.
 class StatusSums {
   public:
     explicit StatusSums(Film& film) : film_(film), tiles_(std::size_t(film.tiles())) {}
-    /// After tile t was added to.
+    /// To be called after samples were added to tile t.
     RenderStatus after(int t, double seconds);
 
   private:
@@ -86,9 +86,9 @@ class StatusSums {
     Tile sum_;
 };
 
-/// Errors: a size that is no picture's.
+/// Errors: an invalid size.
 Result<void> check_size(int width, int height);
-/// The layers from the sums.
+/// Computes the layers from the sums.
 RenderResult develop(const Film& film, int width, int height);
 
 }  // namespace domelight

@@ -15,7 +15,7 @@ Vec3f rest_of(const Vec3f& F) {
     return {1 - F.x, 1 - F.y, 1 - F.z};
 }
 
-/// Which part a number falls into, stretched over that part.
+/// The part into which a number falls, and the number rescaled to [0, 1) within that part.
 int choose(const float (&shares)[4], std::uint32_t& u) {
     std::uint64_t begin = 0;
     double sum = 0;
@@ -43,7 +43,7 @@ void LayeredBsdf::share_out(const Vec3f& V) {
     const float shine = luminance(fresnel(base.f0, base.f90, schlick)), matt = luminance(base.diffuse),
                 clear = transmits ? luminance(transmitted) * (1 - gloss.fresnel(V.z)) : 0;
     const float lower = shine + clear + matt;
-    // None that is there below a tenth, so that no weight runs away.
+    // A part that exists has at least a tenth, so that no sample has a very large weight.
     const auto present = [](float part, float all) { return part <= 0 ? 0 : std::clamp(part / all, 0.1f, 1.f); };
     diffuse_share = present(matt, lower);
     gloss_share = shine + luminance(transmitted) > 0 ? std::max(0.1f, (shine + clear) / lower) : 0;
@@ -60,7 +60,7 @@ void LayeredBsdf::share_out(const Vec3f& V) {
     coat_share /= sum, sheen_share /= sum, diffuse_share /= sum, gloss_share /= sum;
 }
 
-/// Without the cosine.
+/// The value without the cosine.
 Bsdf::Value LayeredBsdf::evaluate_base(const Vec3f& V, const Vec3f& L) const {
     if (!own_gloss()) return base.evaluate(V, L);
     Bsdf::Value value;
@@ -84,7 +84,7 @@ Bsdf::Value LayeredBsdf::evaluate_base(const Vec3f& V, const Vec3f& L) const {
 Bsdf::Value LayeredBsdf::evaluate_cosine(const Vec3f& V, const Vec3f& L) const {
     Bsdf::Value value;
     if (dot(L, geometric_normal) < 0) {
-        // From behind: only what goes through.
+        // From behind there is only transmission.
         if (transmits && L.z < 0) value.specular = evaluate_base(V, L).specular * (-L.z * under());
         return value;
     }
@@ -120,7 +120,7 @@ float LayeredBsdf::pdf_solid_angle(const Vec3f& V, const Vec3f& L) const {
 
 Bsdf::Sample LayeredBsdf::sample(const Vec3f& V, UnitPoint u, float choice) const {
     Vec3f L;
-    // A draw that its own lobe calls invalid is none, even where another lobe would have it.
+    // A direction that is invalid for the lobe that drew it is rejected, even if another lobe could have drawn it.
     bool valid = true;
     switch (choose({coat_share, sheen_share, diffuse_share, gloss_share}, u.x)) {
         case 0: {

@@ -8,7 +8,7 @@
 namespace domelight {
 namespace {
 
-/// The layers of materials that `asked` is true of, each with a count.
+/// The layers for which `asked` is true, each with the number of materials that have it.
 template <typename Asked>
 std::vector<std::string> layers_left_out(const Scene& scene, const Asked& asked) {
     std::vector<std::string> left_out;
@@ -28,7 +28,7 @@ std::vector<std::string> layers_left_out(const Scene& scene, const Asked& asked)
 }  // namespace
 
 std::vector<std::string> not_rendered(const Scene& scene) {
-    // The two models that are not glTF's have no layers.
+    // The two material models that are not part of glTF have no layers.
     return layers_left_out(scene, [](const Material& m) { return (m.lambert || m.phong) && !m.unlit; });
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// A path tracer's samples on their way, and the room that a batch of them needs.
+// The paths that a path tracer is tracing, and the working memory for a batch of them.
 
 #include "domelight/sampling/environment_sampler.h"
 #include "domelight/sampling/sequences.h"
@@ -13,34 +13,34 @@
 
 namespace domelight {
 
-constexpr int k_path_batch = 256;  ///< samples that go through the steps together
+constexpr int k_path_batch = 256;  ///< the number of samples that are traced together
 
 inline float largest(const Vec3f& c) {
     return std::max({c.x, c.y, c.z});
 }
 
-/// What only paths in scenes with layered materials need.
+/// The state that paths need only in scenes with layered materials.
 struct PathLayers {
-    LayeredBsdf bsdf;     ///< of the surface, where it has any
+    LayeredBsdf bsdf;     ///< of the surface, if it has any
     bool inside = false;  ///< of a body
-    LayeredBsdf body;     ///< the surface where it was entered
+    LayeredBsdf body;     ///< the surface through which it was entered
 };
 
-/// One sample of a pixel on its way.
+/// The path of one sample of a pixel.
 struct Path {
     int pixel = 0;            ///< in the tile
     std::uint32_t index = 0;  ///< of the pixel's samples
     std::uint64_t key = 0;    ///< of the pixel
     Ray ray;
     Vec3f throughput{1, 1, 1};
-    float pdf_brdf = 0;  ///< with which the ray was drawn; 0: by the camera
+    float pdf_brdf = 0;  ///< of the ray's direction; 0: a camera ray
     Hit hit;
     SurfacePoint surface;
     Vec3f V;                       ///< local
-    PathLayers* layers = nullptr;  ///< null in scenes without
-    int passages = 0;              ///< refractions, and reflections inside bodies: they are no bounces
-    bool passing = false;          ///< the ray is another one
-    /// Of what arrives along the path: the share of the first surface's diffuse lobe.
+    PathLayers* layers = nullptr;  ///< null in scenes without layered materials
+    int passages = 0;              ///< refractions, and reflections inside bodies, which do not count as bounces
+    bool passing = false;          ///< the ray has crossed a boundary; this is not counted as a bounce
+    /// The share of the first surface's diffuse lobe in the light that arrives along the path.
     Vec3f diffuse_share;
 
     Vec3f radiance, direct, indirect, diffuse, specular;
@@ -50,7 +50,7 @@ struct Path {
     bool covered = false;
 
     UnitPoint point(int pair) const { return sobol_owen(derive_key(key, std::uint64_t(pair)), index); }
-    /// Light that arrives after `bounce` bounces, parted among the layers.
+    /// Adds light that arrives after `bounce` bounces to the layers of the picture.
     void add(const Vec3f& light, int bounce) {
         radiance = radiance + light;
         const bool first = bounce <= passages;
@@ -59,7 +59,7 @@ struct Path {
         diffuse = diffuse + below;
         specular = specular + (light - below);
     }
-    /// The same by lobe of the surface that it falls on; they matter at the first only.
+    /// The same for light by lobe of the surface that it reaches; the lobes matter only at the first surface.
     void add(const Vec3f& d, const Vec3f& s, int bounce) {
         if (bounce > 0) return add(d + s, bounce);
         radiance = radiance + d + s;
@@ -81,25 +81,25 @@ constexpr int chance_pair(int bounce) {
     return 3 + k_pairs_a_bounce * bounce;
 }
 
-/// Beyond any path's bounces, for what few surfaces ask for.
+/// Numbers beyond those for bounces, for features that few surfaces have.
 constexpr int shift_pair(int bounce) {
     return (1 << 20) + bounce;
 }
 
-/// Light that arrives at a path's surface unless something hides it.
+/// Light that arrives at a path's surface unless it is occluded.
 struct Shadow {
     Path* path;
     Ray ray;
-    Vec3f diffuse, specular;  ///< of it, as far as it is the first surface's
+    Vec3f diffuse, specular;  ///< the part of it that belongs to the first surface's lobes
 };
 
-/// A path whose last ray can only meet the environment.
+/// A path whose last ray can only reach the environment.
 struct Ending {
     Path* path;
     Vec3f direction;
 };
 
-/// Light samples of a batch.
+/// The light samples of a batch.
 struct LightBatch {
     LightBatch() : values(9 * k_path_batch), points(k_path_batch) {}
     LightSampleSpans spans(int n) {
@@ -117,7 +117,7 @@ struct LightBatch {
     std::vector<UnitPoint> points;
 };
 
-/// A tile's room to work in.
+/// The working memory of a tile.
 struct Workspace {
     Workspace() : hits(k_path_batch) { paths.reserve(k_path_batch); }
     std::vector<Path> paths;

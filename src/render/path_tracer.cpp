@@ -1,6 +1,6 @@
 // Path tracing with next-event estimation: at each surface one light direction from the environment and one from the
-// BRDF, weighted by the balance heuristic (Veach 1997, 9.2.2); the BRDF's ray goes on where light may bounce. Samples
-// of a tile go through each step together, so that the environment is drawn from in batches.
+// BRDF, weighted by the balance heuristic (Veach 1997, 9.2.2); the BRDF's ray continues the path if there are bounces
+// left. All samples of a tile take each step together, so that the environment is sampled in batches.
 
 #include "render/path_tracer.h"
 
@@ -17,8 +17,8 @@
 namespace domelight {
 namespace {
 
-constexpr int k_most_passages = 64;  ///< transparent surfaces a ray passes at most
-constexpr int k_roulette_from = 3;   ///< bounces before paths may end by chance
+constexpr int k_most_passages = 64;  ///< the largest number of transparent surfaces that a ray passes
+constexpr int k_roulette_from = 3;   ///< bounces before paths may be ended at random
 
 class Tracer final : public TileTracer {
   public:
@@ -68,7 +68,7 @@ class Tracer final : public TileTracer {
         p.ray = camera_.through(x, y, p.point(k_pixel_pair));
     }
 
-    /// The nearest surface that does not let the ray through.
+    /// The nearest surface that stops the ray.
     bool find(Path& p, int bounce, std::int64_t& rays) const {
         for (int passage = 0; passage < k_most_passages; ++passage) {
             p.hit = rays_.intersect(p.ray, bounce == 0);
@@ -77,7 +77,7 @@ class Tracer final : public TileTracer {
             if (!passages_) return true;
             const float opacity = opacity_at(scene_, p.hit);
             if (opacity >= 1) return true;
-            // By chance, with numbers of their own for each surface passed.
+            // At random, with a different number for each surface passed.
             if (opacity > 0 && unit_float(sobol_owen(derive_key(derive_key(p.key, std::uint64_t(chance_pair(bounce))),
                                                                 std::uint64_t(passage)),
                                                      p.index)
@@ -88,7 +88,7 @@ class Tracer final : public TileTracer {
         return false;
     }
 
-    /// How much of the light from a direction arrives.
+    /// The part of the light from a direction that arrives.
     float visibility(const SurfacePoint& s, const Vec3f& direction, std::int64_t& rays,
                      float distance = std::numeric_limits<float>::infinity()) const {
         if (!options_.occlusion) return 1;
@@ -109,7 +109,7 @@ class Tracer final : public TileTracer {
         return through;
     }
 
-    /// All paths of a batch to their ends.
+    /// Traces all paths of a batch to their ends.
     std::int64_t run(Workspace& room) const {
         std::int64_t rays = 0;
         std::vector<Path*> alive, next;
@@ -126,7 +126,7 @@ class Tracer final : public TileTracer {
             }
             escape(room, bounce - 1);
             std::swap(alive, next);
-            // A light direction for each, all at once.
+            // Draws a light direction for each path, all at once.
             const bool draw = options_.strategy != LightStrategy::brdf && !alive.empty();
             const int n = int(alive.size());
             LightBatch& light = room.light;
@@ -150,7 +150,7 @@ class Tracer final : public TileTracer {
         return rays;
     }
 
-    /// What the paths' rays meet.
+    /// Finds the surfaces that the paths' rays hit.
     void find(std::span<Path* const> paths, int bounce, Workspace& room, std::int64_t& rays) const {
         if (passages_ || bounce > 0) {
             for (Path* p : paths)
@@ -176,7 +176,7 @@ class Tracer final : public TileTracer {
         }
     }
 
-    /// Traces the shadow rays that wait, and adds the light that nothing hides.
+    /// Traces the shadow rays that are waiting, and adds the light that is not occluded.
     void settle(Workspace& room, int bounce, std::int64_t& rays) const {
         in_packets(
             room.shadows, [](const Shadow& s) -> const Ray& { return s.ray; },
@@ -191,7 +191,7 @@ class Tracer final : public TileTracer {
         room.shadows.clear();
     }
 
-    /// Adds light to a path, unless something hides it: now, or when its shadow ray is traced with the others.
+    /// Adds light to a path unless it is occluded: either now, or when its shadow ray is traced with the others.
     void add_if_seen(Path& p, const Vec3f& direction, const Vec3f& diffuse, const Vec3f& specular, int bounce,
                      Workspace& room, std::int64_t& rays) const {
         const SurfacePoint& s = p.surface;
@@ -202,13 +202,13 @@ class Tracer final : public TileTracer {
         if (const float seen = visibility(s, direction, rays); seen > 0) p.add(diffuse * seen, specular * seen, bounce);
     }
 
-    /// At a surface: adds what it emits. Whether there is one to light.
+    /// At a surface: adds its emission. Returns whether there is a surface to be lit.
     bool arrive(Path& p, int bounce) const {
         if (p.layers) {
             const UnitPoint shift = options_.multiple_scattering ? p.point(shift_pair(bounce)) : UnitPoint{};
             p.surface = surface_at(scene_, p.hit, p.ray.origin, p.ray.direction, options_.multiple_scattering,
                                    &p.layers->bsdf, shift);
-            // Without shadows there is no side that light cannot come from.
+            // Without shadows, light can come from every side.
             if (!options_.occlusion) p.layers->bsdf.geometric_normal = {0, 0, 1};
         } else {
             p.surface = surface_at(scene_, p.hit, p.ray.origin, p.ray.direction, options_.multiple_scattering);
@@ -234,7 +234,7 @@ class Tracer final : public TileTracer {
         return !s.unlit;
     }
 
-    /// Rays that met nothing: the background, or the environment as the BRDF's half of direct light.
+    /// Rays that hit nothing: they add the background, or the environment as the BRDF's half of direct light.
     void escape(Workspace& room, int bounce) const {
         if (bounce < 0) {
             if (options_.background == Background::environment) {
@@ -256,8 +256,8 @@ class Tracer final : public TileTracer {
         room.endings.clear();
     }
 
-    /// The ends of paths: only the environment can still be met, and whether it is takes less than finding what hides
-    /// it.
+    /// The last rays of paths: they can only reach the environment, so testing for any occluder is enough, which is
+    /// faster than finding the nearest one.
     void end(Workspace& room, int bounce, std::int64_t& rays) const {
         look_up(room, options_.strategy == LightStrategy::mis);
         for (std::size_t i = 0; i < room.endings.size(); ++i) {
@@ -271,7 +271,7 @@ class Tracer final : public TileTracer {
         settle(room, bounce, rays);
     }
 
-    /// The environment where the endings went, into room.light.
+    /// Looks up the environment in the directions of the last rays, into room.light.
     void look_up(Workspace& room, bool densities) const {
         LightSampleSpans spans = room.light.spans(int(room.endings.size()));
         for (std::size_t i = 0; i < room.endings.size(); ++i) {
@@ -282,7 +282,7 @@ class Tracer final : public TileTracer {
         sampler_.look_up(spans);
     }
 
-    /// Light from where the BRDF's ray went, by the balance heuristic.
+    /// Light from the direction of the BRDF's ray, weighted by the balance heuristic.
     Vec3f weighted(const Vec3f& radiance, float pdf_light, float pdf_brdf) const {
         return options_.strategy == LightStrategy::brdf ? radiance : radiance * (pdf_brdf / (pdf_brdf + pdf_light));
     }
@@ -300,7 +300,7 @@ class Tracer final : public TileTracer {
         add_if_seen(p, direction, product(f.diffuse, light), product(f.specular, light), bounce, room, rays);
     }
 
-    /// A light of the scene's own.
+    /// A light of the scene.
     void light_up(Path& p, const Frame<float>& frame, const PunctualLight& light, int bounce,
                   std::int64_t& rays) const {
         const auto [direction, distance, strength] = arrival_at(light, p.surface.position);
@@ -314,18 +314,18 @@ class Tracer final : public TileTracer {
         p.add(product(f.diffuse, arriving), product(f.specular, arriving), bounce);
     }
 
-    /// Light that reaches the inside of a body's surface, when it can only have come through a sheet: no other side
-    /// hides it, or what hides is left out.
+    /// Light that reaches the inside of a body's surface although the body has no other side in this direction, or
+    /// occlusion is off: it can then only have come through a sheet.
     static Vec3f through_sheet(const SurfacePoint& s, const Vec3f& L, const Vec3f& light) {
         if (!s.layers || !s.layers->volume || !s.front || L.z > 0) return light;
         return product(light, s.layers->through(s.layers->thickness));
     }
 
-    /// Sends the path on by the BRDF. Whether there is more to come of it.
+    /// Continues the path by sampling the BRDF. Returns whether the path goes on.
     bool scatter(Path& p, const Frame<float>& frame, int bounce, Workspace& room) const {
         const SurfacePoint& s = p.surface;
         bool last = bounce - p.passages >= options_.bounces || !options_.occlusion;
-        // Nothing beyond, and no light that way either.
+        // Nothing follows, and no light comes from there either.
         if (last && options_.strategy == LightStrategy::environment && !s.layers) return false;
         const UnitPoint u = p.point(brdf_pair(bounce));
         const Bsdf::Sample b =
@@ -359,8 +359,8 @@ class Tracer final : public TileTracer {
         return true;
     }
 
-    /// Keeps track of which body the path is in. Whether it goes on without this being a bounce: through a surface, or
-    /// staying inside a body, while the allowance lasts.
+    /// Keeps track of the body that the path is in. Returns whether the path continues without counting a bounce:
+    /// through a surface, or inside a body, up to the allowed number.
     bool pass_boundary(Path& p, bool behind) const {
         const LayeredBsdf& layers = *p.surface.layers;
         const bool passage = behind || (layers.volume && !p.surface.front);
@@ -372,7 +372,7 @@ class Tracer final : public TileTracer {
         return p.passing;
     }
 
-    /// Counts the passage that a path's ray was, and what the body that it crossed takes from it (Beer's law).
+    /// Counts the passage of a path's ray, and applies the absorption of the body that it crossed (Beer's law).
     static void travel(Path& p) {
         p.passages += p.passing;
         p.passing = false;
@@ -381,7 +381,7 @@ class Tracer final : public TileTracer {
         else if (p.layers->inside)
             p.throughput = product(p.throughput, p.layers->body.through(p.hit.distance));
     }
-    /// A body of which no other side was found is a sheet of its stated thickness.
+    /// A body whose other side was not found is a sheet of its stated thickness.
     static void leave(Path& p) {
         if (p.layers->inside) p.throughput = product(p.throughput, p.layers->body.through(p.layers->body.thickness));
     }

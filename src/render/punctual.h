@@ -11,11 +11,12 @@ namespace domelight {
 struct PunctualArrival {
     Vec3f direction;  ///< to the light, unit length
     float distance = std::numeric_limits<float>::infinity();
-    float strength = 0;  ///< irradiance perpendicular to it is `strength` times the light's intensity; 0: none arrives
+    float strength = 0;  ///< the irradiance perpendicular to it is `strength` times the light's intensity; 0: no light
+                         ///< arrives
 };
 
-/// KHR_lights_punctual: inverse square, the range's fall to nothing ("Range property"), a spot's edge ("Inner and outer
-/// cone angles").
+/// KHR_lights_punctual: the inverse-square law, the falloff to 0 at the range ("Range property"), and the edge of a
+/// spot light ("Inner and outer cone angles").
 inline PunctualArrival arrival_at(const PunctualLight& light, const Vec3f& position) {
     PunctualArrival a;
     if (light.kind == PunctualLight::Kind::directional) {

@@ -15,7 +15,7 @@ bool count_bytes(void* sum, ssize_t bytes, bool) {
     return true;
 }
 
-/// One mesh's triangles; positions by way of `place`.
+/// The triangles of one mesh, with positions transformed by `place`.
 template <typename Place>
 RTCGeometry make_triangles(RTCDevice device, const Mesh& mesh, const Place& place) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -76,7 +76,7 @@ Result<RayScene> RayScene::build(Scene scene) {
         if (mesh.indices.empty()) continue;
         RTCGeometry geometry;
         if (uses[instance.mesh] == 1) {
-            // A mesh that stands once goes into the world itself: one level less to walk.
+            // A mesh with one instance is added to the world directly, which saves a level of traversal.
             geometry = make_triangles(impl.device, mesh, [&](const Vec3f& p) { return instance.to_world.point(p); });
         } else {
             RTCScene& object = impl.objects[instance.mesh];
@@ -119,7 +119,8 @@ Hit RayScene::Impl::hit_of(unsigned geometry, unsigned instance_id, unsigned tri
     const int instance = instance_of[instanced ? instance_id : geometry];
     const Affine& m = scene.instances[instance].to_world;
     Vec3f normal = instanced ? m.normal(Ng) : Ng;
-    // A mirror turns triangles round (as corners and by their cofactors alike); glTF's front stays the front.
+    // A mirroring transform reverses the orientation of triangles (for corners as for cofactors), but glTF's front
+    // stays the front.
     if (m.determinant() < 0) normal = -normal;
     return {distance, instance, int(triangle), u, v, normal};
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Embree, behind a few functions.
+// A wrapper of Embree with a few functions.
 
 #include "domelight/render/render.h"
 
@@ -10,13 +10,13 @@
 
 namespace domelight {
 
-/// A point of a surface that a ray met.
+/// The point where a ray hit a surface.
 struct Hit {
     float distance = 0;
     int instance = -1;  ///< -1: none
     int triangle = 0;
     float u = 0, v = 0;      ///< barycentric: (1 - u - v) a + u b + v c
-    Vec3f geometric_normal;  ///< in the world, not of unit length, to the front
+    Vec3f geometric_normal;  ///< in the world, not of unit length, towards the front
 };
 
 struct Ray {
@@ -24,7 +24,7 @@ struct Ray {
     float near = 0;
 };
 
-/// Lets a ray that met a surface go on behind it.
+/// Continues a ray behind the surface that it hit.
 inline void pass(Ray& ray, const Hit& hit) {
     ray.near = std::nextafter(hit.distance + 4e-6f * (1 + hit.distance), 1e30f);
 }
@@ -40,13 +40,13 @@ struct RayScene::Impl {
     std::size_t bytes = 0;
 
     Hit intersect(const Ray& ray, bool coherent) const;
-    /// Whether anything lies between.
+    /// Whether anything lies on the ray.
     bool occluded(const Ray& ray) const;
 
-    /// Up to k_packet rays that go much the same way, together: several times as fast for those of a camera.
+    /// Traces up to k_packet rays of similar directions together, which is several times as fast for camera rays.
     static constexpr int k_packet = 16;
     void intersect(std::span<const Ray* const> rays, std::span<Hit> hits) const;
-    /// Bit i: whether anything hides ray i.
+    /// Bit i: whether ray i is occluded.
     std::uint32_t occluded(std::span<const Ray* const> rays) const;
 
   private:

@@ -1,4 +1,4 @@
-// The reference picture: how many samples each pixel gets, in rounds.
+// The reference picture: decides, in rounds, how many samples each pixel gets.
 
 #include "domelight/base/parallel.h"
 
@@ -52,7 +52,7 @@ Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSa
     StatusSums status(film);
     int rounds = 0;  // that were completed
 
-    // One round: wanted(x, y) more samples for each pixel.
+    // One round: adds wanted(x, y) samples to each pixel.
     const auto round = [&](const auto& wanted, double from, double to) {
         if (rounds > 0 && o.checkpoint && (!o.checkpoint_wanted || o.checkpoint_wanted())) o.checkpoint(picture());
         tiles_done = 0;
@@ -72,11 +72,12 @@ Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSa
         });
         if (!cancelled) ++rounds;
     };
-    // A round adds no more than this, so that `progress` is asked now and then; with checkpoints, that little is lost.
+    // A round adds at most this many samples, so that `progress` is called often enough; with checkpoints, this is also
+    // the most that can be lost.
     const auto longest_round = [&](int total) { return o.checkpoint ? std::clamp(total / 4, 8, 1024) : 1024; };
 
     if (o.seconds > 0) {
-        // Rounds that double, as long as the next one is likely to fit.
+        // Rounds double as long as the next one is likely to end in time.
         int total = 0;
         for (int add = 1; !cancelled; add = std::max(1, total)) {
             const double spent = seconds_since(start), left = o.seconds - spent;
@@ -118,7 +119,7 @@ Result<RenderResult> render_reference(const RayScene& scene, const EnvironmentSa
         }
     }
     if (cancelled) {
-        // Every pixel has samples, some tiles more of them: a picture too.
+        // Every pixel has samples, even though some tiles have more: this is a complete picture.
         if (rounds > 0 && o.checkpoint) o.checkpoint(picture());
         return Error{"cancelled", "", ""};
     }

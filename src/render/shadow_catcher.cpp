@@ -1,4 +1,4 @@
-// The ground of a photograph under a scene that is not in it: only the shadow that the scene throws there is drawn.
+// The ground of a photograph under a scene: only the shadow that the scene casts on it is drawn.
 
 #include "domelight/image/colour.h"
 #include "domelight/base/parallel.h"
@@ -20,11 +20,11 @@ namespace {
 constexpr int k_most_passages = 64;
 constexpr int k_pixel_pair = 0, k_light_pair = 1, k_cosine_pair = 2;
 
-/// What one pixel's samples add up to.
+/// The sums over one pixel's samples.
 struct GroundSums {
     Vec3d with, without;     ///< irradiance on the ground
-    Vec3d ground, beyond;    ///< background behind the ground, and where the ray meets none
-    double ground_part = 0;  ///< of the samples, transparent surfaces' share taken off
+    Vec3d ground, beyond;    ///< background behind the ground, and where the ray misses it
+    double ground_part = 0;  ///< over the samples, without the share of transparent surfaces
 };
 
 class ShadowTracer {
@@ -40,7 +40,7 @@ class ShadowTracer {
           camera_(options.camera, options.width, options.height),
           passages_(has_passages(scene_)) {}
 
-    /// The same camera samples as render_reference's and render_shaded's, so that edges fit.
+    /// The same camera samples as in render_reference and render_shaded, so that edges match.
     void sample(int x, int y, std::uint32_t index, GroundSums& sums) const {
         const std::uint64_t key =
             derive_key(options_.seed, std::uint64_t(y) * std::uint64_t(options_.width) + std::uint64_t(x));
@@ -50,7 +50,7 @@ class ShadowTracer {
         if (rest <= 0) return;
         const Vec3d behind = Vec3d(background_radiance(options_, sampler_, ray.direction)) * double(rest);
         const float distance = (height_ - ray.origin.y) / ray.direction.y;
-        // From below, the ground is not there.
+        // Seen from below, there is no ground.
         if (!(distance > 0) || !(ray.direction.y < 0) || !std::isfinite(distance)) {
             sums.beyond = sums.beyond + behind;
             return;
@@ -62,7 +62,8 @@ class ShadowTracer {
     }
 
   private:
-    /// E with and without the scene at a point of the ground, one sample of each strategy by the balance heuristic.
+    /// E with and without the scene at a point of the ground: one sample of each strategy, combined by the balance
+    /// heuristic.
     void light_ground(const Vec3f& p, UnitPoint light_point, UnitPoint cosine_point, float weight,
                       GroundSums& sums) const {
         const auto add = [&](const Vec3f& direction, const Vec3f& light, float distance) {

@@ -20,14 +20,15 @@ struct Cap {
 
 /// Finds sources in two steps.
 ///
-/// 1. Cores. From the brightest texel down, each one not yet seen is a peak: the texels connected to it that are
-/// brighter than peak / contrast.
-///    Where these stay within the largest diameter and hold no brighter peak, they are a core. Else all of them are
-///    done with: whatever peak lies among them is lower, so that its own level set holds this one and fails alike. Each
-///    texel is thus visited once.
-/// 2. Growth. Cores that are close become one source. Its level then falls by steps, and the texels that are connected
-/// to it above the level are
-///    its region, until that grows too wide, meets another source or comes near the luminance of the surroundings.
+// clang-format off
+/// 1. Cores. From the brightest texel down, each one not yet visited is a peak. The texels connected to it that are
+///    brighter than peak / contrast are a core if they stay within the largest diameter and contain no brighter peak.
+///    Otherwise none of them can belong to a core: any peak among them is lower, so its own set contains this one and
+///    fails too. Each texel is thus visited once.
+/// 2. Growth. Cores that are close become one source. Its level is then lowered in steps, and the texels connected to
+///    it above the level are its region, until that becomes too wide, touches another source or comes near the
+///    luminance of the surroundings.
+// clang-format on
 class Finder {
   public:
     Finder(const TexelSphere& sphere, std::span<const float> luminance, const LightExtractionOptions& options)
@@ -113,7 +114,7 @@ class Finder {
                            [&](std::int64_t t) { return cap.holds(sphere_.direction(t)); });
     }
 
-    /// The strongest core first, each joins the first group close by or founds one.
+    /// The strongest core first: each joins the first group close by, or starts a new one.
     void group_cores() {
         std::vector<int> order(cores_.size());
         for (std::size_t i = 0; i < order.size(); ++i) order[i] = int(i);
@@ -139,7 +140,7 @@ class Finder {
             for (const std::int64_t t : groups_[g].texels) owner_[t] = int(g);
     }
 
-    /// Luminance around: on rings between one and a half and two and a half times `reach` (radians) away.
+    /// The luminance of the surroundings: on rings at one and a half to two and a half times `reach` (radians).
     struct Surroundings {
         double median = 0, mean = 0;
     };
@@ -162,8 +163,8 @@ class Finder {
         return {values[values.size() / 2], sum / weight};
     }
 
-    /// The texels connected to a group's own that are brighter than `level`; none where they reach too far or another
-    /// source.
+    /// The texels brighter than `level` that are connected to those of a group; none if they extend too far or touch
+    /// another source.
     std::optional<Texels> flood(int number, float level, double reach) const {
         const Group& group = groups_[number];
         const Cap cap(group.axis, reach + margin_);
@@ -192,7 +193,8 @@ class Finder {
 
     BrightRegion grow(int number) {
         Group& group = groups_[number];
-        // A source's skirt (halo, blur) may reach as far again as its core, and the largest diameter in any case.
+        // A source's skirt (halo, blur) may extend as far beyond its core as the core is wide, and to the largest
+        // diameter in any case.
         double core = 1;
         for (const std::int64_t t : group.texels) core = std::min(core, dot(group.axis, sphere_.direction(t)));
         const double reach = std::max(0.5 * diameter_, 2 * std::acos(std::max(core, -1.0)));
@@ -211,7 +213,8 @@ class Finder {
         BrightRegion region;
         region.peak = group.peak;
         region.rim = reached;
-        // One pane of a skylight falls to the dark of its frame, but is no brighter than the panes around.
+        // The luminance of one pane of a skylight drops at its dark frame, but the pane is no brighter than the panes
+        // around it.
         region.stands_out = core_mean >= options_.least_contrast * around.mean;
         for (const std::int64_t t : group.texels)
             region.power += std::max(0.0, luminance_[t] - reached) * sphere_.solid_angle(t);

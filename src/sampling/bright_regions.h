@@ -10,7 +10,7 @@
 
 namespace domelight {
 
-/// Texels that make up a small bright source, and the luminance that none around them exceeds.
+/// The texels of a small bright source, and the luminance that no texel around them exceeds.
 struct BrightRegion {
     std::vector<std::int64_t> texels;
     double peak = 0;         ///< luminance
@@ -21,7 +21,7 @@ struct BrightRegion {
 
 struct BrightRegions {
     std::vector<BrightRegion> regions;  ///< the largest power first; no two share a texel
-    int sources = 0;                    ///< how many there were before close ones were made one
+    int sources = 0;                    ///< their number before close ones were merged
 };
 
 /// Finds the small bright sources.

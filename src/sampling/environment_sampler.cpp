@@ -16,7 +16,7 @@
 namespace domelight {
 namespace {
 
-/// Below it the sine of the colatitude counts as this: densities stay finite at the poles themselves.
+/// The least value used for the sine of the colatitude, so that densities stay finite at the poles.
 constexpr float k_least_sine = 1e-7f;
 constexpr float k_uniform_density = float(1 / (4 * k_pi));
 
@@ -106,7 +106,7 @@ Result<EnvironmentSampler> EnvironmentSampler::build(EnvironmentSampler sampler)
     o.uniform_share = std::clamp(o.uniform_share, 0.0, 1.0);
     if (o.compensate) {
         const Luminance luminance = survey(image, o.weight, o.threads);
-        // Nothing stands out of a constant environment: what rounding left would be drawn alone.
+        // Nothing is brighter than the mean of a constant environment: only rounding errors would be sampled.
         if (luminance.largest > luminance.mean * 1.0001) sampler.compensation_ = luminance.mean;
     }
     auto distribution = make_distribution(weights_of(image, o.weight, sampler.compensation_), o.method, o.threads);
@@ -180,8 +180,8 @@ LightSample EnvironmentSampler::uniform(UnitPoint point) const {
 
 LightSample EnvironmentSampler::sample(UnitPoint point) const {
     if (const double share = options_.uniform_share; share > 0) {
-        // One number serves both: the lower part of its range chooses the uniform density, and either part is stretched
-        // to the whole again.
+        // One number serves both: the lower part of its range chooses the uniform density, and either part is then
+        // rescaled to [0, 1).
         const double x = unit_double(point.x);
         if (x < share || share >= 1) return uniform({unit_fixed(x / share), point.y});
         point.x = unit_fixed((x - share) / (1 - share));
@@ -204,7 +204,7 @@ void EnvironmentSampler::sample(std::span<const UnitPoint> points, const LightSa
     }
     const simd::LightImage image{image_.data, image_.stride, image_.width, image_.height, distribution_->continuous()};
     const auto turn = floats_of(world_to_source_.transposed());
-    constexpr std::size_t block = 512;  // what lies between the two steps stays in the nearest cache
+    constexpr std::size_t block = 512;  // the data between the two steps stays in the first-level cache
     for (std::size_t i = 0; i < points.size(); i += block) {
         const std::size_t n = std::min(block, points.size() - i);
         const auto part = [&](std::span<float> s) { return s.subspan(i, n); };

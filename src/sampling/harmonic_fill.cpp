@@ -16,8 +16,7 @@ struct Link {
     double weight;
 };
 
-/// Both horizontal neighbours, then the one above and the one below where there is one: no edge is shared across a
-/// pole.
+/// Both horizontal neighbours, then those above and below if they exist: no edge is shared across a pole.
 int links(const TexelSphere& sphere, std::int64_t texel, std::array<Link, 4>& out) {
     const int w = sphere.width(), h = sphere.height(), x = sphere.column(texel), y = sphere.row(texel);
     const double column = 2 * k_pi / w, row = k_pi / h, beside = row / (sphere.sine(y) * column);
@@ -93,8 +92,8 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 }
 
 /// Conjugate gradients preconditioned by the diagonal (Shewchuk 1994, section B3), from the middle of the rim's range
-/// to a millionth of the residual there: what is left is far below what can be seen, and the power that the fill does
-/// not take is counted as it is.
+/// to a millionth of the residual there: the remaining error is invisible, and the balance of power uses the result as
+/// it is.
 std::vector<double> solve(const Laplace& system, int channel) {
     const std::size_t n = system.texels.size();
     std::vector<double> u(n, 0.5 * (system.least[channel] + system.largest[channel])), r(n), z(n), p(n), q(n);
@@ -106,7 +105,7 @@ std::vector<double> solve(const Laplace& system, int channel) {
         goal += system.rim_sum[i][channel] * system.rim_sum[i][channel] / system.diagonal[i];
     }
     double rz = dot(r, z);
-    goal = 1e-12 * rz + 1e-26 * goal;  // of the difference to the start; where that is the solution, of rounding
+    goal = 1e-12 * rz + 1e-26 * goal;  // of the difference to the start, or of rounding if the start is the solution
     for (int step = 0; step < 4000 && rz > goal; ++step) {
         system.apply(p, q);
         const double pq = dot(p, q);
@@ -128,7 +127,8 @@ void fill_part(const TexelSphere& sphere, const Laplace& system, ImageView<float
     if (!system.has_rim) return;
     for (int c = 0; c < 3; ++c) {
         const std::vector<double> u = solve(system, c);
-        for (std::size_t i = 0; i < u.size(); ++i)  // the solution keeps to the rim's range, the iteration only nearly
+        for (std::size_t i = 0; i < u.size(); ++i)  // the solution lies within the rim's range, the iteration only
+                                                    // nearly
             image.at(sphere.column(system.texels[i]), sphere.row(system.texels[i]))[c] =
                 float(std::clamp(u[i], system.least[c], system.largest[c]));
     }
@@ -137,7 +137,7 @@ void fill_part(const TexelSphere& sphere, const Laplace& system, ImageView<float
 }  // namespace
 
 void harmonic_fill(const TexelSphere& sphere, std::span<const std::int64_t> region, ImageView<float> image) {
-    // Part by part: a bright one must not decide when a dim one is done.
+    // Each part is solved by itself, so that a bright part does not determine the accuracy of a dim one.
     Numbers waiting;
     for (const std::int64_t texel : region) waiting.emplace(texel, 0);
     for (const std::int64_t start : region) {

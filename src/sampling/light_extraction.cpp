@@ -44,7 +44,7 @@ ImageF copy(ImageView<const float> image) {
     return out;
 }
 
-/// Radiance times solid angle over all texels; summed by rows so that threads do not show.
+/// Radiance times solid angle over all texels, summed by rows so that the result does not depend on threads.
 Vec3d power_of(ImageView<const float> image, int threads) {
     std::vector<Vec3d> rows(image.height);
     parallel_ranges(image.height, 16, threads, [&](int begin, int end) {
@@ -56,7 +56,7 @@ Vec3d power_of(ImageView<const float> image, int threads) {
     return sum;
 }
 
-/// What was taken from one texel.
+/// The light taken from one texel.
 struct Piece {
     Vec3d direction;      ///< source frame
     Vec3d power;          ///< radiance times solid angle
@@ -125,8 +125,8 @@ double brightest_filled(const TexelSphere& sphere, const BrightRegion& region, I
     return most;
 }
 
-/// The lights go: the continued surroundings take their place. Where a light would hold less than nothing of a channel
-/// (a red lamp on a blue wall), the lower of the two stays in each texel of that channel.
+/// The lights are replaced by their continued surroundings. If a light would be negative in a channel (a red lamp on a
+/// blue wall), each texel of that channel keeps the lower of the two values.
 void take_out(const TexelSphere& sphere, const std::vector<BrightRegion>& regions, ImageView<const float> before,
               ImageView<float> remainder) {
     std::vector<std::int64_t> all;
@@ -173,7 +173,7 @@ ExtractedLight describe(ImageView<const float> before, ImageView<const float> af
     return light;
 }
 
-/// Which lights fulfil the options; of those as many as are wanted, the strongest.
+/// Selects the lights that satisfy the options, and of those the strongest, as many as are wanted.
 std::vector<char> which_hold(const std::vector<ExtractedLight>& lights, const LightExtractionOptions& options) {
     std::vector<std::size_t> fine;
     for (std::size_t i = 0; i < lights.size(); ++i)
@@ -232,15 +232,16 @@ Result<LightExtraction> extract_lights(ImageView<const float> image, const Light
         BrightRegions found = find_bright_regions(sphere, grey, total / (4 * k_pi), options);
         report.candidates = found.sources;
         for (BrightRegion& region : found.regions)
-            // With a margin: the surroundings may turn out darker than the level down to which the source was followed.
+            // With a margin, because the surroundings may be darker than the level down to which the source was
+            // followed.
             if (region.stands_out && region.power >= 0.25 * options.least_share * total &&
                 kept.size() < 2 * std::size_t(options.max_lights) + 8)
                 kept.push_back(std::move(region));
             else
                 ++report.left_out;
     }
-    // What the rim turns out to be decides: a source beside brighter things may hold less than its level promised, or
-    // not stand out. What is put back may be another's rim, hence again.
+    // The final rim decides: a source beside brighter ones may have less light than its level suggested, or too little
+    // contrast. A source that is put back may be part of another one's rim, so this is repeated.
     for (bool all_hold = false; !all_hold;) {
         take_out(sphere, kept, image, out.remainder.view());
         std::vector<ExtractedLight> lights;

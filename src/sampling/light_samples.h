@@ -19,8 +19,8 @@ void complete_light_samples(const LightImage& image, const std::array<float, 9>&
                             const float* u, const float* v, float* pdf, const std::array<float*, 3>& direction,
                             const std::array<float*, 3>& radiance);
 
-/// The other way round: the points that directions (of any length but 0) fall on, turned by the rows of `to_source`,
-/// the sine of their polar angle, and the radiance there. u, v in [0, 1), within 1e-7.
+/// The inverse: the points of directions (of any length but 0), turned by the rows of `to_source`, the sine of their
+/// polar angle, and the radiance there. u, v in [0, 1), within 1e-7.
 void look_up_light_samples(const LightImage& image, const std::array<float, 9>& to_source, int count,
                            const std::array<const float*, 3>& direction, float* u, float* v, float* sine,
                            const std::array<float*, 3>& radiance);

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cassert>
 
-// L_o = int f(V, L) L_i(L) NdotL dL over the hemisphere. A strategy with density p estimates it by the mean of f L_i
+// L_o = ∫ f(V, L) L_i(L) NdotL dL over the hemisphere. A strategy with density p estimates it by the mean of f L_i
 // NdotL / p.
 
 namespace domelight {
@@ -68,8 +68,8 @@ Estimate riemann(const Local& local, const EnvironmentSampler& sampler, int samp
     return {sum, {}, k * j};
 }
 
-/// One strategy alone: the mean of integrand / density. draw(point) gives a local direction with its density; where
-/// that is 0 the sample counts and adds nothing.
+/// One strategy alone: the mean of integrand / density. draw(point) gives a local direction with its density; if the
+/// density is 0 the sample counts and adds nothing.
 template <typename Draw>
 Estimate one_strategy(const Local& local, const EstimateOptions& o, const Draw& draw) {
     Mean mean;
@@ -86,8 +86,8 @@ struct Drawn {
     float pdf;
 };
 
-/// A draw from the BRDF and one from the environment, each weighted by how much likelier its own strategy was to give
-/// it (Veach 1997, eq. 9.8 and 9.13): sum of w f L cos / p.
+/// A draw from the BRDF and one from the environment, each weighted by a multiple importance sampling heuristic (Veach
+/// 1997, eq. 9.8 and 9.13): sum of w f L cos / p.
 Estimate both(const Surface& surface, const Local& local, const EnvironmentSampler& sampler, bool power,
               const EstimateOptions& o) {
     const auto weight = [power](double mine, double other) {
@@ -113,7 +113,7 @@ Estimate both(const Surface& surface, const Local& local, const EnvironmentSampl
     return mean.estimate(2 * pairs);
 }
 
-/// Resampling: the integrand's own luminance is the target, so what varies is colour and the estimate of the density.
+/// Resampling: the target is the luminance of the integrand, so only the colour and the estimate of the density vary.
 Estimate product(const Local& local, const EnvironmentSampler& sampler, const EstimateOptions& o) {
     const int candidates = std::clamp(o.candidates, 1, 64), groups = std::max(1, o.samples / candidates);
     std::vector<UnitPoint> points(candidates);

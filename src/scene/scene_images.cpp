@@ -24,7 +24,7 @@ Result<void> load_scene_images(const std::vector<SceneImageSource>& sources, Sce
         for (const SceneTexture* texture : textures_of(material))
             if (*texture) used[std::size_t(texture->image)] = true;
 
-    // Files are opened and sizes added up in order, so that what is refused does not depend on threads.
+    // Files are opened and sizes added up in order, so that a refusal does not depend on the number of threads.
     std::vector<std::shared_ptr<const FileBytes>> files(sources.size());
     for (std::size_t i = 0; i < sources.size(); ++i) {
         if (!used[i]) continue;

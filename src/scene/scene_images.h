@@ -13,7 +13,7 @@
 
 namespace domelight {
 
-/// An image file of a scene, opened when something uses it.
+/// An image file of a scene, opened when it is used.
 struct SceneImageSource {
     std::string name;
     std::function<Result<std::shared_ptr<const FileBytes>>()> open;

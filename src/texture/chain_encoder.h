@@ -13,8 +13,8 @@
 namespace domelight {
 
 /// Encodes the levels of a chain piece by piece, in any order and on any number of threads, so that texels can be
-/// stored while they are still in the processor's cache. The levels must stay as they are. A row is one of texels, or
-/// of blocks where the encoding has them.
+/// stored while they are still in the processor's cache. The levels must not change meanwhile. A row is a row of
+/// texels, or of blocks if the encoding has them.
 class ChainEncoder {
   public:
     /// `levels`: at least one. For a texture each must have half the size of the one before, rounded down.
@@ -34,7 +34,7 @@ class ChainEncoder {
     /// count * row_bytes(level) bytes. Different rows may be encoded at the same time.
     void encode(int level, int first, int count, std::uint8_t* out);
 
-    /// What became of each level, once all its rows have been encoded. The same bits whatever the pieces were.
+    /// The report of each level, once all its rows have been encoded. Its bits do not depend on the pieces.
     std::vector<EncodingReport> reports() const;
 
   private:
@@ -56,7 +56,7 @@ class ChainEncoder {
     std::vector<Level> levels_;
 };
 
-/// What storing levels as RGBE (.hdr pictures) does to them, one report a level.
+/// The errors of levels stored as RGBE (.hdr pictures), one report for each level.
 std::vector<EncodingReport> rgbe_reports(std::span<const FilteredMap> levels);
 
 }  // namespace domelight

@@ -1,4 +1,4 @@
-// Filtered levels to texture levels, with a report of what the encoding lost.
+// Converts filtered levels to texture levels, with a report of the encoding's errors.
 #include "domelight/base/parallel.h"
 #include "domelight/texture/texture.h"
 
@@ -13,7 +13,7 @@ namespace domelight {
 
 namespace {
 
-/// Rows of texels that one task encodes.
+/// The number of rows of texels that one task encodes.
 constexpr int k_rows_a_piece = 96;
 
 }  // namespace

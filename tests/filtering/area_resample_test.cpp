@@ -52,7 +52,7 @@ Vec3d bilinear(ImageView<const float> image, UV uv) {
            (texel(i, j + 1) * (1 - s) + texel(i + 1, j + 1) * s) * t;
 }
 
-/// int g d omega over the sphere: the integral of each row's tent against sin theta in closed form.
+/// ∫ g dω over the sphere: the integral of each row's tent against sin theta in closed form.
 Vec3d total_light(ImageView<const float> image) {
     const double h = k_pi / image.height;
     Vec3d sum;
@@ -261,7 +261,7 @@ Cubemap random_cube(int size) {
     return cube;
 }
 
-/// int g d omega over the sphere by Gauss-Legendre (2 x 2) on a fine grid that contains the lines of texel centres.
+/// ∫ g dω over the sphere by Gauss-Legendre (2 x 2) on a fine grid that contains the lines of texel centres.
 Vec3d total_light(const Cubemap& source) {
     const area::CubeIntegrator integrator(source);
     const int cells = 2 * source.size() * std::max(1, 64 / source.size());

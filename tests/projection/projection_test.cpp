@@ -57,7 +57,7 @@ std::vector<Vec3d> probes() {
     return list;
 }
 
-/// |a x b| of the derivatives by central differences: d omega / (du dv) of a map of unit directions.
+/// |a x b| of the derivatives by central differences: dω / (du dv) of a map of unit directions.
 template <typename Direction>
 double measured_jacobian(UV uv, const Direction& direction) {
     const double e = 1e-5;

@@ -19,7 +19,7 @@ inline Vec3d hemisphere_direction(double theta, double phi) {
     return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
-/// int g(direction) d omega over the patch by 8 x 8 Gauss-Legendre nodes.
+/// ∫ g(direction) dω over the patch by 8 x 8 Gauss-Legendre nodes.
 template <typename G>
 double integrate_once(const Patch& p, const G& g) {
     const GaussLegendre& rule = gauss_legendre(8);

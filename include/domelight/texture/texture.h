@@ -63,7 +63,7 @@ struct EncodingReport {
 using TexelBytes = std::vector<std::uint8_t, LargeAllocator<std::uint8_t>>;
 
 /// A GPU texture in memory. A level holds all faces (cube: 6, +X -X +Y -Y +Z -Z in OpenGL's orientation; otherwise 1)
-/// as tightly packed rows of texels or blocks. A width or height that is no whole number of blocks is rounded up.
+/// as tightly packed rows of texels or blocks. A width or height that is not a whole number of blocks is rounded up.
 struct Texture {
     Encoding encoding = Encoding::rgba16f;
     int width = 0, height = 0;

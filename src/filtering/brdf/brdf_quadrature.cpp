@@ -11,7 +11,7 @@
 namespace domelight {
 namespace {
 
-/// A view direction and the lobe: what stays the same over the nodes.
+/// A view direction and the lobe: everything that does not depend on the node.
 struct View {
     double c, s;  ///< cos and sin of theta_v
     double alpha;
@@ -27,7 +27,7 @@ BrdfTerms integrate_azimuth(const View& view, double c_h, double s_h, const Gaus
     for (std::size_t j = 0; j < rule.x.size(); ++j) {
         const double phi = end * (1 + rule.x[j]) / 2, VdotH = view.c * c_h + flat * std::cos(phi);
         const double NdotL = 2 * VdotH * c_h - view.c;
-        if (NdotL <= 0) continue;  // rounding at the end
+        if (NdotL <= 0) continue;  // rounding at the end of the range
         const double f = 4 * brdf_visibility(NdotL, view.c, view.alpha, view.g) * NdotL * VdotH / c_h;
         const double fresnel = schlick_weight(VdotH), weight = rule.w[j] * end * f;  // end / 2, twice
         sum.scale += weight * (1 - fresnel);

@@ -15,23 +15,24 @@ struct BrdfNodes {
     int azimuth = 16, polar = 32;
 };
 
-/// int f NdotL dl without and with Schlick's Fc = (1 - VdotH)^5 split off, f = D G2 / (4 NdotL NdotV), GGX.
+/// ∫ f NdotL dl without and with Schlick's Fc = (1 - VdotH)^5 split off, f = D G2 / (4 NdotL NdotV), GGX.
 ///
 /// NdotV in (0, 1], alpha in (0, 1]. By Gauss-Legendre over the half vector. With tan theta_h = alpha tan z the
 /// distribution is gone,
-///   D NdotH dh = (1 / pi) sin z cos z dz dphi,  int f (...) NdotL dl = int 4 V NdotL VdotH / NdotH (...) D NdotH dh,
+///   D NdotH dh = (1 / pi) sin z cos z dz dphi,  ∫ f (...) NdotL dl = ∫ 4 V NdotL VdotH / NdotH (...) D NdotH dh,
 /// and where NdotL > 0 ends is cut off: all azimuths for theta_h < (pi/2 - theta_v) / 2, none from (pi/2 + theta_v) / 2
-/// on, between the two those with cos phi > (c_v / 2 c_h - c_v c_h) / (s_v s_h). At these seams the azimuth's range
-/// starts and ends with a vertical tangent, which z = za + (zb - za) x^2 (3 - 2x) in each piece takes away.
+/// on, between the two those with cos phi > (c_v / 2 c_h - c_v c_h) / (s_v s_h). At these two angles the azimuth's
+/// range begins and ends with a vertical tangent, which the substitution z = za + (zb - za) x^2 (3 - 2x) in each piece
+/// removes.
 BrdfTerms integrate_brdf(double NdotV, double alpha, BrdfG g, BrdfNodes nodes = {});
 
 /// G2 / (4 NdotL NdotV): the visibility term. Cosines positive.
 double brdf_visibility(double NdotL, double NdotV, double alpha, BrdfG g);
 
-/// Directional albedo of the sheen lobe, int D V NdotL dl, as Khronos's glTF-IBL-Sampler defines its third channel:
+/// Directional albedo of the sheen lobe, ∫ D V NdotL dl, as Khronos's glTF-IBL-Sampler defines its third channel:
 /// D_Charlie (Estevez and Kulla 2017) of alpha = roughness^2, V = 1 / (4 (NdotL + NdotV - NdotL NdotV)) (Neubelt and
-/// Pettineo 2013). Over the light direction, the nodes logarithmic towards the horizon and towards the mirror azimuth,
-/// where things happen on the scale of NdotV.
+/// Pettineo 2013). The integral is over the light direction, with nodes spaced logarithmically towards the horizon and
+/// towards the mirror azimuth, where the integrand varies on the scale of NdotV.
 double integrate_sheen(double NdotV, double alpha, int nodes = 32);
 
 }  // namespace domelight

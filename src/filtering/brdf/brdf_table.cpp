@@ -30,7 +30,7 @@ ImageF fill(int size, int threads, const Terms& terms) {
     return table;
 }
 
-/// Karis 2013, IntegrateBRDF: half vectors drawn from D NdotH, so what is left of each sample is G VdotH / (NdotH
+/// Karis 2013, IntegrateBRDF: half vectors are drawn from D NdotH, so the weight of each sample is G VdotH / (NdotH
 /// NdotV).
 BrdfTerms montecarlo_terms(double NdotV, double alpha, BrdfG g, int samples) {
     const double s_v = std::sqrt((1 - NdotV) * (1 + NdotV)), a2 = alpha * alpha;
@@ -49,7 +49,7 @@ BrdfTerms montecarlo_terms(double NdotV, double alpha, BrdfG g, int samples) {
     return {sum.scale / samples, sum.bias / samples};
 }
 
-/// The sheen's albedo from half vectors spread evenly over the hemisphere, as the Khronos tool draws them.
+/// The sheen's albedo from half vectors uniform over the hemisphere, as in the Khronos tool.
 double montecarlo_sheen(double NdotV, double alpha, int samples) {
     const double s_v = std::sqrt((1 - NdotV) * (1 + NdotV));
     double sum = 0;
@@ -68,7 +68,7 @@ double montecarlo_sheen(double NdotV, double alpha, int samples) {
 
 ImageF brdf_table(const BrdfTableOptions& options) {
     const ImageF& embedded = brdf_table_default();
-    const bool same_sheen = options.size == embedded.width();  // it does not depend on G
+    const bool same_sheen = options.size == embedded.width();  // the sheen lobe does not depend on G
     if (same_sheen && options.g == BrdfG::correlated) return embedded;
     ImageF table = fill(options.size, options.threads, [&](double NdotV, double alpha) {
         const BrdfTerms terms = integrate_brdf(NdotV, alpha, options.g);

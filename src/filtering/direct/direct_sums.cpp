@@ -216,7 +216,7 @@ class DirectSums::Pyramid {
     std::vector<simd::Colatitude> patch_nodes_;
 };
 
-/// One map on its way: each texel's sum.
+/// The sums of one map, one for each texel, while its rows are added.
 class DirectSums::Level {
   public:
     Level(const Pyramid& pyramid, const FilterOptions& options, const LevelSpec& spec)

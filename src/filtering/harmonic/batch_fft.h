@@ -4,11 +4,11 @@
 
 namespace domelight::simd {
 
-/// Sequences that one transform handles side by side.
+/// The number of sequences that are transformed together.
 inline constexpr int k_fft_lanes = 16;
 
-/// Complex discrete Fourier transforms of any length n, of 16 sequences at once: element i of all sequences lies
-/// together, 16 real parts and then 16 imaginary ones (so data holds n * 32 floats). Mixed radix, in place, without
+/// Complex discrete Fourier transforms of any length n, of 16 sequences at once: element i of all sequences is stored
+/// together, 16 real parts and then 16 imaginary parts (so data holds n * 32 floats). Mixed radix, in place, without
 /// reordering: frequency f of the result lies at position(f).
 class BatchFft {
   public:

@@ -95,7 +95,7 @@ HWY_INLINE void butterfly5(Complex* x) {
     x[3] = m2 - r2;
 }
 
-/// Any radix by the definition: for the occasional prime in a width.
+/// Any radix, by the definition, for the rare large prime factor of a width.
 template <int sign>
 void butterfly_any(const BatchFft& plan, int r, const float* x, float* y) {
     const D d;
@@ -111,8 +111,8 @@ void butterfly_any(const BatchFft& plan, int r, const float* x, float* y) {
         }
 }
 
-/// One stage on one block: radix r over elements `sub` apart. Forward (decimation in frequency) turns after the
-/// butterfly, inverse before.
+/// One stage on one block: radix r over elements `sub` apart. The twiddle factors are applied after the butterfly in
+/// the forward transform (decimation in frequency) and before it in the inverse.
 template <int sign, int r>
 HWY_INLINE void stage(const BatchFft& plan, float* data, int sub, int twiddle_step) {
     const D d;
@@ -163,7 +163,7 @@ void stage_any(const BatchFft& plan, float* data, int r, int sub, int twiddle_st
     }
 }
 
-/// Depth first, so that the later stages work in the nearest cache.
+/// Depth first, so that the later stages work in the first-level cache.
 template <int sign>
 void transform(const BatchFft& plan, float* data, int n, std::size_t depth) {
     if (depth == plan.radices().size()) return;

@@ -15,14 +15,14 @@
 namespace domelight {
 namespace {
 
-/// Widths away from a light from which four points may stand for it.
+/// The distance from a light, in its widths, from which on four points may represent it.
 constexpr double k_far = 12;
 
-/// Points [from, to) as four: the same power and first moments of each channel, the same second moments of their sum.
-/// What stands for a light so is right at a distance s up to third order in its width over s.
+/// Replaces the points [from, to) by four points with the same power and first moments of each channel, and the same
+/// second moments of the sum of the channels. At a distance s the error is of third order in the light's width over s.
 ///
-/// With the principal axes e_k and deviations sigma_k the points lie at c +- sqrt(2) sigma_k e_k and carry a quarter
-/// each; moving a channel's centroid by m_k turns the quarters into 1/4 +- m_k / (2 sqrt(2) sigma_k).
+/// With the principal axes e_k and deviations sigma_k the points lie at c +- sqrt(2) sigma_k e_k and have a quarter of
+/// the power each; a shift m_k of a channel's centroid changes the quarters to 1/4 +- m_k / (2 sqrt(2) sigma_k).
 void add_quartet(BrightPoints& points, const BrightPoints& of, int from, int to) {
     Vec3d sum, power;
     double total = 0;
@@ -64,7 +64,7 @@ void BrightSplit::take_from(ImageView<float> rows, std::span<const simd::Summary
         const double solid_angle = latlong_solid_angle(next_row_, width_, height_);
         float* row = rows.row(y);
         const simd::Summary& summary = summaries[std::size_t(y)];
-        // The row's own dark half counts too, so that the first rows do not throw out an ordinary sky.
+        // The darker half of the row itself counts too, so that an ordinary sky is not removed from the first rows.
         double row_sum = summary.sum / 3;
         const double mean = (sum_ + row_sum * solid_angle) / (weight_ + width_ * solid_angle);
         const double before = weight_ > 0 ? sum_ / weight_ : mean;
@@ -116,8 +116,8 @@ class BrightSplit::TreeBuilder {
         node.x = float(centre.x), node.y = float(centre.y), node.z = float(centre.z);
         double radius = 0;
         for (int i = 0; i < below.count(); ++i) radius = std::max(radius, length(below.place(i) - centre));
-        // Of K ~ (s^2 + b^2)^-2 a quartet leaves out terms from some 20 (radius / 2 s)^3 on, of changing sign. The
-        // widest lobes are cosines, no smoother than b ~ 1.
+        // For K ~ (s^2 + b^2)^-2 the four points are wrong by terms of about 20 (radius / 2 s)^3, of alternating sign.
+        // The widest lobes are cosines, which are no smoother than b ~ 1.
         const double b = std::min(lobe_width_, 0.7);
         const double far = std::sqrt(std::max(std::pow(k_far * radius, 2) - b * b, 0.0));
         node.cos_far = float(std::cos(std::min(far + radius, k_pi)));
@@ -136,7 +136,7 @@ class BrightSplit::TreeBuilder {
         lights_.nodes[here].skip = int(lights_.nodes.size());
     }
 
-    /// Cut across the image axis along which they spread most.
+    /// Split along the axis of the image along which the texels spread most.
     void add_halves(std::span<int> texels) {
         const auto& all = split_.texels_;
         const auto [x0, x1] =

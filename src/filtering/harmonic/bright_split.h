@@ -11,19 +11,19 @@
 
 namespace domelight {
 
-/// Takes the few texels that outshine everything else by far out of a lat-long image before it is expanded; their exact
-/// kernel is added to each output texel instead. For narrow lobes only, where a sun is 10^7 times the darkest places
-/// beside it: rounding of the float expansion, harmless anywhere else, would show there.
+/// Removes the few texels that are much brighter than everything else from a lat-long image before it is expanded. They
+/// are added to each output texel by the exact kernel instead. This is needed for narrow lobes only: a sun is then 10^7
+/// times as bright as the darkest places beside it, where the rounding of a float expansion would be visible.
 class BrightSplit {
   public:
     BrightSplit(int width, int height) : width_(width), height_(height) {}
 
-    /// Sets the bright texels of the next rows to 0 and keeps them; `summaries`: simd::summarize of each row. Any
-    /// choice is exact; which ones are taken (over 300 times the mean of what was left in the rows so far, k_most at
-    /// most) does not depend on how rows are handed over.
+    /// Sets the bright texels of the next rows to 0 and keeps them; `summaries`: simd::summarize of each row. The
+    /// result is exact for any choice of texels. The choice (texels above 300 times the mean of what was left in the
+    /// rows so far, at most k_most) does not depend on how many rows are added at a time.
     void take_from(ImageView<float> rows, std::span<const simd::Summary> summaries);
     bool empty() const { return texels_.empty(); }
-    /// Spherical-harmonic coefficients of what was taken out.
+    /// Spherical-harmonic coefficients of the texels that were removed.
     Spectrum spectrum(int band_limit, int threads) const {
         return analyse_texels(width_, height_, texels_, band_limit, threads);
     }
@@ -41,11 +41,11 @@ class BrightSplit {
     class TreeBuilder;
 
     int width_, height_, next_row_ = 0;
-    double sum_ = 0, weight_ = 0;  ///< of the channels' mean over the rows so far, without what was taken
+    double sum_ = 0, weight_ = 0;  ///< of the channels' mean over the rows so far, without the removed texels
     std::vector<LoneTexel> texels_;
 };
 
-/// A kernel in the form that the sum over lights takes, with its table if it needs one.
+/// A kernel in the form that the sum over lights needs, with its table if it has one.
 struct DirectKernelTable {
     explicit DirectKernelTable(const ZonalKernel& kernel);
     simd::DirectKernel view() const {

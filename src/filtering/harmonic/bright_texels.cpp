@@ -28,8 +28,8 @@ void BrightTexels::add_rows(ImageView<const float> rows, std::span<const simd::S
         const double solid_angle = latlong_solid_angle(next_row_, width_, height_);
         const simd::Summary& summary = summaries[std::size_t(y)];
         sum_ += summary.sum / 3 * solid_angle;
-        // What is too weak for the rows so far is too weak for all of them. (Half, for the mean that points() will be
-        // given: of the reconstruction.)
+        // A texel too weak compared with the rows so far is too weak compared with all rows. (The threshold is halved,
+        // because points() is given the mean of the reconstruction.)
         const double too_weak = 0.5 * k_least_share * sum_;
         const auto weakest = [&] {
             return int(heap_.size()) < most_ ? too_weak : std::max(too_weak, heap_.front().power);
@@ -57,7 +57,7 @@ BrightPoints BrightTexels::points(const Vec3d& mean, int band_limit) const {
             texels.push_back(t);
     std::sort(texels.begin(), texels.end(), stronger);
 
-    // A texel wider than a few waves is no point: its own tent has smoothed it beyond what truncation could show.
+    // A texel wider than a few waves is not a point: its own tent is so smooth that the truncation has no effect.
     const int nodes = 1 + int(k_pi / height_ * band_limit);
     if (nodes > 16) return {};
     texels.resize(std::min(texels.size(), std::size_t(k_most_points / (4 * nodes * nodes) + 1)));

@@ -12,7 +12,7 @@
 
 namespace domelight {
 
-/// Point lights that stand for an environment's few brightest texels, in the source's frame.
+/// Point lights that represent an environment's few brightest texels, in the source's frame.
 struct BrightPoints {
     std::vector<float> x, y, z, r, g, b;
     int count() const { return int(x.size()); }
@@ -22,7 +22,7 @@ struct BrightPoints {
         r.push_back(float(solid_angle * rgb[0])), g.push_back(float(solid_angle * rgb[1])),
             b.push_back(float(solid_angle * rgb[2]));
     }
-    /// Those of `p` from `from` up to `to`.
+    /// The lights [from, to) of `p`.
     void append(const BrightPoints& p, int from, int to) {
         for (auto [mine, theirs] : {std::pair{&x, &p.x}, {&y, &p.y}, {&z, &p.z}, {&r, &p.r}, {&g, &p.g}, {&b, &p.b}})
             mine->insert(mine->end(), theirs->begin() + from, theirs->begin() + to);
@@ -31,28 +31,29 @@ struct BrightPoints {
     simd::PointSet view() const { return {x.data(), y.data(), z.data(), r.data(), g.data(), b.data(), count()}; }
 };
 
-/// A texel with less than this part of all power leaves nothing that can be seen.
+/// The truncation error of a texel with less than this part of the total power is invisible.
 constexpr double k_least_share = 1e-4;
-/// And one that is not this many times the mean is no sun: among others like it, what truncation leaves out cancels.
-/// (In small images every texel has its share.)
+/// A texel that is not this many times as bright as the mean is not a sun: the truncation errors of many such texels
+/// cancel. (In small images every texel has a considerable share of the power.)
 constexpr double k_least_contrast = 10;
 
-/// Points that stand for all suns together, at most. A sun is a few texels, of 4 to 1024 points each; where more than
-/// these are so bright it is a glow, the strongest of it are taken, and the rest, among others like it, cancels. (Each
-/// costs a kernel's evaluation at every texel of a level: a smooth sky of 512 x 256 once took minutes.)
+/// The largest number of points for all suns together. A sun consists of a few texels, each of 4 to 1024 points. If
+/// more texels are so bright they form a glow: the strongest are taken, and the truncation errors of the others cancel.
+/// (For each point the kernel is evaluated at every texel of a level: without a limit a smooth sky of 512 x 256 took
+/// minutes.)
 constexpr int k_most_points = 2048;
 
-/// Finds the texels that carry the most power (radiance times solid angle) as the rows of a lat-long image pass by.
+/// Finds the texels with the most power (radiance times solid angle) while the rows of a lat-long image are read.
 ///
-/// A sun is the worst case of a truncated spectrum: its coefficients do not fall off. What the truncation leaves out of
-/// a kernel, summed over these texels exactly, is what the expansion is still short of (ResidualKernel).
+/// A sun is the worst case of a truncated spectrum, because its coefficients do not decay. The truncated part of the
+/// kernel (ResidualKernel), summed exactly over these texels, is what the expansion lacks.
 class BrightTexels {
   public:
     BrightTexels(int width, int height, int most = 1024);
 
     /// The next rows, with simd::summarize of each.
     void add_rows(ImageView<const float> rows, std::span<const simd::Summary> summaries);
-    /// The texels with more than k_least_share of the power of all, each as the nodes of a Gauss-Legendre rule over its
+    /// The texels with more than k_least_share of the total power, each as the nodes of a Gauss-Legendre rule over its
     /// tent, fine enough for degrees around `band_limit`. `mean`: mean radiance.
     BrightPoints points(const Vec3d& mean, int band_limit) const;
 
@@ -62,8 +63,8 @@ class BrightTexels {
         int x, y;
         float rgb[3];
     };
-    /// Order of the heap: weakest first; ties by place, so that the result does not depend on how rows were handed
-    /// over.
+    /// Order of the heap: weakest first, ties by position, so that the result does not depend on how many rows are
+    /// added at a time.
     static bool stronger(const Texel& a, const Texel& b) {
         return a.power != b.power ? a.power > b.power : a.y != b.y ? a.y < b.y : a.x < b.x;
     }

@@ -52,7 +52,7 @@ void scatter_face(const BorderedCube& cube, int face, std::span<const AxisNode> 
             const AxisNode& right = axis[i];
             const Vec3d d = cube_direction(face, {0.5 * (right.at + 1), 0.5 * (down.at + 1)});
             x[i] = d.x, y[i] = d.y, z[i] = d.z;
-            // A face at distance 1: d omega = ds dt / (1 + s^2 + t^2)^(3/2).
+            // A face at distance 1: dω = ds dt / (1 + s^2 + t^2)^(3/2).
             const double r2 = 1 + right.at * right.at + down.at * down.at,
                          weight = right.weight * down.weight / (r2 * std::sqrt(r2));
             const float *a = cube.texel(face, right.cell, down.cell), *b = cube.texel(face, right.cell, down.cell + 1);
@@ -66,7 +66,7 @@ void scatter_face(const BorderedCube& cube, int face, std::span<const AxisNode> 
     }
 }
 
-/// Adds the columns beyond the ends of each row to those they stand for, and the other grids to the first.
+/// Adds the columns beyond the ends of each row to the columns that they repeat, and the other grids to the first.
 void gather_grids(std::vector<SphereGrid>& grids, int threads) {
     const RingGrid grid = grids[0].grid();
     constexpr int pad = SphereGrid::k_pad;
@@ -89,8 +89,8 @@ Spectrum analyse_cube(const BorderedCube& cube, int band_limit, int threads) {
     const RingGrid grid = rings.grid();
     const simd::TapTable table(InterpolationTaps(8, double(band_limit) / grid.rings, k_decay));
     const auto axis = axis_nodes(cube.size(), nodes_a_cell(cube.size(), band_limit));
-    // Faces overlap on the rings, so each has a grid of its own, unless these would take too much memory; never a
-    // matter of the threads.
+    // Faces overlap on the rings, so each has its own grid unless that would take too much memory. This does not depend
+    // on the number of threads.
     const int grid_count = std::int64_t(grid.rings) * grid.width < (4 << 20) ? 6 : 1;
     std::vector<SphereGrid> grids;
     for (int g = 0; g < grid_count; ++g) grids.emplace_back(grid);
@@ -118,7 +118,7 @@ BrightPoints bright_points(const BorderedCube& cube, const Vec3d& mean, int band
         double power;
         int face, x, y;
     };
-    // Border texels too: on their face they stand for a neighbour's light.
+    // This includes border texels, which represent the light of the neighbouring face.
     std::vector<Texel> texels;
     const double of_mean = std::max({mean.x, mean.y, mean.z}), least = k_least_share * 4 * k_pi * of_mean;
     for (int f = 0; f < 6; ++f)

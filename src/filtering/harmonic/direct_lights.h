@@ -12,14 +12,15 @@ struct DirectKernel {
     ZonalTable table;
 };
 
-/// A node of a tree of lights in depth-first order: points that stand for all lights below it wherever that is exact
+/// A node of a tree of lights in depth-first order: points that represent all lights below it wherever that is accurate
 /// enough.
 struct LightNode {
-    float x, y, z;     ///< unit direction of the middle
-    float cos_far;     ///< the points will do for directions farther away than this; over 1: for all
-    float radius;      ///< radians; a node on the horizon of a direction, where kernels have their kink, is taken apart
+    float x, y, z;     ///< unit direction of the centre
+    float cos_far;     ///< the points are accurate for directions farther away than this; over 1: for all
+    float radius;      ///< radians; a node that crosses the horizon of a direction, where kernels have a kink, is
+                       ///< replaced by its children
     int first, count;  ///< points
-    int skip;          ///< the next node that is not below this one
+    int skip;          ///< the next node outside this subtree
 };
 
 /// rgb[3 i + c] += sum over lights of kernel(angle) power_c, for `count` unit directions.

@@ -49,7 +49,7 @@ HWY_INLINE void add_lights(const LightNode* nodes, int node_count, const PointSe
                            const float* x, const float* y, const float* z, int count, float* rgb) {
     const D d;
     const int lanes = int(hn::Lanes(d));
-    constexpr int block_size = 16;  // on every instruction set, so that all choose the same detail
+    constexpr int block_size = 16;  // the same on every instruction set, so that all choose the same nodes
     for (int i = 0; i < count; i += block_size) {
         const int n = std::min(block_size, count - i);
         alignas(64) float block[6][block_size] = {};
@@ -79,7 +79,8 @@ HWY_INLINE void add_lights(const LightNode* nodes, int node_count, const PointSe
             for (int lane = 0; lane < block_size; lane += lanes) {
                 const V vx = hn::Load(d, block[0] + lane), vy = hn::Load(d, block[1] + lane),
                         vz = hn::Load(d, block[2] + lane);
-                // Summed for each node first: thousands of small terms on one large sum would lose their last digits.
+                // Each node is summed by itself first: thousands of small terms added to one large sum would lose their
+                // last digits.
                 V r = hn::Zero(d), g = hn::Zero(d), b = hn::Zero(d);
                 for (int p = begin; p < end; ++p) {
                     const V dx = hn::Sub(vx, hn::Set(d, points.x[p])), dy = hn::Sub(vy, hn::Set(d, points.y[p])),

@@ -7,7 +7,7 @@
 
 namespace domelight::simd {
 
-/// Interpolation weights at 513 positions between two samples, in the shapes that the lookup multiplies with.
+/// Interpolation weights at 513 positions between two samples, in the layouts that the lookup needs.
 struct TapTable {
     static constexpr int k_steps = 512;
     explicit TapTable(const InterpolationTaps& taps);  ///< of 8 taps
@@ -28,8 +28,8 @@ struct GridView {
 void lookup_directions(const GridView& grid, const TapTable& table, const double* x, const double* y, const double* z,
                        int count, float* out);
 
-/// The same at four directions for each one given: as it is and turned by one, two and three quarters from +X towards
-/// +Z. A grid that is a multiple of four wide has the same weights there.
+/// The same at four directions for each one given: the direction itself and the direction turned by one, two and three
+/// quarter turns from +X towards +Z. If the width of the grid is a multiple of four, their weights are the same.
 void lookup_quarter_turns(const GridView& grid, const TapTable& table, const double* x, const double* y,
                           const double* z, int count, float* const (&out)[4]);
 

@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace domelight::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// atan2 in double, to about 1e-15: atan of the smaller over the larger, then unfolded.
+/// atan2 in double, to about 1e-15: the arctangent of the smaller over the larger, extended by symmetry.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V arc_tangent2(D d, V y, V x) {
     const V ax = hn::Abs(x), ay = hn::Abs(y), big = hn::Max(ax, ay), small = hn::Min(ax, ay);
@@ -88,8 +88,8 @@ HWY_INLINE void lookup_one(const GridView& grid, const Place& place, float* rgb)
         const auto weight = hn::Set(d, place.down[k]);
         for (int v = 0; v < vectors; ++v) sum[v] = hn::MulAdd(hn::LoadU(d, from + v * lanes), weight, sum[v]);
     }
-    // Vectors whose lanes are the same channels add up first: all of them, unless a vector is shorter than a texel (the
-    // portable target).
+    // First the vectors with the same channels are added: all of them, unless a vector is shorter than a texel (as on
+    // the portable target).
     constexpr int kinds = lanes < 4 ? 4 / lanes : 1;
     alignas(64) float parts[lanes * kinds];
     for (int k = 0; k < kinds; ++k) {
@@ -127,7 +127,7 @@ HWY_INLINE void for_each_place(const GridView& grid, const TapTable& table, cons
     for (int i = 0; i < count; i += k_block) {
         const int n = std::min(k_block, count - i);
         const double *px = x + i, *py = y + i, *pz = z + i;
-        if (n < k_block) {  // whole vectors only: the rest looks at +X
+        if (n < k_block) {  // whole vectors only: unused lanes look along +X
             for (int k = 0; k < k_block; ++k) {
                 bx[k] = k < n ? px[k] : 1;
                 by[k] = k < n ? py[k] : 0;

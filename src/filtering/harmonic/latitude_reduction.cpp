@@ -23,7 +23,7 @@ LatitudeReduction::LatitudeReduction(int image_height, int rings, double band, d
     const auto add = [&](int k, int j, double w) {
         Row& row = rows_[k];
         if (weights[k].empty()) row.first = j;
-        // Knots ascend, so an image row is met before the next one.
+        // Knots ascend, so the rows of the image come in order.
         weights[k].resize(std::max<std::size_t>(weights[k].size(), j - row.first + 1));
         weights[k][j - row.first] += w;
     };

@@ -10,7 +10,7 @@ namespace domelight {
 /// A band-limited q (a Legendre function, of parity (-1)^m about the poles) is q(theta) = sum_k I_k(theta) q(theta_k)
 /// with the interpolation taps, the image's rows are sum_j g_j Lambda_j(theta) with the tent Lambda_j (constant beyond
 /// the outermost centres), hence
-///   int q g sin theta dtheta = sum_k q(theta_k) sum_j R_kj g_j,   R_kj = int Lambda_j I_k sin theta dtheta.
+///   ∫ q g sin theta dtheta = sum_k q(theta_k) sum_j R_kj g_j,   R_kj = ∫ Lambda_j I_k sin theta dtheta.
 /// Taps reach past the poles: rings -pad..-1 and rings..rings+pad-1 belong to the mirror ring, half a turn away.
 class LatitudeReduction {
   public:

@@ -13,8 +13,8 @@ struct LegendreStep {
 /// aligned.
 inline constexpr int k_ring_group = 16;
 
-/// Writes P_l for `count` degrees (two apart) on `rings` rings to out[i * out_stride + ring] and leaves p, p_prev (P_l,
-/// P_{l-2} of the next degree). The recurrence runs in double; what is written is float.
+/// Writes P_l for `count` degrees (two apart) on `rings` rings to out[i * out_stride + ring], and leaves P_l and
+/// P_{l-2} of the next degree in p and p_prev. The recurrence is in double, the output in float.
 void legendre_rows(const LegendreStep* steps, int count, const double* x2, double* p, double* p_prev, int rings,
                    float* out, std::ptrdiff_t out_stride);
 

@@ -17,7 +17,8 @@ using DD = hn::Repartition<double, DF>;
 using DH = hn::Rebind<float, DD>;
 using VF = hn::Vec<DF>;
 
-/// Recurrences that run side by side: each is a chain of dependent operations, and several hide its latency.
+/// The number of recurrences that are interleaved: each is a chain of dependent operations, and interleaving several
+/// hides their latency.
 constexpr int k_side_by_side = 4;
 
 /// `vectors` double vectors of rings at once; returns after `count` degrees.

@@ -7,15 +7,15 @@ namespace {
 
 using simd::k_ring_group;
 
-/// A group takes part once a value passes this. Waiting groups are looked at every few degrees, and in so few a value
-/// can grow by 1e10.
+/// A group takes part once one of its values exceeds this. Waiting groups are checked every few degrees, within which a
+/// value can grow by 1e10.
 constexpr double k_log_negligible = -55;  // 1e-24
 constexpr int k_waiting_steps = 4;
-/// Scaled values are brought down when they pass this.
+/// Scaled values are rescaled when they exceed this.
 constexpr double k_largest = 1e100;
 
-/// The scaled value at which a waiting group must be looked at: it matters now, or it is about to leave the range of
-/// doubles.
+/// The scaled value at which a waiting group must be checked: either it matters now, or it is about to leave the range
+/// of doubles.
 double wake_value(double log_scale) {
     return std::min(std::exp(std::min(k_log_negligible - log_scale, 700.0)), k_largest);
 }
@@ -73,7 +73,7 @@ void LegendreWalk::start(int m, int parity) {
     }
 }
 
-/// Fills rows_ with the next `count` degrees; returns the first ring that takes part.
+/// Fills rows_ with the next `count` degrees and returns the first ring that takes part.
 int LegendreWalk::advance(int first, int count) {
     const int groups = rings_.padded / k_ring_group;
     int first_active = groups;
@@ -95,8 +95,8 @@ int LegendreWalk::advance(int first, int count) {
     return first_active * k_ring_group;
 }
 
-/// The same for a group whose values are still negligible: only the state moves, at the group's own scale, until one of
-/// them is not.
+/// The same for a group whose values are still negligible: only the state of the recurrence is advanced, at the group's
+/// own scale, until one of them is not.
 void LegendreWalk::advance_waiting_group(int group, int first, int count) {
     const int r0 = group * k_ring_group;
     float* rows = rows_.data() + r0;

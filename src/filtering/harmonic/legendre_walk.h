@@ -15,11 +15,12 @@ namespace domelight {
 ///
 /// From x P_l = e_{l+1} P_{l+1} + e_l P_{l-1}, e_l = sqrt((l^2 - m^2) / (4 l^2 - 1)), applied twice:
 ///   P_{l+2} = ((x^2 - e_{l+1}^2 - e_l^2) P_l - e_l e_{l-1} P_{l-2}) / (e_{l+1} e_{l+2}).
-/// It runs in double, which needs no special forms near the poles or the equator. P_mm ~ sin^m theta leaves even the
-/// range of doubles, so a group of rings starts with its own scale and takes part only once its values can matter.
+/// The recurrence is in double, which needs no special forms near the poles or the equator. P_mm ~ sin^m theta exceeds
+/// even the range of doubles, so each group of rings starts with its own scale and takes part only once its values can
+/// matter.
 class LegendreWalk {
   public:
-    /// Degrees handed over at once.
+    /// The number of degrees in one call of visit().
     static constexpr int k_chunk = 16;
 
     LegendreWalk(const NorthernRings& rings, int band_limit);

@@ -11,7 +11,8 @@ namespace domelight {
 
 RingGrid ring_grid_for(int band_limit) {
     const int least = std::max(16, int(std::ceil(1.44 * (band_limit + 1))));
-    // Widths 2^a times a few threes and fives: at most 1/16 more than asked for, and radix-4 passes nearly all the way.
+    // Widths are 2^a times a few threes and fives: at most 1/16 more than asked for, and nearly all passes have radix
+    // 4.
     int best = 1 << 30;
     for (int odd : {1, 3, 5, 9, 15, 25, 27, 45, 75}) {
         int rings = 2 * odd;

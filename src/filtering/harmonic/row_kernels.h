@@ -4,8 +4,8 @@
 
 namespace domelight::simd {
 
-/// sum[i] += weights[0] rows[i] + weights[1] rows[i + stride] + ..., `count` rows, i < n. In the order of the rows: the
-/// same bits however they are handed over.
+/// sum[i] += weights[0] rows[i] + weights[1] rows[i + stride] + ..., `count` rows, i < n. The sum is in the order of
+/// the rows, so its bits do not depend on how many rows are added at a time.
 void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* weights, int count, float* sum, int n);
 
 /// One channel of 32 rows into the layout of BatchFft: out[x * 32 + i] = rows[i * stride + x * texel].

@@ -38,7 +38,7 @@ void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* we
     for (; i + vectors * lanes <= n; i += vectors * lanes)
         add_columns<vectors>(rows + i, stride, weights, count, sum + i);
     for (; i + lanes <= n; i += lanes) add_columns<1>(rows + i, stride, weights, count, sum + i);
-    // The tail through the same instructions, so that a column's bits do not depend on where it lies.
+    // The tail uses the same instructions, so that the bits of a column do not depend on its position.
     if (i < n) {
         const hn::CappedTag<float, 1> one;
         for (; i < n; ++i) {
@@ -51,7 +51,7 @@ void add_weighted_rows(const float* rows, std::ptrdiff_t stride, const float* we
 }
 
 void gather_fft_rows(const float* rows, std::ptrdiff_t stride, int texel, int width, float* out) {
-    constexpr int tile = 16;  // texels: their 32-row block of the output stays in the nearest cache
+    constexpr int tile = 16;  // texels: their 32-row block of the output stays in the first-level cache
     constexpr int row_count = 2 * k_fft_lanes;
     for (int x0 = 0; x0 < width; x0 += tile) {
         const int x1 = x0 + tile < width ? x0 + tile : width;

@@ -52,7 +52,7 @@ void ShAnalysis::add_rows(ImageView<const float> rows) {
         spare_.pop_back();
         fresh.push_back(batch.data());
     }
-    // Columns are independent. A tile of the image's rows stays in cache while every ring row takes its share.
+    // Columns are independent. A tile of the image's rows stays in the cache while it is added to every ring row.
     constexpr int tile = 192;
     const int columns = 3 * width_;
     parallel_ranges(columns, tile, threads_, [&](int begin, int stop) {
@@ -71,7 +71,7 @@ void ShAnalysis::add_rows(ImageView<const float> rows) {
     transform_finished(end);
 }
 
-/// Transforms the batches that no later row adds to.
+/// Transforms the batches that are complete.
 void ShAnalysis::transform_finished(int next_row) {
     int end = next_batch_;
     for (; end < rings_.batch_count(); ++end) {
@@ -81,7 +81,7 @@ void ShAnalysis::transform_finished(int next_row) {
         if (!finished) break;
     }
     const int first = next_batch_;
-    // Three channels a batch: several batches at once leave no thread without work.
+    // There are three channels in a batch: several batches at a time keep all threads busy.
     if (end - first < k_batches_at_once && end < rings_.batch_count()) return;
     parallel_for(3 * (end - first), threads_, [&](int task) {
         const int index = first + task / 3;
@@ -112,7 +112,7 @@ Spectrum analyse_texels(int width, int height, std::span<const LoneTexel> texels
         std::fill(orders.begin(), orders.end(), 0);
         for (; i < texels.size() && texels[i].y == y; ++i)
             for (int m = 0; m <= band_limit; ++m) {
-                // The whole turns of m x / W leave no rounding.
+                // Whole turns are removed from m x / W in integers, so there is no rounding.
                 const double turns = double(std::int64_t(m) * texels[i].x % width) / width;
                 const std::complex<double> wave = std::polar(1.0, -2 * k_pi * turns);
                 for (int c = 0; c < 3; ++c) orders[3 * m + c] += double(texels[i].rgb[c]) * wave;

@@ -10,11 +10,11 @@
 
 namespace domelight {
 
-/// Spherical-harmonic coefficients of a lat-long image's bilinear reconstruction, from rows handed in from the top
-/// down. Along a row the reconstruction's Fourier coefficients are the texels' times sinc^2(m / W), for every m (beyond
-/// W / 2 too: the alias orders that the tent lets through); across rows LatitudeReduction integrates it.
+/// Spherical-harmonic coefficients of a lat-long image's bilinear reconstruction. Rows are added from the top down.
+/// Along a row the reconstruction's Fourier coefficients are the texels' times sinc^2(m / W), for every m (beyond W / 2
+/// too: aliases that the tent does not suppress); across rows it is integrated by LatitudeReduction.
 ///
-/// Holds (band limit) x (rings) coefficients and the few rows in flight, never the image.
+/// Needs memory for (band limit) x (rings) coefficients and a few rows, not for the image.
 class ShAnalysis {
   public:
     ShAnalysis(int width, int height, int band_limit, int threads);
@@ -32,7 +32,8 @@ class ShAnalysis {
     LatitudeReduction reduction_;
     int next_row_ = 0;
     int next_batch_ = 0;
-    /// 32 ring rows that are transformed together, while image rows still add to them; by number of the batch.
+    /// Batches of 32 ring rows that are transformed together, to which image rows are still added; by the number of the
+    /// batch.
     std::map<int, AlignedArray<float>> open_;
     std::vector<AlignedArray<float>> spare_;  ///< memory of batches that are done
 };

@@ -18,7 +18,7 @@ struct RingSpectra {
     AlignedArray<float> values;
 };
 
-/// sum_l k_l a_lm P_lm on the northern rings by parity; the southern ones have the odd part's sign turned.
+/// sum_l k_l a_lm P_lm on the northern rings by parity; on the southern rings the odd part has the opposite sign.
 void sum_degrees(const Spectrum& spectrum, std::span<const std::vector<double>> factors, const NorthernRings& north,
                  LegendreWalk& walk, int m, std::vector<RingSpectra>& out) {
     const int band_limit = int(factors[0].size()) - 1;
@@ -50,8 +50,9 @@ void sum_degrees(const Spectrum& spectrum, std::span<const std::vector<double>> 
     }
 }
 
-/// Rings first .. first + 15 of the north and their mirrors: one channel's inverse transform. The north's real values
-/// travel as the real part, the south's as the imaginary one: Z_m = N_m + i S_m, Z_-m = conj N_m + i conj S_m.
+/// Rings first .. first + 15 of the north and their mirrors: one channel's inverse transform. The values of the north
+/// are transformed as the real part, those of the south as the imaginary part: Z_m = N_m + i S_m, Z_-m = conj N_m + i
+/// conj S_m.
 void transform_rings(const RingSpectra& spectra, int band_limit, const simd::BatchFft& fft, int first, int channel,
                      int north_count, AlignedArray<float>& data, SphereGrid& grid) {
     constexpr int lanes = simd::k_fft_lanes;

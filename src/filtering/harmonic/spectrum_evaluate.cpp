@@ -36,9 +36,9 @@ Vec3d evaluate_spectrum(const Spectrum& spectrum, const Vec3d& direction, int ba
 }
 
 std::vector<Vec3d> spectrum_to_sh(const Spectrum& spectrum, int bands, const Mat3& world_to_source) {
-    // A turn mixes the orders of a degree but not the degrees. So: the truncated function, integrated against the
-    // world's basis by a rule that is exact for products of two such functions (Gauss-Legendre in z, equal steps in
-    // azimuth).
+    // A rotation mixes the orders within a degree but not the degrees. So the truncated function is integrated against
+    // the world's basis, by a rule that is exact for products of two such functions (Gauss-Legendre in z, equal steps
+    // in azimuth).
     std::vector<Vec3d> out(bands * bands);
     std::vector<double> basis(bands * bands);
     const auto& rule = gauss_legendre(bands);

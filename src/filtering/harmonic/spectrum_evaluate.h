@@ -9,8 +9,8 @@
 namespace domelight {
 
 /// The expansion's value in a direction of the source's frame, degrees 0..band_limit (at most the spectrum's), each
-/// degree times factors[l] (none: 1). Plain and slow, in double: what the synthesis is tested against, and enough for a
-/// few directions.
+/// degree times factors[l] (none: 1). Plain and slow, in double: the synthesis is tested against it, and it is used for
+/// a few directions.
 Vec3d evaluate_spectrum(const Spectrum& spectrum, const Vec3d& direction, int band_limit,
                         const std::vector<double>& factors = {});
 

@@ -13,7 +13,7 @@
 namespace domelight {
 namespace {
 
-/// How far a filtered spectrum has fallen at its band limit: see InterpolationTaps.
+/// By how much a filtered spectrum has decayed at its band limit: see InterpolationTaps.
 constexpr double k_decay = 16;
 
 constexpr int k_all_faces[6] = {0, 1, 2, 3, 4, 5};
@@ -29,7 +29,7 @@ int clamp_texels(float* rgb, int width) {
     return count;
 }
 
-/// Looks rows of texels up, adds what the expansion is short of, and clamps.
+/// Looks up rows of texels, adds what the expansion lacks, and clamps.
 class RowLookup {
   public:
     RowLookup(const SphereGrid& grid, const LookupOptions& options)
@@ -144,8 +144,8 @@ Cubemap grid_to_cube(const SphereGrid& grid, int size, const LookupOptions& opti
         for (int x = 0; x < size; ++x) row[x] = cube_direction(face, {(x + 0.5) / size, (y + 0.5) / size});
         return row;
     };
-    // Where the source's pole is the world's, the side faces are turns of one another: by +90 degrees from one to the
-    // next, unless it is mirrored.
+    // If the source's pole is the world's, the side faces are rotations of one another: by +90 degrees from one to the
+    // next, unless the source is mirrored.
     constexpr int sides[4] = {0, 4, 1, 5}, poles[2] = {2, 3};
     const auto& m = options.world_to_source.row;
     const bool turns = m[1] == Vec3d{0, 1, 0} && cross(m[2], m[0]).y > 0 && grid.grid().width % 4 == 0;

@@ -33,21 +33,21 @@ class SphereGrid {
     AlignedArray<float> data_;  ///< RGBX
 };
 
-/// What else a lookup does to each texel.
+/// What a lookup adds to each texel.
 struct LookupOptions {
     double band = 0.7;  ///< band limit over the number of rings
     Mat3 world_to_source;
     int threads = 0;
-    /// What the truncated expansion is short of: a residual kernel summed over the brightest texels. None: null.
+    /// The part that the truncated expansion lacks: a residual kernel summed over the brightest texels. Null: none.
     const BrightPoints* bright = nullptr;
     simd::ZonalTable residual{};
-    /// Light that was taken out of the expansion: a kernel summed over it. None: null.
+    /// Light that was removed before the expansion: a kernel summed over it. Null: none.
     const BrightSplit::Lights* lights = nullptr;
     simd::DirectKernel kernel{};
 };
 
-/// The grid's function at the texel centres of a cube or lat-long image. Negative values, which only truncation makes,
-/// become 0; the number of texels that had one is added to `clamped`.
+/// The grid's function at the texel centres of a cube or lat-long image. Negative values, which only truncation causes,
+/// become 0; the number of texels with such values is added to `clamped`.
 Cubemap grid_to_cube(const SphereGrid& grid, int size, const LookupOptions& options, std::int64_t& clamped);
 ImageF grid_to_latlong(const SphereGrid& grid, int height, const LookupOptions& options, std::int64_t& clamped);
 

@@ -8,7 +8,7 @@
 
 namespace domelight {
 
-/// A ZonalKernel made ready for many evaluations: its normalisation is worked out once.
+/// A ZonalKernel prepared for many evaluations: its normalisation is computed once.
 ///
 /// Every form is written in h = 1 - c = 2 sin^2(theta / 2) = |a - b|^2 / 2 of two unit vectors, so that narrow lobes
 /// keep their digits.
@@ -44,7 +44,7 @@ class KernelDensity {
     double scale_ = 1;                ///< makes the integral over the sphere 1
 };
 
-/// Widths below this are taken as this: a lobe of 4 seconds of arc is a mirror at any resolution.
+/// Smaller widths are raised to this one: a lobe of 4 seconds of arc is a mirror at any resolution.
 inline constexpr double k_least_alpha = 1e-5;
 
 }  // namespace domelight

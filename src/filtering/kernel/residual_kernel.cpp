@@ -10,8 +10,8 @@ namespace domelight {
 ResidualKernels::ResidualKernels(std::span<const ZonalKernel> kernels, std::span<const std::vector<double>> factors,
                                  int threads) {
     const int band_limit = int(factors[0].size()) - 1, n = int(kernels.size());
-    // 32 steps a wave of the first degree left out: the chord is off by (pi / 16)^2 / 8, half a per cent of what is
-    // itself the last per cent.
+    // 32 steps for each wave of the first truncated degree: linear interpolation is then off by (pi / 16)^2 / 8, half a
+    // per cent of a term that is itself about a per cent.
     steps_ = 16 * (band_limit + 1);
     values_.resize(std::size_t(n) * (steps_ + 2));
     parallel_ranges(steps_ + 1, 512, threads, [&](int begin, int end) {

@@ -9,8 +9,8 @@
 
 namespace domelight {
 
-/// What truncation at a band limit L leaves out of kernels: K(theta) - sum_{l <= L} (2l + 1) / 4 pi k_l P_l(cos theta),
-/// as tables over theta.
+/// The part of kernels that truncation at a band limit L leaves out: K(theta) - sum_{l <= L} (2l + 1) / 4 pi k_l
+/// P_l(cos theta), as tables over theta.
 class ResidualKernels {
   public:
     /// factors[i]: coefficients k_0..k_L of kernels[i].

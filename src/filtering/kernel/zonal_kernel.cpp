@@ -22,7 +22,7 @@ double lobe_power(const ZonalKernel& kernel) {
     return 0;
 }
 
-/// int_0^1 c / (1 - w c)^2 dc = (w / (1 - w) + log(1 - w)) / w^2.
+/// ∫_0^1 c / (1 - w c)^2 dc = (w / (1 - w) + log(1 - w)) / w^2.
 double ggx_integral(double w, double one_minus_w) {
     if (w > 0.1) return (w / one_minus_w + std::log(one_minus_w)) / (w * w);
     // The closed form cancels as w -> 0: sum_k (k + 1) / (k + 2) w^k.
@@ -40,9 +40,9 @@ std::vector<double> legendre_at_zero(int count) {
 
 /// Solves (2l + 1) x_l - w ((l + 1) x_{l+1} + l x_{l-1}) = r_l, l = 0..size - 1, with x_size = 0.
 ///
-/// The matrix is diagonally dominant, but for a narrow lobe (w -> 1) only just. So the pivots are kept as w (l + 1)
-/// plus the row's excess over its off-diagonal entries, which elimination only adds to: no subtraction, and full
-/// precision for every w (the GTH idea of Grassmann, Taksar and Heyman 1985).
+/// The matrix is diagonally dominant, but only barely so for a narrow lobe (w -> 1). So each pivot is stored as w (l +
+/// 1) plus the row's excess over its off-diagonal entries. Elimination only adds to this excess, so there is no
+/// subtraction, and the precision is full for every w (the idea of Grassmann, Taksar and Heyman 1985).
 std::vector<double> solve_legendre_system(double w, double one_minus_w, std::vector<double> r) {
     const int size = int(r.size());
     std::vector<double> ratio(size);  // x_l = ratio_l x_{l+1} + r'_l
@@ -57,12 +57,15 @@ std::vector<double> solve_legendre_system(double w, double one_minus_w, std::vec
     return r;
 }
 
-/// M_l = int_0^1 c P_l / (1 - w c)^2 dc, from c P_l (2l + 1) = (l + 1) P_{l+1} + l P_{l-1} applied to
-///   (1 - w c) [P_l / (1 - w c)]      = P_l:                 (2l + 1) J_l - w ((l + 1) J_{l+1} + l J_{l-1}) = (2l + 1)
-///   int_0^1 P_l (1 - w c) [c P_l / (1 - w c)^2]  = c P_l / (1 - w c):   (2l + 1) M_l - w ((l + 1) M_{l+1} + l M_{l-1})
-///   = (l + 1) J_{l+1} + l J_{l-1}.
-/// Both are unstable upwards and harmless as boundary value problems: what is wrong at the far end fades as e^{-b (size
-/// - l)}.
+/// M_l = ∫_0^1 c P_l / (1 - w c)^2 dc, from c P_l (2l + 1) = (l + 1) P_{l+1} + l P_{l-1} applied to
+// clang-format off
+///   (1 - w c) [P_l / (1 - w c)] = P_l:
+///       (2l + 1) J_l - w ((l + 1) J_{l+1} + l J_{l-1}) = (2l + 1) ∫_0^1 P_l dc,    J_l = ∫_0^1 P_l / (1 - w c) dc
+///   (1 - w c) [c P_l / (1 - w c)^2] = c P_l / (1 - w c):
+///       (2l + 1) M_l - w ((l + 1) M_{l+1} + l M_{l-1}) = (l + 1) J_{l+1} + l J_{l-1}
+// clang-format on
+/// Both are unstable as forward recurrences but stable as boundary value problems: an error at the far end decays as
+/// e^{-b (size - l)}.
 std::vector<double> ggx_moments(double alpha, int band_limit) {
     const double a2 = alpha * alpha, w = (1 - a2) / (1 + a2), one_minus_w = 2 * a2 / (1 + a2);
     const double decay = 2 * std::asinh(alpha / std::sqrt(std::max(1 - a2, 1e-12)));  // cosh(decay) = 1 / w
@@ -71,13 +74,13 @@ std::vector<double> ggx_moments(double alpha, int band_limit) {
     const std::vector<double> p0 = legendre_at_zero(size + 1);
     std::vector<double> r(size);
     r[0] = 1;
-    for (int l = 1; l < size; ++l) r[l] = p0[l - 1] - p0[l + 1];  // (2l + 1) int_0^1 P_l
+    for (int l = 1; l < size; ++l) r[l] = p0[l - 1] - p0[l + 1];  // (2l + 1) ∫_0^1 P_l
     const std::vector<double> j = solve_legendre_system(w, one_minus_w, r);
     for (int l = 0; l < size; ++l) r[l] = (l + 1 < size ? (l + 1) * j[l + 1] : 0) + (l > 0 ? l * j[l - 1] : 0);
     return solve_legendre_system(w, one_minus_w, std::move(r));
 }
 
-/// int_0^1 c (1 - c)^p P_l dc. From (1 - c)(P'_l + P'_{l-1}) = l (P_{l-1} - P_l), by parts, I_l = int_0^1 (1 - c)^p P_l
+/// ∫_0^1 c (1 - c)^p P_l dc. From (1 - c)(P'_l + P'_{l-1}) = l (P_{l-1} - P_l), by parts, I_l = ∫_0^1 (1 - c)^p P_l
 /// obeys
 ///   (l + p + 1) I_l = (l - p - 1) I_{l-1} + P_l(0) + P_{l-1}(0),
 /// whose factor is below 1 in magnitude for every l.
@@ -91,7 +94,7 @@ std::vector<double> charlie_moments(double p, int band_limit) {
     return m;
 }
 
-/// int_0^1 c^p P_l dc: I_0 = 1 / (p + 1), I_1 = 1 / (p + 2), I_{l+2} = I_l (p - l) / (p + l + 3).
+/// ∫_0^1 c^p P_l dc: I_0 = 1 / (p + 1), I_1 = 1 / (p + 2), I_{l+2} = I_l (p - l) / (p + l + 3).
 std::vector<double> phong_moments(double p, int band_limit) {
     std::vector<double> m(band_limit + 1);
     for (int l = 0; l <= band_limit; ++l) m[l] = l < 2 ? 1 / (p + 1 + l) : m[l - 2] * (p - l + 2) / (p + l + 1);
@@ -146,7 +149,7 @@ double ZonalKernel::angular_width() const {
         return alpha < 1 ? std::min(2 * alpha / std::sqrt(1 - alpha * alpha), k_pi) : k_pi;
     }
     const double p = lobe_power(*this);
-    // charlie peaks at this height above the horizon and falls to 0 there at once.
+    // charlie has its maximum at this height above the horizon and falls to 0 at the horizon.
     if (lobe == Lobe::charlie) return 1 / (p + 1);
     // c^p ~ e^(-p theta^2 / 2) has the spectrum e^(-l^2 / 2p): e^-16 at l = 16 / b, where that of ggx has fallen as
     // far.

@@ -1,8 +1,9 @@
-// The truth: int K(d . l) g(l) dl over the bilinear reconstruction, in double, every patch of it
+// The truth: ∫ K(d . l) g(l) dl over the bilinear reconstruction, in double, every patch of it
 // (docs/math/prefilter.md).
 //
-// Most patches are small beside the distance over which the kernel changes: they take 2 x 2 Gauss-Legendre nodes, row
-// by row. The others, near the lobe's peak and across its horizon, are halved until they are small too, and take 4 x 4.
+// Most patches are small compared with the distance over which the kernel changes: for them 2 x 2 Gauss-Legendre nodes
+// suffice, row by row. The others, near the lobe's peak and across its horizon, are halved until they are small too,
+// and have 4 x 4 nodes.
 #include "domelight/base/parallel.h"
 #include "domelight/filtering/reference.h"
 
@@ -16,14 +17,15 @@ namespace domelight {
 namespace {
 
 constexpr double k_far_ratio =
-    16;  ///< 2 x 2 nodes where a patch is this much shorter than the kernel's scale: 3e-7 of what it adds at most
+    16;  ///< 2 x 2 nodes where a patch is this much shorter than the kernel's scale: their relative error is at most
+         ///< 3e-7
 constexpr double k_near_ratio = 2;             ///< 4 x 4 nodes likewise: 5e-7
 constexpr double k_horizon_tolerance = 3e-10;  ///< quadrature error of one cell on the horizon, of the mean radiance
 constexpr double k_negligible =
-    1e-18;  ///< densities below this part of the peak are left out (phong's and charlie's exponential tails)
+    1e-18;  ///< densities below this part of the peak are ignored (the exponential tails of phong and charlie)
 constexpr int k_deepest = 30;
 
-/// The kernel, and what its quadrature has to know of it.
+/// The kernel, with what the quadrature needs to know about it.
 class Profile {
   public:
     explicit Profile(const ZonalKernel& kernel) : density_(kernel), width_(kernel.angular_width()) {
@@ -37,7 +39,7 @@ class Profile {
     /// The largest h = 1 - c that matters; 1 is the horizon, where the density has a kink.
     double support() const { return support_; }
     bool meets_horizon() const { return support_ == 1; }
-    /// The least h that matters: charlie is empty about its axis.
+    /// The least h that matters: charlie is 0 around its axis.
     double hole() const { return hole_; }
 
     /// The distance over which the density changes, `s` = |a - b| from the axis.
@@ -54,8 +56,8 @@ class Profile {
     /// Radius (chord) within which patches of this length are not far.
     double near_radius(double patch) const {
         const double wanted = k_far_ratio * patch;
-        // Coarse sources take 4 x 4 nodes throughout: 2 x 2 ones on a tent's one half and not on the other leave (h /
-        // L)^3.
+        // Coarse sources have 4 x 4 nodes throughout: with 2 x 2 nodes on one half of a tent only, an error of (h /
+        // L)^3 would remain.
         if (wanted > std::min(scale(2), 0.5)) return 2;
         if (density_.lobe() == Lobe::ggx) return std::sqrt(std::max(0.0, wanted * wanted - width_ * width_));
         return density_.lobe() == Lobe::charlie ? wanted : 0;
@@ -159,13 +161,13 @@ class PatchIntegral {
         bool split_theta = tall > limit, split_phi = wide > limit;
         bool on_horizon = profile_.meets_horizon() && h + radius > 1;
         if (on_horizon) {
-            // Nodes that see a kink err by about 1/50 of the density's change across the cell; where cut off, but with
-            // the horizon through a corner, by 1/500.
+            // With a kink in a cell the error is about 1/50 of the density's change across the cell. If the cell is cut
+            // at the kink, except where the horizon passes through a corner, it is 1/500.
             const double change = profile_.density().scale() * std::max(tall, wide) * tall * wide * brightness_;
             if (0.002 * change > k_horizon_tolerance) split_theta = split_phi = true;
             on_horizon = 0.02 * change > k_horizon_tolerance / 10;
         }
-        // Halve the longer side alone while the other is much shorter, as at the poles.
+        // Halve only the longer side while the other is much shorter, as at the poles.
         split_theta = split_theta && tall > wide / 2;
         split_phi = split_phi && wide > tall / 2;
         if (depth == k_deepest || (!split_theta && !split_phi)) return on_horizon ? leaf_on_horizon(cell) : leaf(cell);
@@ -213,8 +215,8 @@ class PatchIntegral {
         return (g_[0] * (1 - s) + g_[1] * s) * (1 - t) + (g_[2] * (1 - s) + g_[3] * s) * t;
     }
 
-    /// The same, with the side that the horizon crosses more squarely cut off where it does, so that the nodes see no
-    /// kink.
+    /// The same, but the cell is cut at the horizon along the side that the horizon crosses more steeply, so that there
+    /// is no kink between nodes.
     Vec3d leaf_on_horizon(const Cell& cell) const {
         const double phi = (cell.phi0 + cell.phi1) / 2, theta = (cell.theta0 + cell.theta1) / 2;
         const double along_theta =
@@ -314,7 +316,8 @@ struct Azimuths {
     }
 };
 
-/// sum_j k_j v_j for the three channels, in four interleaved partial sums: a fixed order that vector instructions keep.
+/// sum_j k_j v_j for the three channels, in four interleaved partial sums: a fixed order that suits vector
+/// instructions.
 void add_products(const double* k, const std::array<const double*, 3>& value, int count,
                   std::array<std::array<double, 4>, 3>& sums) {
     for (int channel = 0; channel < 3; ++channel) {
@@ -383,7 +386,8 @@ Vec3d integrate_row(const ReferenceSource& source, const Profile& profile, const
                     const Azimuths& azimuths, int r) {
     const double theta0 = source.theta_begin(r), theta1 = source.theta_end(r), step = source.patch_width();
     const int width = source.width();
-    double inside, outside;  // half azimuths: patches within the first are all visible, beyond the second none is
+    double inside, outside;  // half azimuths: within the first, all patches are above the horizon; beyond the second,
+                             // none is
     if (profile.meets_horizon()) {
         const double a = horizon(axis, theta0), b = horizon(axis, theta1);
         inside = std::min(a, b);
@@ -418,7 +422,7 @@ Vec3d integrate_row(const ReferenceSource& source, const Profile& profile, const
     int right_begin = int(std::ceil(centre + near / step)),
         right_end = std::min(last - 1, int(std::floor(centre + inside / step)));
     if (near <= 0 && left_begin <= left_end && left_end < right_end)
-        right_begin = left_end;  // the axis's own column is far too
+        right_begin = left_end;  // the column of the axis itself is far too
     if (left_end <= left_begin) left_begin = left_end = std::clamp(left_end, low, high);
     if (right_end <= right_begin) right_begin = right_end = std::clamp(std::max(right_begin, left_end), left_end, high);
 
@@ -453,7 +457,7 @@ std::vector<Vec3d> convolve_exactly(ImageView<const float> latlong, const ZonalK
     const Azimuths azimuths(source);
     std::vector<Axis> axes(directions.begin(), directions.end());
     std::vector<Vec3d> result(directions.size());
-    // Directions of a block share the rows' nodes. A direction's own sum does not depend on the block it is in.
+    // Directions of a block share the nodes of the rows. The sum for a direction does not depend on its block.
     const int count = int(directions.size()), block = std::clamp(count / (4 * resolve_threads(threads)), 1, 64);
     parallel_ranges(count, block, threads, [&](int begin, int end) {
         RowNodes nodes;

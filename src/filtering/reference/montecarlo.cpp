@@ -48,7 +48,7 @@ Vec3d montecarlo_sum(const ReferenceSource& source, const ZonalKernel& kernel, c
         sum = sum + source.lookup(frame.direction(l.cosine, l.sine, 2 * k_pi * i / samples)) * weight;
         weights += weight;
     }
-    // No sample above the horizon (charlie with very few): what is left of the lobe is its axis.
+    // No sample is above the horizon (charlie with very few samples): the lobe is replaced by its axis.
     return weights > 0 ? sum / weights : source.lookup(axis);
 }
 

@@ -1,4 +1,4 @@
-// prefilter_reference: one texel after the other, by whichever plain method is asked for.
+// prefilter_reference: one texel after the other, by the plain method that is asked for.
 #include "domelight/base/parallel.h"
 
 #include "filtering/reference/sampling.h"
@@ -8,7 +8,7 @@
 namespace domelight {
 namespace {
 
-/// A level being filled: direction of a texel's point, and where its texel is.
+/// A level that is being computed: the direction of a point of a texel, and the position of the texel.
 class Grid {
   public:
     Grid(Layout layout, int size) : layout_(layout), size_(size) {
@@ -44,7 +44,7 @@ class Grid {
     FilteredMap map_;
 };
 
-/// Counts texels for the progress callback; false once it has asked to stop.
+/// Counts texels for the progress callback; false after the callback has returned false.
 class Report {
   public:
     Report(const Progress& progress, std::int64_t total) : progress_(progress), total_(total) {}

@@ -17,7 +17,7 @@ Vec3d riemann_sum(const ReferenceSource& source, const ZonalKernel& kernel, cons
         weights += weight * K;
     }
     if (!options.normalised) return sum * ((2 * k_pi / K) * (k_pi / 2 / J));
-    // Every ring of a very narrow lobe may have underflowed.
+    // With a very narrow lobe, the weights of all rings may have underflowed.
     return weights > 0 ? sum / weights : source.lookup(axis);
 }
 

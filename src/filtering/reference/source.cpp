@@ -9,7 +9,8 @@ namespace domelight {
 
 ReferenceSource::ReferenceSource(ImageView<const float> latlong) : image_(latlong) {
     assert(latlong.width >= 1 && latlong.height >= 1 && latlong.channels == 3);
-    // In phi the mean of a patch row is that of its two texel rows; in theta int (1 - t, t) sin theta, in closed form.
+    // In phi, the mean of a patch row is that of its two texel rows; in theta, it is ∫ (1 - t, t) sin theta in closed
+    // form.
     std::vector<Vec3d> row_mean(height());
     for (int y = 0; y < height(); ++y) {
         for (int x = 0; x < width(); ++x) row_mean[y] = row_mean[y] + texel(x, y);
@@ -17,8 +18,8 @@ ReferenceSource::ReferenceSource(ImageView<const float> latlong) : image_(latlon
     }
     for (int r = 0; r < patch_rows(); ++r) {
         const double a = theta_begin(r), b = theta_end(r), half = (b - a) / 2, middle = (a + b) / 2;
-        const double area = 2 * std::sin(middle) * std::sin(half);  // int sin
-        // int (theta - middle) sin theta = 2 cos(middle) (sin(half) - half cos(half)); the lower row's weight is 1/2 +
+        const double area = 2 * std::sin(middle) * std::sin(half);  // ∫ sin
+        // ∫ (theta - middle) sin theta = 2 cos(middle) (sin(half) - half cos(half)); the lower row's weight is 1/2 +
         // (theta - middle) / (b - a)
         const double moment = 2 * std::cos(middle) * (std::sin(half) - half * std::cos(half)) / (b - a);
         const Vec3d above = row_mean[std::max(r - 1, 0)], below = row_mean[std::min(r, height() - 1)];
@@ -37,7 +38,7 @@ Vec3d ReferenceSource::lookup(const Vec3d& direction) const {
 
 std::vector<Vec3d> ReferenceSource::spherical_harmonics(int bands, const Mat3& world_to_source, int threads) const {
     const int count = bands * bands;
-    // The basis turns by l per radian: half as many nodes resolve it, and a few more make that precise.
+    // The basis oscillates l times per radian: half as many nodes resolve it, and a few more make the integral precise.
     const double turns = std::max(patch_width(), k_pi / height()) * bands;
     const GaussLegendre& rule = gauss_legendre(2 + int(std::ceil(turns + std::min(6.0, 40 * turns))));
     const Mat3 source_to_world = world_to_source.transposed();

@@ -14,7 +14,7 @@ namespace domelight {
 /// The source that every filter and mean refers to: the bilinear reconstruction of a lat-long image. u wraps; v clamps,
 /// so that the half rows at the poles are constant in v.
 ///
-/// It falls into (height + 1) x width patches on which it is bilinear in (phi, theta). Patch row r lies between the
+/// It consists of (height + 1) x width patches on which it is bilinear in (phi, theta). Patch row r lies between the
 /// centres of texel rows r - 1 and r (the first and the last are the half rows); patch column x between those of texels
 /// x and x + 1.
 class ReferenceSource {
@@ -45,9 +45,9 @@ class ReferenceSource {
 
     /// Radiance from a direction (any length).
     Vec3d lookup(const Vec3d& direction) const;
-    /// Mean over the sphere: (1 / 4 pi) int g d omega.
+    /// Mean over the sphere: (1 / 4 pi) ∫ g dω.
     const Vec3d& mean() const { return mean_; }
-    /// a_lm = int g Y_lm d omega for l < bands, the basis turned by `world_to_source`: Gauss-Legendre on each patch.
+    /// a_lm = ∫ g Y_lm dω for l < bands, the basis turned by `world_to_source`: Gauss-Legendre on each patch.
     std::vector<Vec3d> spherical_harmonics(int bands, const Mat3& world_to_source, int threads) const;
 
   private:

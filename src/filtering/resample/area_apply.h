@@ -6,9 +6,9 @@
 
 namespace domelight::simd {
 
-/// Source rows in memory: four floats a texel (RGB and one of no meaning). A row lies in quarters of ceil(width / 4)
-/// columns (the last one shorter), each followed by the first `k_ring_padding` columns beyond it, wrapping: so short
-/// runs of columns lie together, and the same place in each quarter does not fall on the same lines of a cache.
+/// Source rows in memory: four floats a texel (RGB and an unused one). A row is stored in quarters of ceil(width / 4)
+/// columns (the last one is shorter), each followed by the next `k_ring_padding` columns, wrapping around. So short
+/// runs of columns are contiguous, and the same position in each quarter does not map to the same lines of a cache.
 struct RowRing {
     const float* data = nullptr;
     std::ptrdiff_t stride = 0;  ///< floats from one row to the next
@@ -32,14 +32,14 @@ inline std::ptrdiff_t RowRing::quarter_stride() const {
     return (4 * std::ptrdiff_t(quarter() + k_ring_padding) + 1023) / 1024 * 1024 + 16 * 11;
 }
 
-/// The weights of one output texel: rows x columns source texels, the columns counted from an instance's own origin.
+/// The weights of one output texel: rows x columns source texels. Columns are counted from the origin of an instance.
 struct Stencil {
     std::int32_t row = 0, column = 0;
-    std::int32_t rows = 0, columns = 0;  ///< columns is even; a last one may weigh nothing
+    std::int32_t rows = 0, columns = 0;  ///< columns is even; the last one may have weight 0
     std::uint32_t first = 0;             ///< of its weights, row by row
 };
 
-/// One of the places on the sphere where the same stencil applies.
+/// One of the positions on the sphere where the same stencil applies.
 struct StencilInstance {
     int column_origin = 0;  ///< source column of the stencil's column 0; in [0, width)
     int direction = 1;      ///< -1: the stencil's columns run to the left
@@ -55,7 +55,7 @@ struct StencilBlock {
     std::span<const Stencil> stencils;
     const float* weights = nullptr;
     int columns = 0, rows = 0;
-    int first_row = 0, last_row = 0, first_column = 0, last_column = 0;  ///< the part of the source that they touch
+    int first_row = 0, last_row = 0, first_column = 0, last_column = 0;  ///< the part of the source that they need
 };
 
 /// Writes sum weight * source of every texel of the block and every instance. `flipped`: the source upside down.

@@ -94,7 +94,7 @@ HWY_INLINE std::ptrdiff_t wrapped(int column, const RowRing& ring) {
     return ring.place(column);
 }
 
-/// The sums of up to four instances, by name: arrays would end up in memory.
+/// The sums of up to four instances, as separate variables: arrays would be kept in memory.
 struct Sums {
     Sum a, b, c, d;
 };
@@ -121,7 +121,7 @@ HWY_INLINE Sums sum_columns(const Stencil& s, int column, int columns, const flo
     return {a, b, c, d};
 }
 
-/// A long sum and what its rounding lost.
+/// A long sum and its rounding error.
 struct LongSum {
     Sum total, lost;
 };
@@ -133,8 +133,8 @@ HWY_INLINE LongSum add_part(LongSum sum, Sum part) {
     return {next, add(sum.lost, error)};
 }
 
-/// A wide stencil, as the texels near a pole have: in parts, each wrapped by itself, and summed so that thousands of
-/// floats still make a constant to 1e-6.
+/// A wide stencil, as for texels near a pole. It is applied in parts, each wrapped by itself, with compensated sums, so
+/// that thousands of floats still keep a constant to 1e-6.
 template <int count, bool reverse>
 Sums sum_wide(const Stencil& s, const float* weights, const StencilInstance* instances, const RowRing& ring,
               bool flipped) {
@@ -158,8 +158,8 @@ Sums sum_wide(const Stencil& s, const float* weights, const StencilInstance* ins
     return {add(a.total, a.lost), add(b.total, b.lost), add(c.total, c.lost), add(d.total, d.lost)};
 }
 
-/// A block's texels of one instance, as they will lie in the output: written there at the end, in whole lines and past
-/// the caches. (Three floats at a time to 75 MB of cold memory take as long as computing them.)
+/// A block's texels of one instance in the order of the output. They are written at the end, in whole cache lines and
+/// bypassing the caches. (Writing three floats at a time to 75 MB of cold memory takes as long as computing them.)
 struct BlockPixels {
     static constexpr int k_floats = 3 * k_block_side * k_block_side;
     float* out;
@@ -205,7 +205,7 @@ HWY_INLINE void write_block(const BlockPixels& b, const float* pixels) {
 template <int count, bool reverse>
 void apply(const StencilBlock& block, const StencilInstance* instances, const RowRing& ring, bool flipped, float* out) {
     const Stencil* s = block.stencils.data();
-    // Where all columns of the block fit into the row and its padding, they are wrapped once for all.
+    // If all columns of the block fit into the row and its padding, they are wrapped only once.
     const bool narrow = block.last_column - block.first_column < k_ring_padding;
     const float* at[count];
     for (int i = 0; i < count; ++i) {
@@ -214,7 +214,7 @@ void apply(const StencilBlock& block, const StencilInstance* instances, const Ro
             ring.data + (reverse ? wrapped(origin - block.last_column, ring) + 4 * std::ptrdiff_t(block.last_column)
                                  : wrapped(origin + block.first_column, ring) - 4 * std::ptrdiff_t(block.first_column));
     }
-    // The rows are short and far apart: no hardware guesses them.
+    // The rows are short and far apart, so hardware does not prefetch them.
     if (narrow)
         for (int row = block.first_row; row <= block.last_row; ++row) {
             const std::ptrdiff_t offset = ((flipped ? ring.height - 1 - row : row) & (ring.capacity - 1)) * ring.stride;

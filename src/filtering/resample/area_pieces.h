@@ -10,9 +10,9 @@ struct ArcPieces {
     // In: from T = from to T = to; the tangent and cosine of psi at the cell's first column of texel centres, cosine
     // and sine of theta at its first row.
     const double *from, *to, *column_tan, *column_cos, *row_cos, *row_sin;
-    // Out, two each, for the cell's left and right column of the source: int w (1 - u) dpsi and int w u dpsi, u the
-    // place between the columns, with w = int (1 - v) sin theta (upper), int v sin theta (lower) over theta from the
-    // cell's first row down to the circle, v the place between the rows, and w = 1 (width).
+    // Out, two each, for the cell's left and right column of the source: ∫ w (1 - u) dpsi and ∫ w u dpsi, u the
+    // position between the columns, with w = ∫ (1 - v) sin theta (upper), ∫ v sin theta (lower) over theta from the
+    // cell's first row down to the circle, v the position between the rows, and w = 1 (width).
     double *upper, *lower, *width;
 };
 

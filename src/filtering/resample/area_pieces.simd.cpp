@@ -49,7 +49,7 @@ HWY_INLINE void integrate(const ArcPieces& pieces, std::size_t count, double kap
             const V root_q = hn::Sqrt(q), root_p = hn::Sqrt(p), inverse = hn::Div(one, hn::Mul(root_q, root_p));
             const V cos_psi = hn::Mul(root_p, inverse), root_p_inverse = hn::Mul(root_q, inverse);
             const V cos_theta = hn::Mul(kappa, root_p_inverse), sin_theta = hn::Mul(root_q, root_p_inverse);
-            // From the row's centre down to theta: int sin = zeroth, int (t - row) sin t dt = first.
+            // From the row's centre down to theta: ∫ sin = zeroth, ∫ (t - row) sin t dt = first.
             const V below = small_asin(hn::MulSub(sin_theta, row_cos, hn::Mul(cos_theta, row_sin)));
             const V zeroth = hn::Sub(row_cos, cos_theta),
                     first = hn::NegMulAdd(below, cos_theta, hn::Sub(sin_theta, row_sin));

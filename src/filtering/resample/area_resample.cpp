@@ -15,7 +15,7 @@ namespace domelight {
 
 namespace {
 
-/// What the fast version needs for its quadrature to be exact to 1e-9.
+/// The condition under which the quadrature of the fast version is exact to 1e-9.
 constexpr int k_least_width = 256, k_least_height = 128;
 
 int odd_factor(int size, int least) {
@@ -23,8 +23,8 @@ int odd_factor(int size, int least) {
     return factor + (factor % 2 == 0);
 }
 
-/// Hands a small source on as a larger one with the same reconstruction: an odd factor keeps every texel centre, and
-/// between them the new texels lie on the bilinear function.
+/// Enlarges a small source without changing its reconstruction: an odd factor keeps every texel centre, and the new
+/// texels between them lie on the bilinear function.
 class RefinedSource : public AreaResampler {
   public:
     template <typename Make>
@@ -70,7 +70,7 @@ class RefinedSource : public AreaResampler {
 };
 
 /// Averages blocks of a larger cube's texels, each by its own solid angle: exactly the texels of a smaller one. So no
-/// texel of the fast version ever spans many source rows.
+/// texel of the fast version spans many source rows.
 class CoarsenedCube : public AreaResampler {
   public:
     CoarsenedCube(int size, int factor, int threads, std::unique_ptr<AreaResampler> fine)

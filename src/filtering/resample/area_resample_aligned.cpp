@@ -32,7 +32,7 @@ std::optional<AlignedOrientation> align(const Mat3& m) {
 
 namespace {
 
-/// The faces (quarters of the polar ones) that see the same pattern of columns: one set of stencils serves them all.
+/// The faces (and quarters of the polar faces) with the same pattern of columns: they share one set of stencils.
 struct PhaseGroup {
     ColumnPhase columns;
     struct Member {
@@ -41,7 +41,7 @@ struct PhaseGroup {
     };
     std::vector<Member> members;
     bool mirror_symmetric;    ///< the pattern is its own mirror image about the middle of a face
-    bool diagonal_symmetric;  ///< and about 45 degrees
+    bool diagonal_symmetric;  ///< the same about 45 degrees
 };
 
 struct PlacedTile {
@@ -111,7 +111,7 @@ AlignedResampler::AlignedResampler(int width, int height, int size, const Aligne
     make_tiles();
     int span = 1;
     for (const Job& j : jobs_) span = std::max(span, j.last_row - j.first_row + 1);
-    // Work starts when the ring is full. A small one stays in the caches.
+    // Work starts when the ring buffer is full. A small one stays in the caches.
     ring_.capacity = int(std::bit_ceil(unsigned(span + 24)));
     batch_ = ring_.capacity - span;
     ring_.width = width;
@@ -165,7 +165,7 @@ void AlignedResampler::make_tiles() {
 }
 
 void AlignedResampler::add_tiles(bool polar, int group, int i0, int j0, int j1, bool triangle) {
-    // Small enough for a short window of source rows, large enough that the lines a tile shares with the next cost
+    // Small enough for a short window of source rows, and large enough that the lines shared by neighbouring tiles cost
     // little.
     const double rows_per_texel = 1.5 * 2 / size_ / grid_.row_angle;
     const int edge = std::clamp(int(96 / rows_per_texel), 1, simd::k_block_side);
@@ -272,7 +272,7 @@ void AlignedResampler::copy_rows(ImageView<const float> rows) {
         const int quarter = ring_.quarter();
         for (int q = 0; q * quarter < width_; ++q, to += ring_.quarter_stride()) {
             const int first = q * quarter, count = std::min(quarter, width_ - first);
-            // A texel's fourth float is the next one's first, finite like the others.
+            // The fourth float of a texel is the first of the next one, which is finite like the others.
             const int whole = first + count < width_ ? count : count - 1;
             for (int x = 0; x < whole; ++x) std::memcpy(to + 4 * x, from + 3 * (first + x), 4 * sizeof(float));
             for (int x = whole; x < count + simd::k_ring_padding; ++x) {
@@ -298,13 +298,13 @@ void AlignedResampler::add_rows(ImageView<const float> rows) {
     }
 }
 
-/// Runs every job whose rows are all there.
+/// Runs every job whose rows have all been read.
 void AlignedResampler::process() {
     processed_ = received_;
     std::vector<Job> north, south;
     for (; next_job_ < jobs_.size() && jobs_[next_job_].last_row < received_; ++next_job_)
         (jobs_[next_job_].south ? south : north).push_back(jobs_[next_job_]);
-    // The south uses the stencils that the north has computed.
+    // The southern half uses the stencils of the northern half.
     parallel_for(int(north.size()), threads_, [&](int k) { run(north[k]); });
     parallel_for(int(south.size()), threads_, [&](int k) { run(south[k]); });
 }

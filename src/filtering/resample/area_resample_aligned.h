@@ -14,11 +14,11 @@ struct AlignedOrientation {
     double angle = 0;  ///< -45 to 45 degrees
 };
 
-/// Nothing if the source's polar axis is no axis of the world.
+/// Empty if the source's polar axis is not an axis of the world.
 std::optional<AlignedOrientation> align(const Mat3& world_to_source);
 
-/// area_resample_to_cube where the source's polar axis is an axis of the cube. By stencils, computed once and applied
-/// wherever symmetry repeats them; keeps some rows of the source and the stencils.
+/// area_resample_to_cube where the source's polar axis is an axis of the cube. Each stencil is computed once and
+/// applied wherever symmetry repeats it. Keeps some rows of the source and the stencils in memory.
 std::unique_ptr<AreaResampler> aligned_to_cube(int width, int height, int size, const AlignedOrientation& orientation,
                                                int threads);
 

@@ -28,8 +28,8 @@ std::vector<Arc> clip(std::span<const Arc> border, const Vec3d& normal) {
     const auto append = [&](const Arc& arc) {
         if (!kept.empty()) {
             const Vec3d from = kept.back().at(kept.back().s1), to = arc.at(arc.s0);
-            // Where the border leaves and comes back both ends lie on the plane, so the great arc between them does
-            // too.
+            // The points where the border leaves the half space and returns lie on the plane, so the great arc between
+            // them does too.
             if (length(to - from) > 1e-15) kept.push_back(great_arc(normalize(from), normalize(to)));
         }
         kept.push_back(arc);
@@ -78,7 +78,7 @@ Vec3d CubeIntegrator::at(const Vec3d& d) const {
            (texel(p.face, i, j + 1) * (1 - s) + texel(p.face, i + 1, j + 1) * s) * t;
 }
 
-/// int g (1 + S^2 + T^2)^(-3/2) dS at T = t from the left end of column cell `reference` to `s`, which lies in `cell`;
+/// ∫ g (1 + S^2 + T^2)^(-3/2) dS at T = t from the left end of column cell `reference` to `s`, which lies in `cell`;
 /// v is t's place in the cell.
 CubeIntegrator::Flux CubeIntegrator::along_row(int face, double s, Cell cell, double v, double t, int reference) const {
     Flux sum;
@@ -182,7 +182,8 @@ void store(float* to, const Vec3d& g, std::pair<double, double> range) {
     to[2] = float(std::clamp(g.z, range.first, range.second));
 }
 
-/// Averages lie between the least and the greatest texel; rounding must not push them out (below zero, say).
+/// Averages lie between the least and the greatest texel; rounding must not move them outside (below zero, for
+/// example).
 std::pair<double, double> range_of(const Cubemap& source) {
     const auto [least, greatest] = std::minmax_element(source.pixels().begin(), source.pixels().end());
     return {*least, *greatest};
@@ -198,7 +199,7 @@ Cubemap area_resample_cube(const Cubemap& source, int size, const Mat3& world_to
     assert(source.channels() == 3);
     Cubemap out(size);
     if (size == source.size() && area::permutes_axes(world_to_source)) {
-        // The same texels in other places. Averaging the reconstruction would blur them a little for nothing.
+        // The same texels in other places. Averaging the reconstruction would blur them for no gain.
         parallel_for(6 * size, threads, [&](int row) {
             for (int x = 0; x < size; ++x) {
                 const CubePoint p = cube_point(
@@ -227,7 +228,7 @@ ImageF area_resample_cube_to_latlong(const Cubemap& source, int out_height, cons
     ImageF out(width, out_height, 3);
     const area::CubeIntegrator integrator(source);
     const auto range = area::range_of(source);
-    // Texels wider than an eighth of a turn go in parts: a border must be small against a half sphere.
+    // Texels wider than an eighth of a turn are divided, because a border must be small compared with a half sphere.
     const int across = (8 + width - 1) / width, down = (4 + out_height - 1) / out_height;
     parallel_for(out_height, threads, [&](int y) {
         for (int x = 0; x < width; ++x) {

@@ -9,19 +9,19 @@
 
 namespace domelight::area {
 
-/// int g d omega over regions of the sphere, g the reconstruction of a cubemap that continues across edges
+/// ∫ g dω over regions of the sphere, g the reconstruction of a cubemap that continues across edges
 /// (BorderedCube): between the centres of a face's texels bilinear on the face's plane; past the outermost centres
 /// towards the texels of the neighbouring face that lie across the edge; and towards each of the cube's corners to the
 /// mean of the three texels that meet there. g is continuous everywhere.
 ///
-/// By Stokes on each face's plane (S to the right, T down, -1..1): d omega = dS dT / (1 + S^2 + T^2)^(3/2), so with
-/// F(S, T) = int_{S_ref}^S g (1 + S^2 + T^2)^(-3/2) dS, int_R g d omega = closed integral of F dT around R, which is
+/// By Stokes on each face's plane (S to the right, T down, -1..1): dω = dS dT / (1 + S^2 + T^2)^(3/2), so with
+/// F(S, T) = ∫_{S_ref}^S g (1 + S^2 + T^2)^(-3/2) dS, ∫_R g dω = ∮ F dT around R, which is
 /// cut at the face's edges and at the lines of texel centres. In double.
 class CubeIntegrator {
   public:
     explicit CubeIntegrator(const Cubemap& source);
 
-    /// int_R g d omega of the three channels. `border` runs around R once, either way; R is small against a half
+    /// ∫_R g dω of the three channels. `border` runs around R once, either way; R is small against a half
     /// sphere.
     Vec3d integrate(std::span<const Arc> border) const;
 

@@ -108,7 +108,7 @@ class LatlongResampler : public AreaResampler {
         Taps taps;
     };
 
-    /// Averages the new rows along the columns, and finishes the output rows whose source rows are all there.
+    /// Averages the new rows along the columns, and finishes the output rows whose source rows have all been read.
     void process(ImageView<const float> rows) {
         const int from = received_;
         received_ += rows.height;

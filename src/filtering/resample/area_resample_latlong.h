@@ -9,7 +9,7 @@ namespace domelight::area {
 std::unique_ptr<AreaResampler> aligned_to_latlong(int width, int height, int out_height,
                                                   const AlignedOrientation& orientation, int threads);
 
-/// Whether `orientation` takes the world's +Y or -Y to the source's polar axis.
+/// Whether `orientation` maps the world's +Y or -Y to the source's polar axis.
 bool keeps_polar_axis(const AlignedOrientation& orientation);
 
 }  // namespace domelight::area

@@ -10,7 +10,7 @@ SineMoments sine_moments(double a, double b) {
     const double d = b - a, s = std::sin(a), c = std::cos(a);
     const double zeroth = 2 * std::sin(0.5 * (a + b)) * std::sin(0.5 * d);
     if (d > 0.2) return {zeroth, std::sin(b) - s - d * std::cos(b)};
-    // sin(a + x) = s cos x + c sin x; int x cos x and int x sin x by their series.
+    // sin(a + x) = s cos x + c sin x; ∫ x cos x and ∫ x sin x by their series.
     const double d2 = d * d;
     const double with_cos = d2 * (1.0 / 2 - d2 * (1.0 / 8 - d2 * (1.0 / 144 - d2 / 5760)));
     const double with_sin = d2 * d * (1.0 / 3 - d2 * (1.0 / 30 - d2 * (1.0 / 840 - d2 / 45360)));
@@ -40,7 +40,7 @@ Vec3d LatlongIntegrator::texel(int row, int column, double u) const {
     return Vec3d(a[0], a[1], a[2]) * (1 - u) + Vec3d(b[0], b[1], b[2]) * u;
 }
 
-/// int g sin t dt along a meridian from the top of cell row `reference` to `theta`, which lies in `cell`.
+/// ∫ g sin t dt along a meridian from the top of cell row `reference` to `theta`, which lies in `cell`.
 LatlongIntegrator::Flux LatlongIntegrator::meridian(double theta, double u, Cell cell, int reference) const {
     Flux sum;
     const auto whole_row = [&](int j) {
@@ -51,7 +51,7 @@ LatlongIntegrator::Flux LatlongIntegrator::meridian(double theta, double u, Cell
     };
     const auto part = [&](double a, double b) {
         const SineMoments m = sine_moments(a, b);
-        // In the half rows at the poles both rows are the same one, so where s starts does not matter.
+        // In the half rows at the poles both rows are the same, so the origin of s does not matter.
         const double s0 = (a - (cell.row + 0.5) * row_angle_) / row_angle_;
         const double lower = m.first / row_angle_ + s0 * m.zeroth;
         sum.add(m.zeroth - lower, texel(cell.row, cell.column, u));
@@ -59,7 +59,7 @@ LatlongIntegrator::Flux LatlongIntegrator::meridian(double theta, double u, Cell
         sum.solid_angle += m.zeroth;
     };
     const double top = cell_top(cell.row), bottom = cell_top(cell.row + 1);
-    theta = std::clamp(theta, top, bottom);  // a node may stray by a rounding error
+    theta = std::clamp(theta, top, bottom);  // a node may be outside by a rounding error
     if (cell.row >= reference) {
         for (int j = reference; j < cell.row; ++j) whole_row(j);
         part(top, theta);
@@ -95,14 +95,14 @@ void LatlongIntegrator::cuts(const Arc& arc, std::vector<double>& out) const {
     turning_points(arc, {0, 0, 1}, {1, 0, 0}, places);
     std::sort(places.begin(), places.end());
     for (std::size_t k = 0; k + 1 < places.size(); ++k) {
-        // A hair inside, in case the end is a pole.
+        // Slightly inside, in case the end is a pole.
         const double inside = 1e-7 * (places[k + 1] - places[k]), middle = 0.5 * (places[k] + places[k + 1]);
         const Vec3d a = arc.at(places[k] + inside), b = arc.at(places[k + 1] - inside);
         const double sign = turn(arc.place(middle).point, arc.place(middle).derivative) < 0 ? -1 : 1;
         const double start = std::atan2(a.z, a.x);
         double sweep = sign * (std::atan2(b.z, b.x) - start);
         sweep -= 2 * k_pi * std::floor(sweep / (2 * k_pi));
-        if (sweep > 2 * k_pi - 1e-6) continue;  // a rounding error the other way
+        if (sweep > 2 * k_pi - 1e-6) continue;  // a rounding error in the other direction
         const double from = (std::min(start, start + sign * sweep) + k_pi) / column_angle_ - 0.5;
         for (double i = std::floor(from), end = std::ceil(from + sweep / column_angle_); i <= end; ++i) {
             const double phi = (i + 0.5) * column_angle_ - k_pi;
@@ -113,7 +113,7 @@ void LatlongIntegrator::cuts(const Arc& arc, std::vector<double>& out) const {
 }
 
 void LatlongIntegrator::add_piece(const Arc& arc, double a, double b, Cell cell, int reference, Flux& sum) const {
-    // dphi/ds has poles at the distance of the source's poles: keep pieces short against it.
+    // dphi/ds has poles at the distance of the source's poles: pieces must be short compared with it.
     const double half = 0.5 * (b - a), middle = 0.5 * (a + b), size = 2 * half * arc.radius();
     const Vec3d m = arc.at(middle);
     const double near = std::sqrt(m.x * m.x + m.z * m.z) - 0.5 * size;
@@ -158,7 +158,8 @@ namespace {
 
 using Pole = LatlongIntegrator::Pole;
 
-/// Close enough to a border to be treated as on it: either treatment is right there, this only has to exceed rounding.
+/// A point closer to a border than this is treated as lying on it. Either treatment is right there; the distance only
+/// has to exceed rounding.
 constexpr double k_border = 1e-9;
 
 Pole pole_in_cube_texel(int face, int x, int y, int size, const Mat3& world_to_source) {
@@ -184,14 +185,14 @@ Pole pole_in_latlong(double u0, double u1, double v0, double v1, const Mat3& wor
         const UV at = latlong_uv(source_to_world * Vec3d{0, pole == Pole::north ? 1.0 : -1.0, 0});
         if (at.v < v0 - k_border || at.v > v1 + k_border) continue;
         if (at.v < k_border || at.v > 1 - k_border) return pole;
-        // The border's slack in u grows where the meridians meet.
+        // The tolerance at the border, in u, grows where the meridians meet.
         const double slack = k_border / std::sin(k_pi * at.v), off = at.u - u0 - std::floor(at.u - u0 + slack);
         if (off <= u1 - u0 + slack) return pole;
     }
     return Pole::none;
 }
 
-/// Keeps the rows it is given and does the work at the end.
+/// Stores the rows and does the work at the end.
 class PlainResampler : public AreaResampler {
   public:
     PlainResampler(int width, int height, int out_width, int out_height, const Mat3& world_to_source, int threads,
@@ -213,7 +214,8 @@ class PlainResampler : public AreaResampler {
     ImageF finish() override {
         assert(filled_ == source_.height());
         const LatlongIntegrator integrator(source_);
-        // The average lies between the least and the greatest texel; rounding must not push it out (below zero, say).
+        // The average lies between the least and the greatest texel; rounding must not move it outside (below zero, for
+        // example).
         const auto [least, greatest] = std::minmax_element(source_.pixels().begin(), source_.pixels().end());
         const double low = *least, high = *greatest;
         parallel_for(out_.height(), threads_, [&](int y) {
@@ -236,7 +238,7 @@ class PlainResampler : public AreaResampler {
                cube_solid_angle(x, y, size);
     }
     Vec3d latlong_texel(const LatlongIntegrator& integrator, int x, int y) const {
-        // In parts of at most an eighth of a turn either way, so that none holds two poles.
+        // In parts of at most an eighth of a turn in each direction, so that none contains two poles.
         const int across = (8 + out_.width() - 1) / out_.width(), down = (4 + out_.height() - 1) / out_.height();
         Vec3d sum;
         for (int j = 0; j < down; ++j)

@@ -14,25 +14,25 @@ struct SineMoments {
     double zeroth, first;
 };
 
-/// int_a^b sin t dt and int_a^b (t - a) sin t dt, without cancellation in thin intervals.
+/// ∫_a^b sin t dt and ∫_a^b (t - a) sin t dt, without cancellation in thin intervals.
 SineMoments sine_moments(double a, double b);
 
-/// int g d omega over regions of the sphere, g the bilinear reconstruction of a lat-long image (u wraps, v clamps in
+/// ∫ g dω over regions of the sphere, g the bilinear reconstruction of a lat-long image (u wraps, v clamps in
 /// the half rows at the poles). In double; the view must outlive the integrator.
 ///
-/// By Stokes: with F(theta, phi) = int_{theta_ref}^theta g sin t dt, int_R g d omega = closed integral of F dphi around
+/// By Stokes: with F(theta, phi) = ∫_{theta_ref}^theta g sin t dt, ∫_R g dω = ∮ F dphi around
 /// R, for any theta_ref if R contains no pole, and for theta_ref = the pole if it contains one. The border is cut where
 /// it crosses the rows and columns of texel centres: between the cuts F is smooth and a few Gauss-Legendre nodes are
-/// exact to rounding. theta_ref is close to R, so that a bright light elsewhere on the meridian cannot swamp the
-/// digits.
+/// exact to rounding. theta_ref is close to R, so that a bright light elsewhere on the meridian does not cost
+/// precision.
 class LatlongIntegrator {
   public:
     explicit LatlongIntegrator(ImageView<const float> image);
 
-    /// Which poles of the source a region contains (also when they are merely on its border).
+    /// Which poles of the source a region contains (including poles on its border).
     enum class Pole { none, north, south };
 
-    /// int_R g d omega of the three channels. `border` runs around R once, either way; R is no larger than a half
+    /// ∫_R g dω of the three channels. `border` runs around R once, either way; R is no larger than a half
     /// sphere.
     Vec3d integrate(std::span<const Arc> border, Pole pole) const;
 

@@ -22,10 +22,10 @@ SourceGrid::SourceGrid(int width_, int height_)
         row_cos.push_back(c);
         row_sin.push_back(s);
         row_tan2.push_back(2 * j + 1 >= height ? k_infinity : (s / c) * (s / c));
-        // int v sin theta by the sum rule about the cell's middle: half the whole, and the odd part cos(middle) (...).
+        // ∫ v sin theta by the sum rule about the cell's middle: half the whole, and the odd part cos(middle) (...).
         const bool polar = j < 0 || j + 1 == height;
         const double whole = polar ? 2 * std::pow(std::sin(0.25 * h), 2) : 2 * std::sin(middle) * std::sin(0.5 * h);
-        // int_{-h/2}^{h/2} (x/h) sin(m + x) dx = cos m (2 sin(h/2) - h cos(h/2)) / h
+        // ∫_{-h/2}^{h/2} (x/h) sin(m + x) dx = cos m (2 sin(h/2) - h cos(h/2)) / h
         const double x = 0.5 * h, x2 = x * x;
         const double odd = x2 * x * 2 * (1.0 / 3 - x2 * (1.0 / 30 - x2 * (1.0 / 840 - x2 / 45360))) / h;
         whole_lower.push_back(0.5 * whole + (polar ? 0 : std::cos(middle) * odd));
@@ -93,7 +93,8 @@ void TileBuilder::add_part(const Line& line, const LineFrame& frame, int first, 
     };
     const std::size_t start = count_;
     double t = boundary(step > 0 ? first : first + 1);
-    // The cell where the part starts: a first guess by the angles, then by the same numbers as the crossings.
+    // The cell where the part starts: first estimated by the angles, then corrected by the same numbers as the
+    // crossings.
     int column = std::max(0, int(std::floor(std::atan(t) / grid_.column_angle + frame.phase)));
     while (column > 0 && frame.tan[column] > t) --column;
     while (frame.tan[column + 1] <= t) ++column;
@@ -132,11 +133,11 @@ void TileBuilder::add_part(const Line& line, const LineFrame& frame, int first, 
         include(run.plus, cell(column_a), cell(column), row_a, row);
         include(run.minus, cell(column_a), cell(column), row_a, row);
         runs_.push_back(run);
-        // A crossing exactly on the texel grid: step over it now.
+        // A crossing exactly on the texel grid is passed now.
         while (next_column <= t) next_column = frame.tan[++column + 1];
         while (next_row <= t) next_row = row_crossing(++row + 1);
     }
-    // Two nodes are exact to 1e-9 where pieces are short against their distance from the singular points T = +-i.
+    // Two nodes are exact to 1e-9 if pieces are short compared with their distance from the singular points T = +-i.
     const double longest =
         std::max({grid_.column_angle, grid_.row_angle, std::sqrt(grid_.column_angle * 2 * line.scale)});
     const auto at = [&](std::vector<double>& a) { return a.data() + start; };
@@ -234,7 +235,7 @@ simd::Stencil TileBuilder::shape_of(const Box& box, bool mirrored) const {
     return {first, box.column0, last - first + 1, box.node_columns(), 0};
 }
 
-/// Adds to every cell what lies in it above the pieces of lower cells.
+/// Adds to every cell the part of it that lies above the pieces in lower cells.
 void TileBuilder::sum_cells(const Box& box) {
     const int cells = box.columns(), columns = box.node_columns();
     double* nodes = nodes_.data() + box.nodes;

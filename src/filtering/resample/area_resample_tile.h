@@ -21,7 +21,7 @@ struct SourceGrid {
     double column_angle, row_angle;
     std::vector<double> row_cos, row_sin;          ///< of theta at the cell's top
     std::vector<double> row_tan2;                  ///< tan^2 there; infinite from the equator on
-    std::vector<double> whole_upper, whole_lower;  ///< int (1 - v) sin theta and int v sin theta over the cell
+    std::vector<double> whole_upper, whole_lower;  ///< ∫ (1 - v) sin theta and ∫ v sin theta over the cell
 };
 
 /// The source's columns as seen along a great circle: node n lies at psi = (n - phase) * column_angle, psi = 0 where
@@ -45,15 +45,15 @@ struct ColumnPhase {
     LineFrame from_z, from_minus_z;  ///< from +90 degrees backward, from -90 degrees forward
 };
 
-/// A block of output texels [i0, i1) x [j0, j1) of a face in the source's aligned frame.
-/// Side face: i along growing azimuth, j downwards, at most the upper half (with the middle row of an odd size).
-/// Polar face: i along x, j along z, both from the face's middle on.
+/// A block of output texels [i0, i1) x [j0, j1) of a face in the source's aligned frame. On a side face i runs along
+/// growing azimuth and j downwards, at most over the upper half (with the middle row of an odd size). On a polar face i
+/// runs along x and j along z, both from the middle of the face.
 struct TileShape {
     bool polar = false;
     int i0 = 0, i1 = 0, j0 = 0, j1 = 0;
 };
 
-/// Memory for stencils, taken from large blocks and given back all at once. Safe to use from many threads.
+/// Memory for stencils, allocated in large blocks and freed all at once. Safe to use from many threads.
 class StencilArena {
   public:
     /// 64-byte aligned.
@@ -75,7 +75,7 @@ struct Tile {
 
 /// Computes the weights of output texels: the exact overlap of each with every source texel's tent.
 ///
-/// As in the plain version by Stokes, int over a texel = closed integral of F dphi, with every border line a great
+/// As in the plain version by Stokes, the integral over a texel = ∮ F dphi, with every border line a great
 /// circle cot theta = kappa cos psi: a horizontal texel edge at height t of a side face has kappa = t and psi from the
 /// face's middle (the vertical ones are meridians, dphi = 0); the line x = c of a polar face has kappa = 1/c and psi
 /// from the x axis, z = c likewise from the z axis. The circles are cut at the source's columns and rows and at the

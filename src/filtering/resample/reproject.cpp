@@ -18,7 +18,7 @@ namespace reproject_detail {
 namespace {
 
 constexpr int k_tile = 16;
-/// How far (in source texels) a straight line may run beside the curve that an outline really is.
+/// The largest distance (in source texels) between a straight line and the curve that it approximates.
 constexpr double k_straight = 0.004;
 
 class Reprojector {
@@ -26,7 +26,7 @@ class Reprojector {
     Reprojector(const Source& source, const Projection& target, int width, int height, ImageF& out)
         : source_(source), target_(target), width_(width), height_(height), out_(out) {}
 
-    /// Texels [x0, x1) x [y0, y1) of a chart: together where nothing is in the way, else in parts, down to one.
+    /// Texels [x0, x1) x [y0, y1) of a chart: all together if possible, otherwise in parts, down to a single texel.
     void block(int chart, int x0, int y0, int x1, int y1, TileIntegrator& integrator) const {
         if (together(chart, x0, y0, x1, y1, integrator)) return;
         const int w = x1 - x0, h = y1 - y0;
@@ -42,8 +42,8 @@ class Reprojector {
     }
 
   private:
-    /// Where the point at (x, y), in texels of the chart, falls in the source. Fractions lie within texel (column,
-    /// row).
+    /// The position in the source of the point (x, y), given in texels of the chart. Fractions lie within texel
+    /// (column, row).
     Vec3d direction(int chart, double x, double y) const {
         if (target_.grid() == SampleGrid::centres) return target_.direction(chart, {x / width_, y / height_});
         const int column = std::min(int(x), width_ - 1), row = std::min(int(y), height_ - 1);
@@ -58,7 +58,8 @@ class Reprojector {
     struct Point {
         double x = 0, y = 0;
     };
-    /// The place of a target point in the chart and region of `near`, its x moved by whole turns next to it.
+    /// The position of a target point in the chart and region of `near`, with x shifted by whole turns to be next to
+    /// it.
     Point place(int chart, double x, double y, const Place& near) const {
         const Place p = source_.locate_near(direction(chart, x, y), near);
         return {unwrapped(p.x, near.x), p.y};
@@ -107,7 +108,7 @@ class Reprojector {
             const Point m = place(chart, x, y, near);
             bend = std::max({bend, std::abs(m.x - 0.5 * (a.x + b.x)), std::abs(m.y - 0.5 * (a.y + b.y))});
         };
-        // On the border and the middle lines of the block: what bends most is there, and bends slowly.
+        // Checked on the border and the middle lines of the block, where the curvature is largest; it varies slowly.
         for (const int j : {0, ny / 2, ny - 1})
             for (int i = 0; i + 1 < nx; i += 4)
                 test(points[std::size_t(j * nx + i)], points[std::size_t(j * nx + i + 1)], x0 + i + 0.5, y0 + j);
@@ -154,7 +155,8 @@ class Reprojector {
 
     /// The mean over the texel's own points, each weighted by its solid angle.
     void supersample(int chart, int x, int y) const {
-        // Two points a source texel at least, so that none is overlooked; more where a little light would weigh much.
+        // At least two points for each source texel, so that none is missed; more where a small bright light would
+        // matter.
         const double covered =
             target_.shape().solid_angle(target_.texel_box(x, y, width_, height_)) / source_.mean_solid_angle();
         const int least = std::clamp(int(std::ceil(2 * std::sqrt(std::max(0.0, covered)))), 8, 64);
@@ -211,7 +213,7 @@ Vec3d radiant_power(const ProjectedImage& image, int threads) {
     parallel_for((h + 1) / 2, threads, [&](int y) {
         std::vector<double> omega(static_cast<std::size_t>(w));
         image.projection.texel_solid_angles(y, w, h, omega);
-        // Those of one solid angle are added first: at most twelve floats.
+        // Texels of the same solid angle are added first: at most twelve floats.
         std::vector<float> alike(3 * omega.size());
         for (int c = 0; c < image.projection.charts(); ++c)
             for (const int row : {y, h - 1 - y}) {

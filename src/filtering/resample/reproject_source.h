@@ -12,7 +12,7 @@ namespace domelight::reproject_detail {
 struct Place {
     int chart = 0;
     double x = 0, y = 0;
-    int region = 0;  ///< between a chart's regions lie seams
+    int region = 0;  ///< the regions of a chart are separated by seams
     bool shown = true;
 };
 
@@ -25,7 +25,7 @@ struct Cell {
     }
 };
 
-/// A source picture with what reprojecting asks of it.
+/// A source picture with the functions that reprojection needs.
 class Source {
   public:
     Source(const ProjectedImage& image, int threads);
@@ -37,15 +37,15 @@ class Source {
     bool black_beyond() const { return black_beyond_; }
 
     Place locate(const Vec3d& world) const;
-    /// The same where `near`'s chart and region go on.
+    /// The same with the chart and region of `near` continued.
     Place locate_near(const Vec3d& world, const Place& near) const;
-    /// Radiance of a texel as a function; x wraps where the picture does, else it is clamped, as is y.
+    /// The radiance within a texel as a function. x wraps if the picture does, otherwise it is clamped, as is y.
     Cell cell(int chart, int x, int y) const;
     double solid_angle(int x, int y) const {
         return rows_alike_ ? solid_angle_[std::size_t(y)] : solid_angle_[std::size_t(y) * width_ + x];
     }
-    /// The solid angle's density within a texel of row y is 1 + density_slope(y) eta times its mean. (0 but for
-    /// lat-long maps, near whose poles it matters.)
+    /// The solid angle's density within a texel of row y is 1 + density_slope(y) eta times its mean. (It is 0 except
+    /// for lat-long maps, where it matters near the poles.)
     double density_slope(int y) const {
         return rows_alike_ && projection_.grid() == SampleGrid::centres
                    ? k_pi / height_ / std::tan(k_pi * (y + 0.5) / height_)
@@ -53,12 +53,12 @@ class Source {
     }
     /// Of the texels of all charts.
     double mean_solid_angle() const { return projection_.shape().coverage() / (double(width_) * height_ * charts()); }
-    /// At a place (shown or not: there the nearest).
+    /// The radiance at a position; if no direction is shown there, that of the nearest one.
     Vec3d at(const Place& place) const;
 
   private:
     static constexpr int k_border = 2;
-    const float* texel(int chart, int x, int y) const {  // up to k_border outside
+    const float* texel(int chart, int x, int y) const {  // up to k_border texels outside
         return padded_.at(x + k_border, chart * (height_ + 2 * k_border) + y + k_border);
     }
     Place in_texels(int chart, UV uv, int region, bool shown) const;
@@ -71,7 +71,8 @@ class Source {
     std::vector<double> solid_angle_;
 };
 
-/// Halves each chart as long as its texels are less than a sixth of the target's across: means by solid angle.
+/// Halves each chart as long as its texels are narrower than a sixth of the target's. Texels become means by solid
+/// angle.
 ProjectedImage reduce(const ProjectedImage& image, double target_texel, int threads);
 
 }  // namespace domelight::reproject_detail

@@ -57,7 +57,7 @@ Flux TileIntegrator::along(double ax, double ay, double bx, double by) const {
         const int x = std::clamp(i - x0_, 0, width_ - 1), y = std::clamp(j - y0_, 0, height_ - 1);
         const Column& c = columns_[std::size_t(y) * width_ + x];
         const double middle = 0.5 * (s + end), half = 0.5 * (end - s);
-        // Exact to the fifth degree, where the density has a slope; else the third will do.
+        // Exact to the fifth degree if the density has a slope; otherwise the third suffices.
         constexpr double two[2] = {-0.5773502691896257, 0.5773502691896257},
                          three[3] = {-0.7745966692414834, 0, 0.7745966692414834},
                          three_weights[3] = {5.0 / 9, 8.0 / 9, 5.0 / 9};

@@ -4,7 +4,7 @@
 
 namespace domelight::reproject_detail {
 
-/// Light and solid angle of a region of the source, by which its mean is their quotient.
+/// Light and solid angle of a region of the source. Their quotient is its mean.
 struct Flux {
     Vec3d light;
     double solid_angle = 0;
@@ -14,16 +14,16 @@ struct Flux {
     }
 };
 
-/// int over polygons of a rectangle of source texels [x0, x1) x [y0, y1) of one chart.
+/// Integrals over polygons in a rectangle of source texels [x0, x1) x [y0, y1) of one chart.
 ///
-/// By Green's theorem int int p dx dy = closed integral of G dy, G(x, y) = int_x0^x p dx': with G known at each texel's
+/// By Green's theorem ∫∫ p dx dy = ∮ G dy, G(x, y) = ∫_x0^x p dx': with G known at each texel's
 /// left edge (sums along the rows), a polygon costs as much as its outline crosses texels. p is the light's density per
 /// area of the picture, quadratic within a texel: G is cubic along a line, and two Gauss nodes a piece are exact.
 class TileIntegrator {
   public:
-    /// False where the rectangle has more texels than would pay.
+    /// False if the rectangle has so many texels that another method is faster.
     bool prepare(const Source& source, int chart, int x0, int y0, int x1, int y1);
-    /// int G dy along the straight line from (ax, ay) to (bx, by), both within the rectangle.
+    /// ∫ G dy along the straight line from (ax, ay) to (bx, by), both within the rectangle.
     Flux along(double ax, double ay, double bx, double by) const;
 
   private:

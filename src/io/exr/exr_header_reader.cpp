@@ -17,11 +17,11 @@ namespace {
 
 // "OpenEXR File Layout", section "Header": attributes of (name \0, type \0, int32 size, bytes), ended by an empty name.
 
-/// Attributes that decoding needs; the rest is crossed out. The library reads the value of a known type without looking
-/// at its size, so both must be right, or it would take the bytes that follow for something else.
+/// Attributes that decoding needs; the others are masked. The library reads the value of a known type without checking
+/// its size, so type and size must both be right, or the bytes that follow would be misread.
 struct Needed {
     std::string_view name, type;
-    int size;  ///< bytes, or k_any_size where the value ends where its size says
+    int size;  ///< bytes, or k_any_size if any size is valid
 };
 constexpr int k_any_size = -1;
 constexpr std::array<Needed, 17> k_needed{{
@@ -46,7 +46,7 @@ constexpr std::array<Needed, 17> k_needed{{
 
 constexpr std::uint32_t k_multi_part = 0x1000;
 
-/// Reads little-endian numbers and strings without ever leaving the bytes.
+/// Reads little-endian numbers and strings, and never beyond the end of the bytes.
 class Cursor {
   public:
     explicit Cursor(std::span<const std::uint8_t> bytes, std::size_t at = 0) : bytes_(bytes), at_(at) {}
@@ -122,7 +122,7 @@ Result<void> read_channels(std::span<const std::uint8_t> value, PartShape& shape
     }
 }
 
-/// Takes from one attribute what concerns sizes.
+/// Reads what concerns sizes from one attribute.
 Result<void> read_attribute(std::string_view name, std::span<const std::uint8_t> value, PartShape& shape) {
     Cursor cursor(value);
     if (name == "channels") return read_channels(value, shape);
@@ -154,7 +154,7 @@ Result<void> check_part(const PartShape& shape, std::size_t file_size, std::int6
     if (chunks > std::int64_t(file_size / 16))
         return damaged(
             fmt::format("file ends too early: {} bytes cannot hold {} x {} texels", file_size, width, height));
-    // The library holds a row of tiles, and a few blocks as stored and as decoded.
+    // The library keeps in memory a row of tiles, and a few blocks as stored and as decoded.
     const std::int64_t band = (tiled ? (width + block_width - 1) / block_width * block_width : width) * block_height;
     if (band > max_bytes / 4 / shape.bytes_per_texel)
         return Error{

@@ -9,12 +9,12 @@
 
 namespace domelight {
 
-/// The headers of an OpenEXR file, looked through before the OpenEXR library sees them: the library allocates what a
-/// header asks for, and this compares what is asked for with the file first.
+/// Checks the headers of an OpenEXR file before the OpenEXR library reads them: the library allocates whatever size a
+/// header states, and here that size is first compared with the file.
 struct ExrPreflight {
-    /// The file's first bytes, up to the end of the headers, with the type name of every attribute that decoding does
-    /// not need crossed out. The library keeps attributes of unknown type as plain bytes, so it does not act on sizes
-    /// that are written inside them (a preview image's, a string vector's).
+    /// The file's first bytes, up to the end of the headers, with the type names of all attributes that decoding does
+    /// not need replaced by unknown ones. The library stores attributes of unknown type as plain bytes, so it ignores
+    /// sizes inside them (those of a preview image or a string vector).
     std::vector<char> headers;
 };
 

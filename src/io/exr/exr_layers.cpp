@@ -31,7 +31,7 @@ class Layers : public ExrLayers {
     Layers(std::shared_ptr<const FileBytes> bytes, ExrPreflight preflight, const ReaderOptions& options)
         : options_(options), stream_(std::move(bytes), std::move(preflight.headers)) {}
 
-    /// Throws what OpenEXR throws, as read_from().
+    /// Throws OpenEXR's exceptions, like read_from().
     Result<void> open();
     int width() const override { return window_.max.x - window_.min.x + 1; }
     int height() const override { return window_.max.y - window_.min.y + 1; }
@@ -73,7 +73,7 @@ Result<void> Layers::open() {
 std::optional<std::string> Layers::attribute(const std::string& name) const {
     const Imf::Header& header = file_->header(0);
     if (const auto* text = header.findTypedAttribute<Imf::StringAttribute>(name)) return text->value();
-    // The preflight crosses out the types of attributes that decoding does not need.
+    // The check of the headers has replaced the types of attributes that decoding does not need.
     if (const auto* bytes = header.findTypedAttribute<Imf::OpaqueAttribute>(name))
         return std::string(&bytes->data()[0], std::size_t(std::max(bytes->dataSize(), 0)));
     return std::nullopt;
@@ -124,7 +124,7 @@ Result<void> Layers::read_from(int part, const std::vector<std::pair<std::string
     const int count = int(channels.size());
     if (width * height * count * 4 > options_.max_bytes)
         return Error{"data window needs more memory than the limit", "", ""};
-    // A window that sticks out is read aside and cut.
+    // A data window that extends beyond the display window is read into a buffer and cropped.
     ImageF aside;
     if (!inside) aside = ImageF(int(width), int(height), count);
     Imf::InputPart input(*file_, part);

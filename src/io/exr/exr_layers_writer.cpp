@@ -1,5 +1,5 @@
-// Writes OpenEXR images of several layers: channels named LAYER.R and so on, those of the first layer without a name
-// before them.
+// Writes OpenEXR images of several layers: channels are named LAYER.R and so on, those of the first layer without a
+// prefix.
 #include "domelight/io/file/atomic_file.h"
 #include "domelight/io/write_image.h"
 

@@ -34,7 +34,8 @@ Result<void> check_sizes(std::span<const ImageView<const float>> levels, bool cu
     return {};
 }
 
-/// The next level of an image by averaging two by two texels; an odd last row or column joins the one before.
+/// The next level of an image, by averaging two by two texels; an odd last row or column is averaged with the one
+/// before.
 ImageF half_of(const ImageF& image) {
     ImageF half(std::max(1, image.width() / 2), std::max(1, image.height() / 2), image.channels());
     const auto range = [](int i, int count, int from) {
@@ -66,7 +67,7 @@ void write_level(Imf::TiledOutputFile& file, int level, const ImageF& image, boo
         for (const float v : image.pixels()) halves.push_back(half_from_float(std::clamp(v, -k_half_max, k_half_max)));
     const std::size_t channel_bytes = half ? 2 : 4, pixel = channel_bytes * std::size_t(image.channels()),
                       line = pixel * std::size_t(image.width());
-    // OpenEXR writes to none of it.
+    // OpenEXR does not write to the pixels.
     char* base = half ? reinterpret_cast<char*>(halves.data())
                       : reinterpret_cast<char*>(const_cast<float*>(image.pixels().data()));
     Imf::FrameBuffer frame;

@@ -10,8 +10,8 @@
 
 namespace domelight {
 
-/// OpenEXR's stream over our file. Its own stream loses what goes wrong on closing; ours keeps the error, and stops the
-/// writing by throwing.
+/// An OpenEXR stream that writes to our file. OpenEXR's own stream loses errors on closing; ours keeps the error, and
+/// throws to stop the writing.
 class ExrOutputStream : public Imf::OStream {
   public:
     explicit ExrOutputStream(OutputFile& file) : OStream("image"), file_(file) { buffer_.reserve(k_buffer_bytes); }

@@ -62,7 +62,7 @@ class ExrReader : public ImageReader {
     ExrReader(std::shared_ptr<const FileBytes> bytes, ExrPreflight preflight, int threads)
         : threads_(resolve_threads(threads)), stream_(bytes, std::move(preflight.headers)) {}
 
-    /// Throws what OpenEXR throws.
+    /// Throws OpenEXR's exceptions.
     Result<void> open();
     Result<bool> read(ImageView<float> rows) override;
 
@@ -77,10 +77,10 @@ class ExrReader : public ImageReader {
     std::unique_ptr<Imf::InputPart> part_;
     std::unique_ptr<Imf::RgbaInputFile> rgba_;  // luminance-chroma: the library upsamples
     ColourChannels colour_;
-    Imath::Box2i window_;  // of the picture we hand on
+    Imath::Box2i window_;  // of the picture that is read
     Imath::Box2i data_;    // of the texels in the file
     int next_row_ = 0;
-    ImageF band_;  // where the data window sticks out of the picture
+    ImageF band_;  // if the data window extends beyond the picture
     std::vector<Imf::Rgba> rgba_band_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the readers of OpenEXR share.
+// Functions shared by the readers of OpenEXR.
 
 #include "io/file/file_reader.h"
 
@@ -13,7 +13,7 @@
 
 namespace domelight {
 
-/// The file's bytes as the stream that OpenEXR wants, with the headers replaced by the checked ones.
+/// The file's bytes as an OpenEXR stream, with the headers replaced by the checked ones.
 class ExrStream : public Imf::IStream {
   public:
     ExrStream(std::shared_ptr<const FileBytes> bytes, std::vector<char> headers)
@@ -29,10 +29,10 @@ class ExrStream : public Imf::IStream {
     std::size_t at_ = 0;
 };
 
-/// What OpenEXR says, on one line and without the name it knows the stream by.
+/// OpenEXR's message, on one line and without its name of the stream.
 std::string exr_message(const std::exception& error);
 
-/// Makes the library's pool of threads at least `threads` large; one thread needs none.
+/// Enlarges the library's thread pool to at least `threads`; a single thread needs no pool.
 void provide_exr_threads(int threads);
 
 }  // namespace domelight

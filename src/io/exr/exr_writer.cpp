@@ -28,7 +28,7 @@ namespace domelight {
 
 namespace {
 
-/// Rows handed to OpenEXR at a time: several chunks of most compressions, little memory.
+/// The number of rows given to OpenEXR at a time: several chunks for most compressions, but little memory.
 constexpr int k_block_rows = 64;
 
 constexpr std::array<std::pair<const char*, Imf::Compression>, 10> k_compressions{{
@@ -103,7 +103,7 @@ Result<Imf::Header> exr_header(int width, int height, int channels, bool half, c
 
 namespace {
 
-/// Rows as OpenEXR takes them: halves in a buffer of our own, floats where they lie.
+/// Rows in the form that OpenEXR needs: half floats in our own buffer, floats in place.
 class RowWriter {
   public:
     RowWriter(Imf::OutputFile& file, int channels, bool half)
@@ -147,7 +147,7 @@ class RowWriter {
     std::vector<std::uint16_t> halves_;
 };
 
-/// Where the rows come from: called with the first row and their number; the view must stay good until the next call.
+/// The source of the rows: called with the first row and their number; the view must stay valid until the next call.
 using NextRows = std::function<Result<ImageView<const float>>(int first, int count)>;
 
 /// May throw.
@@ -155,7 +155,7 @@ Result<void> write_image(ExrOutputStream& stream, int width, int height, int cha
                          const ExrWriteOptions& options, const NextRows& next) {
     auto header = exr_header(width, height, channels, half, options);
     if (!header) return header.error();
-    // The pool is the process's; it only grows. With one thread everything happens here.
+    // The pool belongs to the process and only grows. With one thread everything runs on this thread.
     const int threads = resolve_threads(options.threads);
     provide_exr_threads(threads);
     Imf::OutputFile file(stream, *header, threads > 1 ? threads : 0);
@@ -189,7 +189,7 @@ Result<void> write_exr_file(const std::filesystem::path& file,
         } catch (const std::exception& e) {
             written = Error{std::string("OpenEXR: ") + e.what(), "", ""};
         }
-        // A full disk also shows up as an exception: its own message is the better one.
+        // A full disk also causes an exception, but the error of the file is more informative.
         Result<void> finished = out.finish();
         return finished ? written : finished;
     });

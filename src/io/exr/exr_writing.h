@@ -1,5 +1,5 @@
 #pragma once
-// What the writers of OpenEXR images share. All of it may throw what OpenEXR throws.
+// Functions shared by the writers of OpenEXR images. All of them may throw OpenEXR's exceptions.
 
 #include "domelight/io/write_image.h"
 
@@ -15,14 +15,14 @@ namespace domelight {
 /// Names of 1 to 4 interleaved channels: Y, or R G B A.
 std::vector<const char*> exr_channel_names(int channels);
 
-/// A header of the options' compression, envmap and attributes, with half or float channels. Errors: unknown words, a
-/// cube that is no strip, an attribute with a name of another type.
+/// A header of the options' compression, envmap and attributes, with half or float channels. Errors: an unknown
+/// compression or envmap, a cube that is not a strip, an attribute whose name belongs to another type.
 Result<Imf::Header> exr_header(int width, int height, int channels, bool half, const ExrWriteOptions& options);
 
 /// Faces from OpenGL's orientation to OpenEXR's.
 ImageF exr_cube_strip(ImageView<const float> strip);
 
-/// Writes a file by way of a stream; what `write` throws becomes an error.
+/// Writes a file through a stream; an exception from `write` becomes an error.
 Result<void> write_exr_file(const std::filesystem::path& file,
                             const std::function<Result<void>(ExrOutputStream& stream)>& write);
 

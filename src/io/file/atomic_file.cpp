@@ -24,11 +24,12 @@ Error system_error(const char* doing, int code) {
     return {std::string("cannot ") + doing + ": " + std::generic_category().message(code), "", ""};
 }
 
-/// Creates an empty file beside `target` under a name nobody has; its path, or the error. The mode is the one an
-/// ordinary new file gets, or that of the file which it is to replace.
+/// Creates an empty file with a new name in the folder of `target`; returns its path, or the error. Its mode is that of
+/// an ordinary new file, or of the file that it will replace.
 Result<std::string> create_neighbour(const fs::path& target) {
     static std::atomic<unsigned> counter{0};
-    // A leading dot and the ending keep it out of globs; the name is cut so that it stays below NAME_MAX with both.
+    // The leading dot and the ending hide it from globs; the name is shortened so that it stays below NAME_MAX with
+    // both.
     std::string stem = target.filename().string().substr(0, 200);
     stem = '.' + stem + '.' + std::to_string(::getpid()) + '-';
     for (int attempt = 0; attempt < 1000; ++attempt) {
@@ -56,7 +57,7 @@ Result<void> write_file_atomically(const fs::path& file, const std::function<Res
         Result<void> written = write(file);
         return written ? written : Error{written.error().what, shown, written.error().hint};
     }
-    // A link stays a link: what it leads to is replaced.
+    // A link stays a link: the file that it points to is replaced.
     fs::path target = fs::is_symlink(file, failure) ? fs::canonical(file, failure) : fs::absolute(file, failure);
     if (failure || target.empty()) target = file;
 

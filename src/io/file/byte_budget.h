@@ -9,12 +9,12 @@
 
 namespace domelight {
 
-/// What may still be allocated for a scene.
+/// The memory that may still be allocated for a scene.
 class ByteBudget {
   public:
     explicit ByteBudget(std::int64_t bytes) : limit_(bytes), left_(bytes) {}
 
-    /// Sets `count` things of `bytes` each aside for `what`. Errors: there is not that much left.
+    /// Reserves memory for `count` items of `bytes` each, described by `what`. Errors: not enough is left.
     Result<void> take(std::uint64_t count, std::uint64_t bytes, const std::string& what) {
         if (left_ < 0 || (bytes && count > std::uint64_t(left_) / bytes))
             return Error{fmt::format("{} would take the scene over the limit of {} bytes", what, limit_), "", ""};

@@ -32,7 +32,7 @@ class ByteBuffer {
         while (bytes_.size() % alignment) u8(0);
     }
     void append(std::span<const std::uint8_t> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
-    /// The bytes so far, of which none remain here.
+    /// Returns the bytes so far and empties the buffer.
     std::vector<std::uint8_t> take() { return std::exchange(bytes_, {}); }
     std::size_t size() const { return bytes_.size(); }
     const std::vector<std::uint8_t>& bytes() const { return bytes_; }

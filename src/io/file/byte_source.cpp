@@ -61,7 +61,7 @@ Result<void> FileSource::read(std::uint64_t offset, std::span<std::uint8_t> out,
         const ssize_t n = ::pread(descriptor_, out.data(), out.size(), off_t(offset));
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) return Error{"cannot read: " + std::generic_category().message(errno), "", ""};
-        if (n == 0) return truncated(offset, out.size(), what);  // it shrank meanwhile
+        if (n == 0) return truncated(offset, out.size(), what);  // the file has become shorter meanwhile
         offset += std::uint64_t(n);
         out = out.subspan(std::size_t(n));
     }

@@ -10,16 +10,16 @@
 
 namespace domelight {
 
-/// Bytes that are about to be filled: not cleared first.
+/// Bytes that are not cleared when allocated, because they are about to be filled.
 using Bytes = std::vector<std::uint8_t, LargeAllocator<std::uint8_t>>;
 
-/// Bytes to parse, of known number: a file or memory. Parsers take what they need and never hold more.
+/// Bytes to parse, of known number: a file or memory. Parsers read what they need and never keep more in memory.
 class ByteSource {
   public:
     virtual ~ByteSource() = default;
     virtual std::uint64_t size() const = 0;
-    /// Fills `out` with the bytes from `offset`. Errors: they are not all there, or cannot be read. `what` names them
-    /// in the message.
+    /// Fills `out` with the bytes from `offset`. Errors: some of them do not exist, or cannot be read. `what` names
+    /// them in the message.
     virtual Result<void> read(std::uint64_t offset, std::span<std::uint8_t> out, const char* what) = 0;
 
     /// Whether [offset, offset + count) lies inside.
@@ -30,7 +30,7 @@ class ByteSource {
     Result<Bytes> take(std::uint64_t offset, std::uint64_t count, const char* what);
 
   protected:
-    /// The error of a range that does not lie inside.
+    /// The error for a range that does not lie inside.
     Error truncated(std::uint64_t offset, std::uint64_t count, const char* what) const;
 };
 

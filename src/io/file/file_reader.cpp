@@ -25,7 +25,7 @@ Error system_error(const std::filesystem::path& file, const char* doing) {
     return {std::string(doing) + " failed: " + std::strerror(errno), file.string(), ""};
 }
 
-/// Everything that a pipe or device hands over, up to `max_bytes`.
+/// Reads everything from a pipe or device, up to `max_bytes`.
 Result<std::vector<std::uint8_t>> drain(int fd, const std::filesystem::path& file, std::int64_t max_bytes) {
     std::vector<std::uint8_t> all;
     std::uint8_t block[1 << 16];

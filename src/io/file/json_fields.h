@@ -12,12 +12,11 @@
 
 namespace domelight {
 
-/// Errors: it is no JSON; says where.
+/// Errors: the text is not JSON; the error says where.
 Result<Json> parse_json(std::string_view text);
 
-/// The members of a JSON object, read with their types checked. The first thing found wrong is kept in an error that
-/// all objects of one document share, and reading goes on with defaults: the caller looks at the error once, at the
-/// end.
+/// The members of a JSON object, read with their types checked. The first fault is kept in an error that all objects of
+/// one document share, and reading continues with defaults. The caller checks the error once, at the end.
 ///
 ///     std::optional<Error> error;
 ///     JsonFields root(json, "", error);
@@ -28,12 +27,12 @@ class JsonFields {
     JsonFields(const Json& value, std::string place, std::optional<Error>& error);
 
     bool has(const char* key) const { return value_->is_object() && value_->contains(key); }
-    /// Whether this is an object that was in the file, and not the empty one that stands for a missing member.
+    /// Whether this is an object from the file, and not the empty object that represents a missing member.
     explicit operator bool() const { return value_->is_object(); }
 
     /// A finite number that fits a float; `fallback` where the member is missing.
     float number(const char* key, float fallback);
-    /// The same, moved into [low, high].
+    /// The same, clamped to [low, high].
     float number(const char* key, float fallback, float low, float high);
     /// Exactly `count` numbers (any number of them for 0); empty where the member is missing.
     std::vector<float> numbers(const char* key, std::size_t count);
@@ -51,10 +50,10 @@ class JsonFields {
     std::vector<JsonFields> array(const char* key);
     /// Name and index of each member: the attributes of a primitive.
     std::vector<std::pair<std::string, int>> named_indices(std::size_t limit);
-    /// Whether `key` of the object `owner` is true; anything else there, or nothing, is false and no error: extras may
-    /// hold what they like.
+    /// Whether `key` of the object `owner` is true. Any other value, or none, is false and not an error, because extras
+    /// may hold anything.
     bool flag_in(const char* owner, const char* key) const;
-    /// Likewise a finite number there.
+    /// The same for a finite number.
     std::optional<float> number_in(const char* owner, const char* key) const;
     /// The extension of that name.
     JsonFields extension(const char* name) { return object("extensions").object(name); }

@@ -9,8 +9,8 @@
 
 namespace domelight {
 
-/// A file being written through its descriptor: no buffer of its own, so hand it large pieces. Remembers its first
-/// failure (disk full, file too large, ...); later writes do nothing, and finish() tells.
+/// A file that is written through its descriptor, without a buffer, so write large pieces. The first failure (disk
+/// full, file too large, ...) is remembered; later writes do nothing, and finish() returns the error.
 class OutputFile {
   public:
     /// Opens and empties `path`, which need not exist.
@@ -21,12 +21,12 @@ class OutputFile {
 
     void write(std::span<const std::uint8_t> bytes);
     void write(std::span<const char> bytes);
-    /// At a place of its own, leaving position() as it is. May be called from several threads at once.
+    /// Writes at a given offset without changing position(). May be called from several threads at once.
     void write_at(std::uint64_t offset, std::span<const std::uint8_t> bytes);
     void seek(std::uint64_t position);
     std::uint64_t position() const { return position_; }
     bool failed() const { return error_ != 0; }
-    /// Closes. The first error of all, closing included.
+    /// Closes the file. Returns the first error of all, including that of closing.
     Result<void> finish();
 
   private:

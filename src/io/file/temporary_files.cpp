@@ -11,8 +11,8 @@
 
 namespace domelight {
 
-/// A place for one path. Slots are linked once and used again, never freed, so a signal handler may walk the list at
-/// any moment.
+/// A slot for one path. Slots are linked once and reused, never freed, so a signal handler may walk the list at any
+/// time.
 struct TemporaryFileGuard::Slot {
     enum State { k_free, k_filling, k_live };
     std::atomic<int> state{k_filling};
@@ -24,7 +24,7 @@ struct TemporaryFileGuard::Slot {
 std::atomic<TemporaryFileGuard::Slot*> TemporaryFileGuard::Slot::head{nullptr};
 
 TemporaryFileGuard::TemporaryFileGuard(const std::string& path) {
-    if (path.size() >= PATH_MAX) return;  // no system call would take it either
+    if (path.size() >= PATH_MAX) return;  // no system call would accept it either
     for (Slot* s = Slot::head.load(); s && !slot_; s = s->next) {
         int expected = Slot::k_free;
         if (s->state.compare_exchange_strong(expected, Slot::k_filling)) slot_ = s;
@@ -66,11 +66,12 @@ void remove_temporaries_on_signals() {
     sigemptyset(&action.sa_mask);
     for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
         struct sigaction old = {};
-        // What was started with nohup or in the background keeps ignoring.
+        // A program started with nohup or in the background keeps ignoring the signal.
         if (::sigaction(signal, nullptr, &old) == 0 && old.sa_handler == SIG_IGN) continue;
         ::sigaction(signal, &action, nullptr);
     }
-    // A file-size limit then fails the write (EFBIG), which is reported and cleaned up, instead of killing the program.
+    // At a file-size limit the write then fails (EFBIG), which is reported and cleaned up, instead of the program being
+    // killed.
     ::signal(SIGXFSZ, SIG_IGN);
 }
 

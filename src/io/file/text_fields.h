@@ -38,7 +38,7 @@ inline std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-/// Takes the first word off `text`; empty: there is none.
+/// Removes the first word from `text` and returns it; empty if there is none.
 inline std::string_view take_word(std::string_view& text) {
     std::size_t begin = 0;
     while (begin < text.size() && is_blank(text[begin])) ++begin;
@@ -49,7 +49,7 @@ inline std::string_view take_word(std::string_view& text) {
     return word;
 }
 
-/// The number that a word is: "nan" and "inf" too; what passes the largest float is infinity.
+/// The number in a word, "nan" and "inf" too; a number above the largest float is infinity.
 inline bool parse_number(std::string_view word, double& value) {
     if (word.starts_with('+')) word.remove_prefix(1);
     const auto parsed = std::from_chars(word.data(), word.data() + word.size(), value);
@@ -57,7 +57,7 @@ inline bool parse_number(std::string_view word, double& value) {
     return parsed.ec != std::errc::invalid_argument && parsed.ptr == word.data() + word.size();
 }
 
-/// A double as float without the undefined conversion of what does not fit.
+/// A double as float, without undefined behaviour for numbers that do not fit.
 inline float float_of(double value) {
     if (std::abs(value) <= std::numeric_limits<float>::max() || std::isnan(value)) return float(value);
     return value < 0 ? -std::numeric_limits<float>::infinity() : std::numeric_limits<float>::infinity();

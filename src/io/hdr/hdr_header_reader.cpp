@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t k_longest_header = 1 << 20;
 
-/// The next line without its end; `at` moves past it. Nothing where no line ends before the limit.
+/// The next line without its end; `at` moves past it. Empty if no line ends before the limit.
 std::optional<std::string_view> next_line(std::span<const std::uint8_t> file, std::size_t& at) {
     const std::size_t limit = std::min(file.size(), k_longest_header);
     const auto begin = file.begin() + std::ptrdiff_t(std::min(at, limit));
@@ -47,7 +47,7 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-/// EXPOSURE (one number) and COLORCORR (three) add up: each line multiplies.
+/// EXPOSURE (one number) and COLORCORR (three) are cumulative: the values of all lines are multiplied.
 void apply_factors(HdrHeader& header, std::string_view name, const std::vector<double>& factors, std::size_t expected) {
     const bool usable = factors.size() == expected && std::all_of(factors.begin(), factors.end(), [](double f) {
                             return std::isfinite(f) && f > 1e-30 && f < 1e30;
@@ -65,7 +65,7 @@ void apply_primaries(HdrHeader& header, const std::vector<double>& n) {
         header.warnings.push_back("the PRIMARIES line does not hold 8 numbers: ignored");
         return;
     }
-    // Common tools write eight zeros where they know nothing.
+    // Common tools write eight zeros if they do not know the primaries.
     if (std::all_of(n.begin(), n.end(), [](double v) { return v == 0; })) return;
     header.primaries = ColourPrimaries{{n[0], n[1]}, {n[2], n[3]}, {n[4], n[5]}, {n[6], n[7]}};
 }
@@ -92,7 +92,7 @@ Result<void> apply_variable(HdrHeader& header, std::string_view line) {
     return {};
 }
 
-/// "-Y 512 +X 1024" and its seven brothers.
+/// "-Y 512 +X 1024" and its seven variants.
 Result<void> apply_resolution(HdrHeader& header, std::string_view line) {
     const Error broken{fmt::format("resolution line is \"{}\", not like \"-Y 512 +X 1024\"", printable(line)), "", ""};
     char axis[2] = {};

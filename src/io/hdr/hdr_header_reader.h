@@ -14,11 +14,11 @@
 
 namespace domelight {
 
-/// What the text before a Radiance picture's texels says.
+/// The contents of the text before a Radiance picture's texels.
 struct HdrHeader {
     bool xyze = false;  ///< texels are CIE XYZ, not RGB
     std::array<double, 3> applied{
-        1, 1, 1};  ///< product of all EXPOSURE and COLORCORR lines: what radiance was multiplied by, per channel
+        1, 1, 1};  ///< product of all EXPOSURE and COLORCORR lines: the factor on the radiance of each channel
     std::optional<ColourPrimaries> primaries;  ///< PRIMARIES, for RGB
     int width = 0, height = 0;
     bool columns = false;  ///< scanlines are columns of the image (the resolution line names X first)

@@ -16,7 +16,7 @@ namespace domelight {
 
 namespace {
 
-/// Rows a task decodes: enough to be worth a task, few enough that its planes stay in the cache.
+/// The number of rows that a task decodes: enough to be worth a task, and few enough that its planes stay in the cache.
 constexpr int k_rows_a_task = 8;
 
 /// Reverses the order of a row's texels.
@@ -101,7 +101,7 @@ Result<void> HdrReader::index_scanlines(int count) {
     return {};
 }
 
-/// One row of RGB from planes of RGBE. True where every value is within the range that needs no repair.
+/// One row of RGB from planes of RGBE. Returns true if every value is within the range that needs no repair.
 bool HdrReader::convert_row(const std::uint8_t* planes, std::size_t plane_stride, float* out) const {
     rgbe_to_float(planes, plane_stride, header_.width, scale_, out);
     if (header_.flip_x && !header_.columns) mirror_row(out, header_.width);

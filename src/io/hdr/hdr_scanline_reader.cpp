@@ -51,7 +51,7 @@ ScanlineStep walk_old_rle(std::span<const std::uint8_t> data, int width, const T
         const std::uint8_t* rgbe = data.data() + at;
         if (rgbe[0] == 1 && rgbe[1] == 1 && rgbe[2] == 1) {
             if (x == 0) return {0, "a scanline starts with a repetition"};
-            // Beyond two bytes of count no accepted width is left to fill, unless the byte is 0.
+            // With more than two bytes the count would exceed every accepted width, unless the byte is 0.
             const int n = shift < 24 ? int(rgbe[3]) << shift : (rgbe[3] ? width : 0);
             if (n > width - x) return {0, k_overrun};
             if (n == 0 && shift >= 24) return {0, "a repetition never ends"};
@@ -66,8 +66,8 @@ ScanlineStep walk_old_rle(std::span<const std::uint8_t> data, int width, const T
     return {at, nullptr};
 }
 
-/// Copies n <= 128 bytes as 16, 32 or 128: a few wide moves cost less than finding out how few would do. The bytes
-/// behind are those of components that are decoded later, or slack.
+/// Copies n <= 128 bytes as 16, 32 or 128: a few wide moves are cheaper than computing how many are needed. The bytes
+/// after the end belong to components that are decoded later, or to the slack.
 void copy_short(std::uint8_t* to, const std::uint8_t* from, int n) {
     if (n <= 16) {
         std::memcpy(to, from, 16);

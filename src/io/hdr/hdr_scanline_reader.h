@@ -11,8 +11,8 @@ namespace domelight {
 /// before; consecutive ones shift n by 8 bits), or flat. "RADIANCE Reference, Picture File Format"; Ward, "Real
 /// Pixels", Graphics Gems II (1991).
 struct ScanlineStep {
-    std::size_t bytes = 0;        ///< how many bytes the scanline takes
-    const char* error = nullptr;  ///< what is wrong with it, or null
+    std::size_t bytes = 0;        ///< the number of bytes of the scanline
+    const char* error = nullptr;  ///< the fault of the scanline, or null
 };
 
 /// Where the scanline at the start of `data` ends, without decoding it.
@@ -26,8 +26,8 @@ inline constexpr std::size_t k_scanline_slack = 128;
 ScanlineStep decode_hdr_scanline(std::span<const std::uint8_t> data, int width, std::uint8_t* planes,
                                  std::size_t plane_stride);
 
-/// The fewest bytes that a scanline of `width` texels can take: a lying header is found before anything is allocated
-/// for it.
+/// The least number of bytes that a scanline of `width` texels can have, so that a wrong header is detected before
+/// memory is allocated for it.
 std::size_t least_hdr_scanline_bytes(int width);
 
 }  // namespace domelight

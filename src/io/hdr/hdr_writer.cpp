@@ -13,9 +13,9 @@ namespace domelight {
 
 namespace {
 
-/// Run-length encoding holds a row's length in 15 bits, and shorter rows would look like old files.
+/// Run-length encoding stores the length of a row in 15 bits, and shorter rows would be mistaken for old files.
 constexpr int k_min_rle_width = 8, k_max_rle_width = 32767;
-/// Rows encoded at a time: enough for all threads, little memory.
+/// The number of rows encoded at a time: enough for all threads, but little memory.
 constexpr int k_block_rows = 64;
 
 /// Appends one channel of a row: a byte above 128 repeats the next byte (byte - 128) times, another is followed by as

@@ -11,7 +11,7 @@
 
 namespace domelight {
 
-/// The rows of an image file as radiance: decoded, mended (counted in `report`), in linear Rec. 709, times `scale`.
+/// The rows of an image file as radiance: decoded, repaired (counted in `report`), in linear Rec. 709, times `scale`.
 class RadianceReader : public RowSource {
   public:
     RadianceReader(std::filesystem::path file, std::unique_ptr<ImageReader> image, float scale, bool wraps, int threads,

@@ -15,13 +15,13 @@ namespace domelight {
 
 namespace {
 
-/// Each scan of a progressive JPEG passes over the whole image: more than any encoder writes means an attack on our
-/// time.
+/// Each scan of a progressive JPEG covers the whole image. A file with more scans than any encoder writes is meant to
+/// waste time.
 constexpr int k_most_scans = 200;
 
 /// A JPEG, row by row.
 ///
-/// libjpeg leaves by longjmp on an error. Each method that calls it sets its own return point and has no local with a
+/// On an error libjpeg calls longjmp. Each method that calls libjpeg sets its own return point and has no local with a
 /// destructor after that.
 class JpegReader : public ImageReader {
   public:
@@ -62,7 +62,7 @@ void JpegReader::on_error(j_common_ptr state) {
     std::longjmp(self->return_point_, 1);
 }
 
-/// libjpeg fills what is missing with grey and only warns; for light that is not good enough.
+/// libjpeg fills missing parts with grey and only warns; for light this is an error.
 void JpegReader::on_message(j_common_ptr state, int level) {
     const int code = state->err->msg_code;
     if (level < 0 && (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE)) on_error(state);

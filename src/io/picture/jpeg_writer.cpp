@@ -17,7 +17,7 @@ namespace {
 
 /// One picture being compressed into memory that libjpeg allocates.
 ///
-/// libjpeg leaves by longjmp on an error. compress() sets the return point and has no local with a destructor.
+/// On an error libjpeg calls longjmp. compress() sets the return point and has no local with a destructor.
 class JpegEncoder {
   public:
     JpegEncoder() = default;
@@ -55,7 +55,7 @@ bool JpegEncoder::compress(ImageView<const std::uint8_t> pixels, int quality) {
     errors_.emit_message = on_message;
     state_.client_data = this;
     if (setjmp(return_point_)) {
-        bytes_ = nullptr;  // libjpeg may have replaced and freed this buffer without saying so
+        bytes_ = nullptr;  // libjpeg may have replaced and freed this buffer without notice
         return false;
     }
     jpeg_create_compress(&state_);

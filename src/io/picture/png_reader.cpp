@@ -11,9 +11,9 @@ namespace domelight {
 
 namespace {
 
-/// A PNG, row by row; an interlaced one is held in memory as stored.
+/// A PNG, read row by row; an interlaced one is kept in memory as stored.
 ///
-/// libpng leaves by longjmp on an error. Each method that calls it sets its own return point and has no local with a
+/// On an error libpng calls longjmp. Each method that calls libpng sets its own return point and has no local with a
 /// destructor after that.
 class PngReader : public ImageReader {
   public:

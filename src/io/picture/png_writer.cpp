@@ -16,7 +16,7 @@ namespace domelight {
 
 namespace {
 
-/// What libpng's callbacks share with us. One of `file` and `memory` is set.
+/// The data that libpng's callbacks use. One of `file` and `memory` is set.
 struct PngSink {
     OutputFile* file = nullptr;
     PngBytes* memory = nullptr;
@@ -37,16 +37,17 @@ struct PngSink {
     }
 };
 
-/// How the pixels are to be stored.
+/// The form in which the pixels are stored.
 struct PngStyle {
     bool srgb = true;
     int compression_level = 3;
-    /// Runs instead of matches: a picture of smooth shades is as small as with zlib's own choices, in a third of the
-    /// time. What an encoding makes of smooth shades is not smooth.
+    /// Runs instead of matches: a picture with smooth gradients is as small as with zlib's defaults, in a third of the
+    /// time. Encoded texels (RGBD, RGBP) are not smooth.
     bool runs = true;
 };
 
-// libpng reports errors by a long jump out of these callbacks: nothing between the setjmp and here may own anything.
+// libpng reports errors by longjmp out of these callbacks, so no function between the setjmp and here may own a
+// resource.
 [[noreturn]] void on_error(png_structp png, png_const_charp message) {
     static_cast<PngSink*>(png_get_error_ptr(png))->message = message;
     std::longjmp(png_jmpbuf(png), 1);
@@ -57,7 +58,7 @@ void on_write(png_structp png, png_bytep data, png_size_t size) {
 }
 void on_flush(png_structp) {}
 
-/// True once all is written; everything it uses lives in the caller.
+/// Returns true once everything is written. Everything that it uses is owned by the caller.
 bool write_with(png_structp png, png_infop info, ImageView<const std::uint8_t> pixels, const PngStyle& style) {
     if (setjmp(png_jmpbuf(png))) return false;
     const int color = pixels.channels == 1   ? PNG_COLOR_TYPE_GRAY
@@ -96,7 +97,7 @@ Result<void> write_png(const std::filesystem::path& file, ImageView<const std::u
         OutputFile out(path);
         PngSink sink{.file = &out};
         Result<void> written = write_png_to(sink, pixels, {.compression_level = compression_level});
-        // What the system said of a failed write is worth more than that it failed.
+        // The system's reason for a failed write is more useful than the fact that it failed.
         Result<void> finished = out.finish();
         return finished ? written : finished;
     });

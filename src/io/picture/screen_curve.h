@@ -7,8 +7,8 @@
 
 namespace domelight {
 
-// What readers of pictures that were made for a screen share. Such pictures are accepted, with a warning: everything
-// brighter than the screen's white was cut off before they were written.
+// Functions shared by the readers of pictures for a screen. Such pictures are accepted with a warning, because
+// everything brighter than the screen's white was clipped when they were written.
 
 /// The linear value, 0..1, of each of `levels` codes. `decode`: auto and srgb (IEC 61966-2-1), gamma22 (x^2.2) or
 /// linear.

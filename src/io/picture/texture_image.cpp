@@ -95,7 +95,7 @@ Result<Rgba8Image> decode_webp_texture(std::span<const std::uint8_t> bytes) {
 Result<Rgba8Image> decode_jpeg_texture(std::span<const std::uint8_t> bytes) {
     const auto size = texture_image_size(bytes);
     if (!size) return size.error();
-    // The reader of environments hands out code / 255 as float, from which the codes come back exactly.
+    // The reader of environments returns code / 255 as float, from which the codes can be recovered exactly.
     auto reader = open_jpeg_reader(FileBytes::from_memory({bytes.begin(), bytes.end()}), {.decode = "linear"});
     if (!reader) return reader.error();
     Rgba8Image image;

@@ -11,8 +11,8 @@ namespace domelight {
 
 class FileBytes;
 
-/// The width and height of a PNG, JPEG or WebP image, from its header, checked against the number of bytes there are:
-/// what is promised can be held by them. Errors: another format, a broken header.
+/// The width and height of a PNG, JPEG or WebP image, from its header, if the number of bytes is enough for that size.
+/// Errors: another format, a broken header.
 struct TextureSize {
     int width = 0, height = 0;
 };

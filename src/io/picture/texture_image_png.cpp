@@ -9,10 +9,10 @@ namespace domelight {
 
 namespace {
 
-/// A PNG as 8-bit RGBA. Environments are read row by row and without alpha (png_reader.cpp); a texture is wanted whole
-/// and with it.
+/// A PNG as 8-bit RGBA. Environments are read row by row and without alpha (png_reader.cpp); a texture is needed as a
+/// whole and with alpha.
 ///
-/// libpng leaves by longjmp on an error: each method that calls it sets its own return point and has no local with a
+/// On an error libpng calls longjmp: each method that calls libpng sets its own return point and has no local with a
 /// destructor after that.
 class PngTexture {
   public:
@@ -50,7 +50,8 @@ void PngTexture::on_read(png_structp png, png_bytep out, std::size_t n) {
     self->at_ += n;
 }
 
-/// Every kind of PNG becomes RGBA of 8 bits. No gamma: glTF says which textures are sRGB, whatever the file says.
+/// Every kind of PNG becomes RGBA of 8 bits. No gamma is applied: glTF defines which textures are sRGB, whatever the
+/// file states.
 bool PngTexture::read_header() {
     if (setjmp(png_jmpbuf(png_))) return false;
     png_set_read_fn(png_, this, on_read);

@@ -54,7 +54,7 @@ Result<void> write_webp_animation(const std::filesystem::path& file, int frames,
     WebPConfig config;
     if (!WebPAnimEncoderOptionsInit(&options) || !WebPConfigInit(&config))
         return Error{"libwebp is of another version than its headers", file.string(), ""};
-    // A key frame now and then, so that players may jump.
+    // A key frame from time to time, so that players can seek.
     options.kmin = 9, options.kmax = 17;
     config.lossless = o.lossless;
     config.quality = o.quality;

@@ -21,7 +21,8 @@ namespace domelight {
 struct LightMaps::Impl {
     Lobe lobe = Lobe::ggx;
     std::vector<BorderedCube> specular;
-    std::vector<float> roughness;  ///< of each level, rising; of a Phong chain the one that matches its exponent
+    std::vector<float> roughness;  ///< of each level, rising; for a Phong chain the roughness that corresponds to the
+                                   ///< exponent
     std::vector<BorderedCube> irradiance_over_pi;
     std::vector<Vec3d> sh_irradiance;
     ImageF brdf;
@@ -34,8 +35,8 @@ LightMaps& LightMaps::operator=(LightMaps&&) noexcept = default;
 
 namespace {
 
-/// The roughness that Beckmann's match gives an exponent, n = 2 / alpha^2 - 2: a coordinate in which a Phong chain's
-/// levels are about evenly spaced, infinity at 0 and 0 at 1.
+/// The roughness that corresponds to an exponent by Beckmann's relation n = 2 / alpha^2 - 2: a coordinate in which the
+/// levels of a Phong chain are about evenly spaced; exponent infinity has roughness 0, exponent 0 has roughness 1.
 float matching_roughness(double exponent) {
     return float(std::pow(2 / (exponent + 2), 0.25));
 }

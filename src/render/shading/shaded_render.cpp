@@ -1,4 +1,5 @@
-// A scene drawn with a real-time engine's shading: the first surface of each camera sample, and no rays beyond it.
+// A scene with the shading of a real-time engine: only the first surface of each camera sample is shaded, and no
+// further rays are traced.
 
 #include "domelight/base/parallel.h"
 #include "domelight/sampling/sequences.h"
@@ -37,7 +38,7 @@ class ShadedTracer {
             derive_key(options_.seed, std::uint64_t(y) * std::uint64_t(options_.width) + std::uint64_t(x));
         Ray ray = camera_.through(x, y, sobol_owen(derive_key(key, 0), index));
         Vec3f light, diffuse, specular;
-        float rest = 1;  // what the surfaces so far let through
+        float rest = 1;  // the transmittance of the surfaces so far
         FirstSurface first;
         constexpr int most_layers = 16;
         for (int layer = 0; layer < most_layers && rest > 0; ++layer) {
@@ -113,7 +114,7 @@ class ShadedTracer {
     const Scene& scene_;
     const LightMaps& maps_;
     const EnvironmentSampler& environment_;
-    const EnvironmentMap reflected_;  ///< what mirror and refract read
+    const EnvironmentMap reflected_;  ///< the map that mirror and refract read
     const ShadingOptions& shading_;
     const RenderOptions& options_;
     const std::vector<PunctualLight> lights_;

@@ -1,5 +1,5 @@
 #pragma once
-// The C++ twins of what engines' shaders do with a bake's maps: one function each, each in a file of its own.
+// The shaders of engines that use a bake's maps, written in C++: one function for each model, each in its own file.
 
 #include "domelight/render/shading/shading.h"
 
@@ -12,12 +12,12 @@
 
 namespace domelight {
 
-/// Light by lobe.
+/// Light, by lobe.
 struct ShadedLight {
     Vec3f diffuse, specular;
 };
 
-/// V: towards the viewer, in the world. occlusion: of the material's texture, 1 without.
+/// V: towards the viewer, in the world. occlusion: from the material's texture, 1 without one.
 ShadedLight shade_split_sum(const SurfacePoint& s, const Vec3f& V, float occlusion, const LightMaps& maps,
                             const ShadingOptions& options);
 ShadedLight shade_stretched(const SurfacePoint& s, const Vec3f& V, float occlusion, const LightMaps& maps,
@@ -33,10 +33,10 @@ ShadedLight shade_refract(const SurfacePoint& s, const Vec3f& V, float ior, cons
 ShadedLight shade_lights(ShadingModel model, const SurfacePoint& s, const Vec3f& V, float ior,
                          std::span<const PunctualLight> lights);
 
-// What several of them share:
+// Functions shared by several models:
 
-/// Means of the light that the specular lobe sees: weighted by the part of the lobe that F0 multiplies, and by the part
-/// that F90 does.
+/// Means of the light over the specular lobe: weighted by the part of the lobe that is multiplied by F0, and by the
+/// part that is multiplied by F90.
 struct LobeLight {
     Vec3f scale, bias;
 };
@@ -48,7 +48,7 @@ Vec3f diffuse_weight_energy(const Vec3f& f0, const Vec3f& f90, LightMaps::ScaleB
 /// 2019, listing 2.
 Vec3f multiple_scattering(const Vec3f& f0, const Vec3f& f90, LightMaps::ScaleBias table);
 
-/// The metallic-roughness surface around a specular lobe: BRDF table, what is left for the diffuse layer, multiple
+/// The metallic-roughness surface for a given specular light: BRDF table, weight of the diffuse layer, multiple
 /// scattering, occlusion.
 ShadedLight shade_metallic_roughness(const SurfacePoint& s, float NdotV, float occlusion, const LobeLight& lobe,
                                      const LightMaps& maps, const ShadingOptions& options);

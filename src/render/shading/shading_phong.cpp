@@ -1,6 +1,6 @@
 // Modified Phong, rho_d / pi + rho_s (n + 2) / 2 pi cos^n, under two prefiltered maps: Miller and Hoffman 1984. The
-// diffuse one by the normal, the specular one by the mirror direction, with n = v = r: what the BRDF loses at a slant,
-// where half its lobe is below the horizon, it does not know.
+// diffuse map is looked up by the normal, the specular one by the mirror direction, with n = v = r. So the loss of the
+// BRDF at grazing angles, where half of its lobe is below the horizon, is ignored.
 
 #include "render/shading/shading_models.h"
 

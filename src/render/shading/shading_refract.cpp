@@ -1,4 +1,5 @@
-// Refraction mapping: the sharp environment bent once, at the front surface, mixed with its reflection.
+// Refraction mapping: the sharp environment in the direction refracted once, at the front surface, mixed with the
+// reflection.
 
 #include "render/shading/shading_models.h"
 

@@ -10,8 +10,8 @@ float specular_occlusion(float NdotV, float occlusion, float alpha) {
     return std::clamp(std::pow(NdotV + occlusion, std::exp2(-16 * alpha - 1)) - 1 + occlusion, 0.f, 1.f);
 }
 
-/// Where to look up: the mirror direction, or on its way to the normal, further the rougher the surface is (the same,
-/// listing 21).
+/// The lookup direction: the mirror direction, or a direction between it and the normal, which is nearer to the normal
+/// the rougher the surface is (the same, listing 21).
 Vec3f lookup_direction(const Vec3f& N, const Vec3f& V, float roughness, bool bent) {
     const Vec3f R = reflect_about(V, N);
     if (!bent) return R;

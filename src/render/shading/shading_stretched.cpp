@@ -1,4 +1,5 @@
-// One step beyond split-sum: the lobe stretched as the BRDF has it, by up to eight more lookups of the same chain.
+// One step beyond split-sum: the lobe is stretched like that of the BRDF, by up to eight more lookups in the same
+// chain.
 
 #include "render/shading/shading_models.h"
 #include "render/shading/stretched_lobe.h"
@@ -10,7 +11,7 @@ namespace {
 LobeLight stretched_light(const Vec3f& N, const Vec3f& V, float NdotV, float roughness, const LightMaps& maps) {
     const Vec3f R = reflect_about(V, N), across = R - N * dot(N, R);
     const float sine = length(across);
-    // From R towards N, in the plane of both; seen from straight above all tilts are 0 and any direction will do.
+    // From R towards N, in the plane of both. Seen from straight above all tilts are 0, and any direction is right.
     const Vec3f up = sine > 0 ? N * sine - across * (dot(N, R) / sine) : Vec3f{};
     LobeLight light;
     for (const StretchedTap& tap : stretched_taps(NdotV, roughness)) {

@@ -19,8 +19,9 @@ std::array<double, k_terms> monomials(double NdotV, double roughness) {
     return m;
 }
 
-/// No lookup sharper than this: the mirror level, blended in, would show a bright sun as a row of suns. Up to roughness
-/// 0.1 the row is finer than the sun is wide; from 0.2 on the first level of the generic chain, 1/6, is the sharpest.
+/// The least roughness of a lookup: with the mirror level blended in, a bright sun would appear as a row of suns. Up to
+/// roughness 0.1 the spacing of the row is smaller than the sun; from 0.2 on, the least roughness is that of the first
+/// filtered level of the generic chain, 1/6.
 double least_roughness(double roughness) {
     return std::clamp(10 * roughness - 1, 0.0, 1.0) / 6;
 }
@@ -31,8 +32,8 @@ double smooth_max(double x, double least) {
     return least + 0.5 * (above + std::sqrt(above * above + corner * corner));
 }
 
-/// How far the lookups are split-sum's own, [0, 1]: seen from straight above, smooth surfaces, where that is as good as
-/// the chain allows and the fit's compromises are not.
+/// The degree, [0, 1], to which the lookups become that of split-sum. It is 1 for smooth surfaces seen from straight
+/// above, where split-sum is as good as the chain allows and better than the fit.
 double settled(double NdotV, double roughness) {
     const double above = std::clamp(10 * NdotV - 9, 0.0, 1.0);
     return above * above * std::clamp(4 - 10 * roughness, 0.0, 1.0);

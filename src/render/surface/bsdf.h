@@ -1,12 +1,12 @@
 #pragma once
-// What a surface does with light at one point: Lambert below, GGX or Phong above, as glTF's metallic-roughness model
-// mixes them.
+// The reflection of a surface at one point: a Lambert layer below a GGX or Phong layer, mixed as in glTF's
+// metallic-roughness model.
 
 #include "domelight/sampling/brdf.h"
 
 namespace domelight {
 
-/// A BRDF in the local frame of brdf.h, with its lobes apart.
+/// A BRDF in the local frame of brdf.h, with separate lobes.
 struct Bsdf {
     enum class Kind : std::uint8_t { lambert, metallic_roughness, phong };
     Kind kind = Kind::lambert;
@@ -17,7 +17,7 @@ struct Bsdf {
     float alpha = 1;                      ///< GGX
     float exponent = 1;                   ///< Phong
     float compensation = 0;               ///< multiple scattering: (1 - E) / E at the viewer's angle, 0 without
-    float specular_share = 0;             ///< of the samples, by the specular lobe
+    float specular_share = 0;             ///< the probability of sampling the specular lobe
 
     struct Value {
         Vec3f diffuse, specular;
@@ -36,7 +36,7 @@ struct Bsdf {
                 const Vec3f H = V + L;
                 const float VdotH = 0.5f * std::sqrt(dot(H, H)), schlick = schlick_weight(VdotH);
                 const Vec3f under = dielectric_f0 + (dielectric_f90 - dielectric_f0) * schlick;
-                // glTF 2.0, B.3.4: what the layer above reflects does not reach the one below.
+                // glTF 2.0, B.3.4: light that the layer above reflects does not reach the layer below.
                 value.diffuse = diffuse * ((1 - std::max({under.x, under.y, under.z})) * float(1 / k_pi));
                 const float visibility =
                     separable_masking ? ggx_visibility_separable(L.z, V.z, alpha) : ggx_visibility(L.z, V.z, alpha);
@@ -67,7 +67,7 @@ struct Bsdf {
         float pdf_solid_angle = 0;  ///< 0: nothing was drawn
     };
     Sample sample(const Vec3f& V, UnitPoint u) const {
-        // One number chooses the lobe and, stretched, is used again.
+        // One number chooses the lobe, is rescaled, and is used again.
         Vec3f L;
         if (specular_share >= 1) {
             L = specular(V, u);

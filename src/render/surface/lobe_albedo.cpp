@@ -10,7 +10,8 @@ namespace domelight {
 TableAlbedo table_albedo(float NdotV, float roughness) {
     const ImageF& table = brdf_table_default();
     const int n = table.width();
-    // Between texel centres, and in a straight line on beyond the outermost: at roughness 1 clamping would be 1 % off.
+    // Linear between texel centres, and extrapolated linearly beyond the outermost ones: at roughness 1 clamping would
+    // be off by 1 %.
     const float x = NdotV * float(n) - 0.5f, y = roughness * float(n) - 0.5f;
     const int x0 = std::clamp(int(x), 0, n - 2), y0 = std::clamp(int(y), 0, n - 2);
     const float a = x - float(x0), b = y - float(y0);
@@ -36,7 +37,8 @@ InterfaceAlbedo interface_albedo(const InterfaceLobe& lobe, const Vec3f& V, Unit
         const Vec3f H = normalize(ggx.draw(V, u, 1));
         const float VdotH = dot(V, H);
         if (!(VdotH > 0)) continue;
-        // Visible normals: each carries G2 / G1(V), height-correlated: L.z (V.z + root V) / (V.z root L + L.z root V).
+        // Visible normals, each with weight G2 / G1(V), height-correlated: L.z (V.z + root V) / (V.z root L + L.z root
+        // V).
         const Vec3f L = H * (2 * VdotH) - V;
         const float mirrored = L.z > 0 ? L.z * (V.z + root_V) / (V.z * ggx.root(L) + L.z * root_V) : 0;
         if (lobe.total(VdotH)) {

@@ -1,12 +1,12 @@
 #pragma once
-// GGX with a width of its own along each of two axes: brushed metal. As brdf.h has the round one, along x and y of the
-// local frame.
+// GGX with different widths along two axes, for brushed metal. Like the isotropic lobe of brdf.h, with the axes x and y
+// of the local frame.
 
 #include "domelight/sampling/brdf.h"
 
 namespace domelight {
 
-/// D and the masking of an ellipsoidal GGX, and drawing from it. V, L and H as in microfacet.h; x is the direction in
+/// D and the masking of an ellipsoidal GGX, and sampling from it. V, L and H as in microfacet.h; x is the direction in
 /// which the surface is `alpha_x` rough.
 struct EllipticGgx {
     float alpha_x = 1, alpha_y = 1;  ///< [k_least_brdf_alpha, 1]
@@ -18,7 +18,7 @@ struct EllipticGgx {
         const float ratio = dot(H, H) / dot(scaled, scaled);
         return ratio * ratio / (float(k_pi) * alpha_x * alpha_y);
     }
-    /// |(ax x, ay y, z)|: what Smith's terms need of a unit direction (Heitz 2014, eq. 87, G1 = 2 z / (z + root)).
+    /// |(ax x, ay y, z)| of a unit direction, a part of Smith's terms (Heitz 2014, eq. 87, G1 = 2 z / (z + root)).
     float root(const Vec3f& v) const {
         const float x = alpha_x * v.x, y = alpha_y * v.y;
         return std::sqrt(x * x + y * y + v.z * v.z);
@@ -40,7 +40,7 @@ struct EllipticGgx {
         const CirclePoint azimuth = circle_point(u.y);
         return {alpha_x * (axis.x + s * azimuth.x), alpha_y * (axis.y + s * azimuth.y), axis.z + (1 - q)};
     }
-    /// Density of the mirror image of V about what draw() gives: D / (2 (bound V.z + root)).
+    /// Density of the mirror image of V about the normal that draw() returns: D / (2 (bound V.z + root)).
     float pdf_reflected(const Vec3f& V, const Vec3f& L, float bound) const {
         return distribution(V + L) / (2 * (bound * V.z + root(V)));
     }

@@ -1,5 +1,5 @@
 #pragma once
-// A rough boundary that light goes through: KHR_materials_transmission, with KHR_materials_volume as the boundary of a
+// A rough boundary that transmits light: KHR_materials_transmission, and with KHR_materials_volume the boundary of a
 // solid body.
 
 #include "render/surface/lobe_fresnel.h"
@@ -11,24 +11,24 @@ namespace domelight {
 
 /// Reflection and transmission by GGX microfacets, local frame with V above; transmitted L have L.z < 0.
 ///
-/// Thin (no volume): light goes straight on, spread as much as a reflection would be: the reflection mirrored at the
-/// surface (glTF, KHR_materials_transmission: "specular_btdf"). Else each microfacet refracts by Snell's law (Walter et
-/// al. 2007, eq. 21), and beyond the critical angle reflects all.
+/// If thin (without volume), light goes straight on and is spread like a reflection: the lobe is that of the reflection
+/// mirrored at the surface (glTF, KHR_materials_transmission: "specular_btdf"). Otherwise each microfacet refracts by
+/// Snell's law (Walter et al. 2007, eq. 21), and reflects all light beyond the critical angle.
 ///
-/// Radiance is carried as L / n^2, which refraction does not change, so there is no factor for its squeezing and
-/// weights stay at most 1; light that comes from outside and goes back there is the same either way.
+/// Paths carry L / n^2, which refraction does not change, so there is no factor for the change of solid angle, and
+/// weights are at most 1. For light that comes from outside and leaves again this makes no difference.
 struct InterfaceLobe {
     EllipticGgx ggx;
     float eta = 1.5f;           ///< index beyond the surface over the one on V's side
     bool thin = true;           ///< straight on
-    bool schlick = false;       ///< Fresnel's weight by Schlick, as in surfaces that let nothing through
-    float reflect = 1;          ///< for sampling: weights of what F reflects ...
-    float transmit = 1;         ///< ... and of what it does not
-    float f0 = 0.04f, f90 = 1;  ///< for sampling, and to share light out: F = f0 + (f90 - f0) weight(VdotH)
+    bool schlick = false;       ///< the Fresnel weight is Schlick's, as for opaque surfaces
+    float reflect = 1;          ///< for sampling: the weight of the reflected part ...
+    float transmit = 1;         ///< ... and of the transmitted part
+    float f0 = 0.04f, f90 = 1;  ///< for sampling, and for the split of light: F = f0 + (f90 - f0) weight(VdotH)
 
     /// Weight of f90 over f0; 1 where nothing is transmitted.
     float weight(float VdotH) const { return schlick ? schlick_weight(VdotH) : fresnel_weight(VdotH, eta); }
-    /// No refracted direction there.
+    /// There is no refracted direction.
     bool total(float VdotH) const { return !thin && eta * eta - 1 + VdotH * VdotH <= 0; }
     float fresnel(float VdotH) const { return total(VdotH) ? 1 : f0 + (f90 - f0) * weight(VdotH); }
 
@@ -69,7 +69,8 @@ struct InterfaceLobe {
         return 2 * ggx.distribution(h->H) * h->VdotH / (V.z + ggx.root(V)) * jacobian(*h) *
                (1 - share_reflected(h->VdotH));
     }
-    /// `choice`: in [0, 1), whether the microfacet reflects. {0, 0, 0}: nothing, the light ends in the surface.
+    /// `choice`: in [0, 1), decides whether the microfacet reflects. {0, 0, 0}: no direction, the light is lost in the
+    /// surface.
     Vec3f sample(const Vec3f& V, UnitPoint u, float choice) const {
         const Vec3f H = normalize(ggx.draw(V, u, bound(V)));
         const float VdotH = dot(V, H);
@@ -89,7 +90,7 @@ struct InterfaceLobe {
         Vec3f H;  ///< unit length
         float VdotH, LdotH;
     };
-    /// The microfacet that refracts V to L: Walter et al. 2007, eq. 16.
+    /// The normal of the microfacet that refracts V to L: Walter et al. 2007, eq. 16.
     std::optional<Half> half_vector(const Vec3f& V, const Vec3f& L) const {
         if (!(V.z >= 0 && L.z < -k_least_cosine)) return std::nullopt;
         const Vec3f sum = V + L * eta;
@@ -105,7 +106,7 @@ struct InterfaceLobe {
         const float d = h.VdotH + eta * h.LdotH;
         return eta * eta * -h.LdotH / (d * d);
     }
-    /// Reflections below the surface need not be drawn, unless their normals refract well.
+    /// Normals that reflect below the surface need not be drawn, unless they can refract.
     float bound(const Vec3f& V) const { return thin ? ggx.cap_bound(V) : 1; }
     float share_reflected(float VdotH) const {
         const float F = fresnel(VdotH), r = reflect * F, t = transmit * (1 - F);

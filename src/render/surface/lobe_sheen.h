@@ -4,8 +4,8 @@
 
 namespace domelight {
 
-/// KHR_materials_sheen's Charlie lobe, scaled back where it would send out more than comes in. Drawn half by half
-/// vectors, half by the cosine: at grazing V the former alone has weights without bound.
+/// The Charlie lobe of KHR_materials_sheen, scaled down where it would reflect more light than it receives. Half of the
+/// samples are drawn by half vectors, half by the cosine: at grazing V half vectors alone have unbounded weights.
 struct SheenLobe {
     CharlieBrdf charlie;
     float scale = 1;  ///< 1 / max(1, albedo of the lobe at V)

@@ -40,12 +40,12 @@ float opacity_of(const Material& m, float alpha) {
     return std::clamp(alpha, 0.f, 1.f);
 }
 
-/// Beckmann's classic match of a Phong exponent to a GGX width: n = 2 / alpha^2 - 2.
+/// Beckmann's relation between a Phong exponent and a GGX width: n = 2 / alpha^2 - 2.
 float phong_exponent(float alpha) {
     return std::max(0.f, 2 / std::max(alpha * alpha, 1e-7f) - 2);
 }
 
-/// The base of a surface, with what its layers need to know of it.
+/// The base of a surface, with the values that its layers need.
 struct Base {
     Bsdf bsdf;
     float metalness = 0, roughness = 1;
@@ -83,8 +83,8 @@ Base make_base(const Scene& scene, const Material& m, const Corners& c, const Ve
     if (multiple_scattering && !m.phong) {
         const TableAlbedo albedo = table_albedo(NdotV, roughness);
         bsdf.compensation = albedo.all() > 0 ? 1 / albedo.all() - 1 : 0;
-        // Below is what the layer above leaves of all light (as Fdez-Aguera 2019 has it), whichever way it came: glTF's
-        // 1 - F(VdotH) sends out more than comes in at grazing angles.
+        // The layer below receives the light that the layer above leaves, averaged over all directions (as in
+        // Fdez-Aguera 2019): with glTF's 1 - F(VdotH) more light would be reflected than received at grazing angles.
         const auto reflected = [&](float low, float high) {
             return std::min(1.f, (low * albedo.scale + high * albedo.bias) * (1 + low * bsdf.compensation));
         };
@@ -92,7 +92,8 @@ Base make_base(const Scene& scene, const Material& m, const Corners& c, const Ve
         const float most = std::max({reflected(low.x, high.x), reflected(low.y, high.y), reflected(low.z, high.z)});
         bsdf.dielectric_f0 = bsdf.dielectric_f90 = {most, most, most};
     }
-    // Samples go where the light comes back from, roughly: the specular lobe by its reflectance at this angle.
+    // The lobes are sampled roughly in proportion to their reflection: the specular lobe by its reflectance at this
+    // angle.
     const float schlick = schlick_weight(NdotV), gloss = luminance(bsdf.f0 + (bsdf.f90 - bsdf.f0) * schlick),
                 matt = luminance(bsdf.diffuse);
     bsdf.specular_share = matt <= 0 ? 1 : gloss <= 0 ? 0 : std::clamp(gloss / (gloss + matt), 0.2f, 0.9f);
@@ -108,7 +109,7 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& origin,
     const Material& m = scene.materials[mesh.material];
     const Corners c(mesh, hit);
     SurfacePoint out;
-    // From the corners, not along the ray: a long ray has lost digits.
+    // Computed from the corners and not along the ray, because a long ray has lost digits.
     out.position = instance.to_world.point(c.mean(mesh.positions));
     const Vec3f reach{std::abs(out.position.x) + std::abs(origin.x), std::abs(out.position.y) + std::abs(origin.y),
                       std::abs(out.position.z) + std::abs(origin.z)};
@@ -122,7 +123,7 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& origin,
             instance.to_world.normal(c.mean(mesh.normals)) * (instance.to_world.determinant() < 0 ? -side : side),
             out.geometric_normal);
     Vec3f normal = smooth;
-    // Seen from behind, the whole mapped surface is turned over.
+    // Seen from behind, the normal-mapped surface is flipped as a whole.
     if (m.normal_texture)
         normal = mapped_normal(scene, m.normal_texture, m.normal_scale, c, instance.to_world, smooth * side) * side;
     normal = facing_normal(normal, direction, out.geometric_normal);

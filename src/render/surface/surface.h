@@ -8,19 +8,19 @@
 
 namespace domelight {
 
-/// All that shading needs to know of a point of a surface.
+/// Everything that shading needs to know about a point of a surface.
 struct SurfacePoint {
     Vec3f position;
     Vec3f normal;            ///< of the surface as lit (interpolated, normal-mapped), unit length, on the viewer's side
     Vec3f geometric_normal;  ///< of the triangle, unit length, on the viewer's side
     Vec3f emission;
     Vec3f albedo;       ///< for the albedo layer
-    float opacity = 1;  ///< below 1: the ray goes on with 1 - opacity of its weight
+    float opacity = 1;  ///< below 1: the ray continues with 1 - opacity of its weight
     bool unlit = false;
     bool front = true;
-    float error = 0;                      ///< how far from the surface a ray must start
-    Bsdf bsdf;                            ///< of the base, all there is for most materials
-    const LayeredBsdf* layers = nullptr;  ///< in place of it, where there is more
+    float error = 0;                      ///< the distance from the surface at which a ray must start
+    Bsdf bsdf;                            ///< of the base, which is everything for most materials
+    const LayeredBsdf* layers = nullptr;  ///< used instead of it if the material has layers
 
     /// f times the cosine; L.z > 0 unless there are layers.
     Bsdf::Value evaluate_cosine(const Vec3f& V, const Vec3f& L) const {
@@ -28,9 +28,9 @@ struct SurfacePoint {
         const Bsdf::Value f = bsdf.evaluate(V, L);
         return {f.diffuse * L.z, f.specular * L.z};
     }
-    /// No light goes that way: it would have to pass the surface.
+    /// No light can go in this direction, because it would have to pass the surface.
     bool blocks(const Vec3f& direction) const { return !layers && dot(direction, geometric_normal) <= 0; }
-    /// One that starts just outside, on the side that it goes to.
+    /// A ray that starts just outside the surface, on the side of its direction.
     Ray ray_to(const Vec3f& direction) const {
         return {position + geometric_normal * (dot(direction, geometric_normal) >= 0 ? error : -error), direction, 0};
     }
@@ -39,16 +39,16 @@ struct SurfacePoint {
     }
 };
 
-/// Interpolates, reads textures, and makes the BRDF. `direction`: of the ray that hit, unit length. `layers`: where to
-/// put those that go beyond glTF's core; null: they are left out. `shift`: a random point for interface_albedo().
+/// Interpolates, reads textures, and makes the BRDF. `direction`: of the ray, unit length. `layers`: receives the
+/// layers that are not part of glTF's core; null: they are left out. `shift`: a random point for interface_albedo().
 SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& origin, const Vec3f& direction,
                         bool multiple_scattering, LayeredBsdf* layers = nullptr, UnitPoint shift = {});
 
 /// A surface's opacity where a ray met it, [0, 1].
 float opacity_at(const Scene& scene, const Hit& hit);
-/// What the occlusion texture says there, [0, 1]; 1 without one.
+/// The value of the occlusion texture there, [0, 1]; 1 without one.
 float occlusion_at(const Scene& scene, const Hit& hit);
-/// Whether any material of the scene can let rays through, so that occlusion needs more than a yes or no.
+/// Whether any material of the scene can be transparent, so that occlusion is more than a yes or no.
 bool has_passages(const Scene& scene);
 
 }  // namespace domelight

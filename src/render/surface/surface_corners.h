@@ -1,5 +1,5 @@
 #pragma once
-// A point of a mesh: what its corners say there, and what textures do.
+// A point of a mesh: values interpolated from its corners, and the directions of its textures.
 
 #include "render/ray_scene.h"
 #include "render/texture_lookup.h"
@@ -34,20 +34,20 @@ inline Rgba look_up(const Scene& scene, const SceneTexture& t, const Corners& c,
     return t ? look_up(scene, t, c.texcoord(t.texcoord), srgb) : Rgba{};
 }
 
-/// The directions in which texture coordinates grow (u, and against v), in the world, across `normal`, unit length;
-/// zeros where nothing says.
+/// The directions in which texture coordinates grow (u, and against v), in the world, perpendicular to `normal`, unit
+/// length; zeros if they are undefined.
 struct Tangents {
     Vec3f tangent, bitangent;
     bool known = false;
 };
-/// The mesh's own, or from set `texcoord` of the texture coordinates.
+/// The tangents of the mesh if it has them, otherwise from set `texcoord` of the texture coordinates.
 Tangents tangents_at(const Corners& c, int texcoord, const Affine& to_world, const Vec3f& normal);
 
-/// `normal` bent by a normal map.
+/// `normal` changed by a normal map.
 Vec3f mapped_normal(const Scene& scene, const SceneTexture& map, float scale, const Corners& c, const Affine& to_world,
                     const Vec3f& normal);
 
-/// A normal that looks away from the viewer would make the surface black: bent back to just face him.
+/// A normal that faces away from the viewer would make the surface black: it is turned until it just faces the viewer.
 Vec3f facing_normal(const Vec3f& normal, const Vec3f& direction, const Vec3f& otherwise);
 
 }  // namespace domelight

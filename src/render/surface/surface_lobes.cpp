@@ -16,13 +16,13 @@ Vec3f by_channel(const F& f) {
     return {f(&Vec3f::x), f(&Vec3f::y), f(&Vec3f::z)};
 }
 
-/// The direction of the brushing in the local frame (x, y of unit length), and how strong it is.
+/// The direction of the anisotropy in the local frame (x, y of unit length), and its strength.
 struct Brushing {
     float x = 1, y = 0, strength = 0;
 };
 
-/// KHR_materials_anisotropy: direction from the texture, turned by the rotation, in the tangent frame. Where a mesh has
-/// neither tangents nor texture coordinates it runs around the vertical axis.
+/// KHR_materials_anisotropy: direction from the texture, turned by the rotation, in the tangent frame. If a mesh has
+/// neither tangents nor texture coordinates, the direction runs around the vertical axis.
 Brushing brushing_at(const LayerInputs& in, const Frame<float>& frame) {
     const Material& m = in.material;
     const SceneTexture& texture = m.anisotropy_texture;
@@ -51,9 +51,9 @@ void make_transmission(const LayerInputs& in, float amount, LayeredBsdf& out) {
     out.transmits = true;
     out.volume = m.thickness > 0;
     out.gloss.schlick = false;
-    const float ior = std::min(m.ior, 1e3f);  // beyond it hardly anything goes through, and squares overflow
-    out.gloss.eta = in.front || m.thickness <= 0 ? ior : 1 / ior;  // a sheet has the same two faces from both sides
-    // A body of the index of air bends nothing; its microfacets would divide by their own rounding.
+    const float ior = std::min(m.ior, 1e3f);  // beyond it hardly any light is transmitted, and squares would overflow
+    out.gloss.eta = in.front || m.thickness <= 0 ? ior : 1 / ior;  // a sheet looks the same from both sides
+    // A body with the index of air does not refract; its microfacets would divide by rounding errors.
     constexpr float k_no_refraction = 1e-3f;
     const bool straight = std::abs(m.ior - 1) < k_no_refraction;
     out.gloss.thin = !out.volume || straight;
@@ -75,9 +75,9 @@ void make_transmission(const LayerInputs& in, float amount, LayeredBsdf& out) {
         });
 }
 
-/// Gives back what microfacets pass on to each other, so that a white surface keeps all light (as Bsdf::compensation
-/// does for what reflects by round ones): the reflected part by Turquin's rule with its mean Fresnel term, and the rest
-/// goes through.
+/// Adds the light that is scattered between microfacets, so that a white surface loses no energy (as Bsdf::compensation
+/// does for isotropic reflection): the reflected part by Turquin's rule with the mean Fresnel term; the rest is
+/// transmitted.
 void compensate(const LayerInputs& in, const Vec3f& V, LayeredBsdf& out) {
     const InterfaceAlbedo albedo = interface_albedo(out.gloss, out.to_tangent(V), in.shift);
     const Vec3f reflected_in_all = by_channel([&](auto c) {
@@ -157,7 +157,7 @@ bool make_layers(const LayerInputs& in, LayeredBsdf& out) {
     out.gloss.f0 = largest(in.dielectric_f0), out.gloss.f90 = largest(in.dielectric_f90);
     out.gloss.transmit = largest(out.transmitted);
 
-    // From inside a body there is only its boundary.
+    // Seen from inside a body there is only its boundary.
     if (!(out.volume && !in.front)) {
         make_sheen(in, V.z, out);
         make_coat(in, frame, out);

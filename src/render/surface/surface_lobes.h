@@ -6,12 +6,12 @@
 
 namespace domelight {
 
-/// Whether a material can have any of them at all.
+/// Whether a material can have any of them.
 bool has_layers(const Material& m);
-/// Whether any of the scene's does.
+/// Whether any material of the scene can.
 bool has_layers(const Scene& scene);
 
-/// What is known of the point when its layers are made.
+/// The inputs for the layers of a point.
 struct LayerInputs {
     const Scene& scene;
     const Instance& instance;
@@ -29,7 +29,7 @@ struct LayerInputs {
     UnitPoint shift;  ///< for interface_albedo()
 };
 
-/// Fills `out`, whose `base` is the surface without layers. False: none is there at this point.
+/// Fills `out`, whose `base` is the surface without layers. Returns false if there are no layers at this point.
 bool make_layers(const LayerInputs& in, LayeredBsdf& out);
 
 }  // namespace domelight

@@ -21,7 +21,7 @@ void AliasRows::fill(int row, std::span<const float> weights, std::span<const do
     const int cells = 1 << bits, split_bits = 32 - bits;
     const std::uint64_t room = std::uint64_t(1) << split_bits;  // quanta of a cell
 
-    // Vose's method in integers: cells whose item has less than a cell's room ("small") are topped up from items with
+    // Vose's method in integers: cells whose item has less than a full cell ("small") are filled up from items with
     // more ("large").
     std::vector<std::uint64_t> left(cells);  // quanta not yet placed
     std::vector<std::int32_t> stack(cells);  // small from the front, large from the back
@@ -40,7 +40,7 @@ void AliasRows::fill(int row, std::span<const float> weights, std::span<const do
             stack[--large] = i;
     }
     while (small > 0) {
-        // All cells together have room for all quanta exactly, so while one has room left some item has quanta left.
+        // All cells together have space for exactly all quanta, so while one has space left, some item has quanta left.
         assert(large < cells);
         const int i = stack[--small], from = stack[large];
         e[i].alias_and_split = std::uint32_t(from) << split_bits | std::uint32_t(left[i]);
@@ -50,7 +50,7 @@ void AliasRows::fill(int row, std::span<const float> weights, std::span<const do
             ++large;
         }
     }
-    // What remains fills its own cell: split 0 and itself as alias.
+    // An item that remains fills its own cell: split 0 and itself as alias.
     for (; large < cells; ++large) e[stack[large]].alias_and_split = std::uint32_t(stack[large]) << split_bits;
 }
 

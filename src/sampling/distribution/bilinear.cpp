@@ -36,7 +36,8 @@ void BilinearRows::fill(int row, std::span<const double> begins, std::span<const
     for (int i = 0; i < items; ++i) {
         const double both = begins[i] + ends[i];
         sums[i] = sum += both;
-        // Where neither end is zero neither end of the shape is, or radiance / density would have no bound there.
+        // If no end is zero, no end of the shape may be zero either, because radiance / density would be unbounded
+        // there.
         const double r = both > 0 ? begins[i] / both * 65535 + 0.5 : 32768;
         const int least = begins[i] > 0, most = 65535 - (ends[i] > 0);
         s[i] = std::uint16_t(std::clamp(int(r), std::min(least, most), most));
@@ -90,7 +91,7 @@ struct Mixture {
     }
 };
 
-/// What is known once v is.
+/// The values that depend on v alone.
 struct Row {
     double v, pdf_v;
     Mixture mixture;
@@ -244,7 +245,7 @@ void BilinearDistribution::pdfs_uv(std::span<const float> u, std::span<const flo
     } places[k_block];
     for (std::size_t first = 0; first < u.size(); first += k_block) {
         const std::size_t n = std::min(k_block, u.size() - first);
-        // Fetched for the whole block before any is used: the block's cache misses overlap.
+        // Fetched for the whole block before any is used, so that the block's cache misses overlap.
         for (std::size_t k = 0; k < n; ++k) {
             const auto [s, t] = tables.place(v[first + k]);
             const auto [i, r] = column_place(u[first + k], width());

@@ -98,7 +98,7 @@ struct Segments {
     }
 };
 
-/// One batch's numbers between the steps. Pairs are neighbours in a table, fetched and kept together.
+/// The numbers of one batch between the steps. Pairs are neighbours in a table that are fetched and stored together.
 struct Batch {
     alignas(64) std::int32_t segment[k_batch];        // of the rows
     alignas(64) std::int32_t row_edges[2 * k_batch];  // the quanta before and after it
@@ -193,7 +193,7 @@ void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, cons
             hn::Store(table_mass(x), d, b.mass + k);
         }
 
-        // Columns: the guides bracket, and a straight line through what they say of each row guesses.
+        // Columns: the guide cells bracket the segment, and linear interpolation between them gives the first guess.
         for (int k = 0; k < n; ++k) {
             const std::uint16_t* cell =
                 guides + std::size_t(b.segment[k]) * guide_stride + (std::uint64_t(p[k].x) >> shift);

@@ -6,16 +6,15 @@
 
 namespace domelight {
 
-/// A density that runs linearly over t in [0, 1]: its value at t is begin (1 - t) + end t, its integral (begin + end)
-/// / 2.
+/// A density that is linear in t over [0, 1]: its value at t is begin (1 - t) + end t, its integral (begin + end) / 2.
 struct LinearSegment {
     double begin, end;
 
     double at(double t) const { return begin * (1 - t) + end * t; }
     /// Integral from 0 to t.
     double before(double t) const { return begin * t + 0.5 * (end - begin) * (t * t); }
-    /// The t with before(t) == mass, without cancellation whichever end is larger. Kept from the very ends, where the
-    /// density may be zero: by less than a sixteenth of a quantum.
+    /// The t with before(t) == mass, without cancellation whichever end is larger. Kept away from the ends, where the
+    /// density may be zero, by less than a sixteenth of a quantum.
     double invert(double mass) const {
         const double root = std::sqrt(std::max(begin * begin + 2 * (end - begin) * mass, 0.0));
         return std::clamp(2 * mass / std::max(begin + root, 1e-300), k_margin, 1 - k_margin);

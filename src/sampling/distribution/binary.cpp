@@ -9,8 +9,8 @@ namespace domelight {
 
 namespace {
 
-/// The i with cdf[i] <= u < cdf[i + 1], 0 <= i < n. By halving, whose choice compiles to a branch that the
-/// processor guesses so that it fetches ahead, which is twice as fast as waiting for each fetch.
+/// The i with cdf[i] <= u < cdf[i + 1], 0 <= i < n. By bisection with a branch: the processor predicts the branch and
+/// fetches ahead, which is twice as fast as waiting for each fetch.
 int find_interval(const float* cdf, int n, float u) {
     int first = 1, size = n;
     while (size > 0) {
@@ -26,7 +26,7 @@ int find_interval(const float* cdf, int n, float u) {
     return std::min(first - 1, n - 1);
 }
 
-/// Keeps a position that rounding took to a texel's border inside.
+/// Keeps a position inside its texel if rounding has moved it to the border.
 double inside(float t) {
     return std::clamp(double(t), 0x1p-26, 1 - 0x1p-26);
 }

@@ -26,9 +26,9 @@ HWY_INLINE auto texel_floats(D d, V quotient, V item, V n, V one) {
     return hn::DemoteTo(df, f);
 }
 
-constexpr int k_batch = 64;  ///< points that go through the steps together
+constexpr int k_batch = 64;  ///< the number of points that are processed together
 
-/// Where a batch of `n` draws goes, in whole vectors: the last batch, which may be short, by way of a buffer.
+/// The output of a batch of `n` draws in whole vectors. The last batch, which may be short, goes through a buffer.
 struct BatchOutput {
     alignas(64) float buffer[3][k_batch];
     float* target[3];

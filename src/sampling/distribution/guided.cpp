@@ -43,8 +43,8 @@ void GuidedRows::fill(int row, std::span<const float> weights, std::span<const d
     share_quanta([&](int i) { return weights[i] > 0; }, sums, k_total,
                  [&](int i, std::uint64_t end) {
                      l[i] = std::uint32_t(end - 1);
-                     // Cells that begin before `end` begin in item i. Mostly few: eight are written blindly, what was
-                     // too much is overwritten by later items.
+                     // Cells that begin before `end` begin in item i. They are mostly few: eight are written without a
+                     // test, and those too many are overwritten by later items.
                      const std::size_t cells_begun = (end + cell - 1) >> shift;
                      for (std::size_t k = 0; k < 8; ++k) g[filled + k] = std::uint16_t(i);
                      for (std::size_t k = filled + 8; k < cells_begun; ++k) g[k] = std::uint16_t(i);
@@ -115,7 +115,7 @@ Result<GuidedDistribution> GuidedDistribution::build(const Weights& weights, int
     };
     if (auto read = for_each_weight_row(weights, threads, add); !read) return read.error();
 
-    // The rows' own weights only say which are drawn at all.
+    // The weights of the rows only determine which rows can be drawn.
     std::vector<float> drawn(rows.size());
     for (std::size_t y = 0; y < rows.size(); ++y) drawn[y] = rows[y] > 0;
     for (std::size_t y = 1; y < rows.size(); ++y) rows[y] += rows[y - 1];

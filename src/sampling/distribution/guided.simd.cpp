@@ -51,7 +51,7 @@ void sample_guided(const GuidedRows& marginal, const GuidedRows& conditional, co
     for (std::size_t start = 0; start < count; start += k_batch) {
         const int n = int(std::min<std::size_t>(k_batch, count - start));
         const UnitPoint* p = points + start;
-        // The fetches of a batch from memory are under way together: guide cells first, then the sums they point at.
+        // The fetches of a batch overlap: guide cells first, then the sums that they point to.
         for (int k = 0; k < n; ++k) {
             const int j = find_from(row_last, row_guide[std::uint64_t(p[k].y) >> marginal.shift], p[k].y);
             rows.set(k, row_last, j, p[k].y);

@@ -21,7 +21,7 @@ Result<HierarchicalDistribution> HierarchicalDistribution::build(const Weights& 
     if (auto read = for_each_weight_row(weights, threads, add); !read) return read.error();
     for (double m : row_largest) largest = std::max(largest, m);
     if (largest == 0) return build(uniform_weights(w, h), threads);
-    // Sums are floats: keep them away from both ends of the range. A power of two changes no ratio.
+    // Sums are floats, so they are scaled away from both ends of the range. A power of two changes no ratio.
     const float scale = std::ldexp(1.0f, -std::clamp(std::ilogb(largest), -126, 126));
     for (float& x : d.levels_[0].sums) x *= scale;
 
@@ -56,7 +56,7 @@ HierarchicalDistribution::Split HierarchicalDistribution::split(int level, int i
 
 namespace {
 
-/// The half that x in (0, 1) falls in, and x's place there; a half of no share is never chosen.
+/// The half that x in (0, 1) falls into, and the position of x in it; a half with share 0 is never chosen.
 int descend(double& x, double first) {
     const int second = x >= first;
     x = second ? (x - first) / (1 - first) : x / first;

@@ -27,7 +27,7 @@ PlainDistribution1D::Sample PlainDistribution1D::sample_walk(double xi) const {
     double rest = xi * cumulative_[n];
     int i = 0;
     while (i < n - 1 && rest >= values_[i]) rest -= values_[i++];
-    while (values_[i] == 0) --i;  // what rounding left of the rest may lead past the last value that is not zero
+    while (values_[i] == 0) --i;  // because of rounding, the remainder may lead past the last value that is not zero
     return {(i + std::clamp(rest / values_[i], 0.0, 1 - 0x1p-40)) / n, values_[i] * n / cumulative_[n], i};
 }
 

@@ -17,10 +17,10 @@ Result<void> for_each_weight_row(
 /// sums[x] of one row; returns the first weight that is NaN, infinite or negative, or -1.
 int running_sums(std::span<const float> weights, std::span<double> sums);
 
-/// What the error says of a bad weight.
+/// The error for a bad weight.
 const char* weight_fault(float weight);
 
-/// What every method draws from where nothing has a weight.
+/// The weights that every method uses if all weights are zero.
 Weights uniform_weights(int width, int height);
 
 /// Index of the texel that holds x in [0, 1), of n; NaN counts as 0.

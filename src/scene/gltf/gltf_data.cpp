@@ -98,7 +98,7 @@ Result<GltfData> GltfData::open(const GltfDocument& document, std::span<const st
         } else if (b == 0) {
             bytes = chunk;
         }
-        // A buffer without data stands behind packed views; whoever reads it as it is gets an error then.
+        // A buffer without data belongs to packed views; reading it directly is an error.
         if (!bytes.empty() && bytes.size() < buffer.length)
             return Error{fmt::format("buffers[{}]: {} bytes, but byteLength is {}", b, bytes.size(), buffer.length), "",
                          "The file is truncated, or its header is wrong."};
@@ -160,7 +160,7 @@ Result<void> GltfData::check(int index, int components) {
     const std::string name = fmt::format("accessors[{}]", index);
     if (a.components != components)
         return Error{fmt::format("{}: elements have not {} components", name, components), "", ""};
-    // Zeros that nothing stores: as many as there are bytes of other data is more than any file needs.
+    // Zeros that are not stored in the file: no file needs more of them than it has bytes of other data.
     if (a.view < 0)
         return a.count <= bytes_given_ ? Result<void>()
                                        : Error{fmt::format("{}: {} elements of no data", name, a.count), "", ""};

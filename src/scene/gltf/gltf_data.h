@@ -25,7 +25,7 @@ class GltfData {
 
     const GltfAccessor& accessor(int a) const { return document_->accessors[std::size_t(a)]; }
 
-    /// Whether the accessor's elements of so many components are all there: asked before memory is allocated for them.
+    /// Checks that all elements of the accessor exist, with so many components, before memory is allocated for them.
     Result<void> check(int accessor, int components);
 
     /// Elements [first, first + count) of an accessor as floats, normalised where the accessor says so: count x

@@ -36,7 +36,7 @@ int components_of(const std::string& type) {
     return 0;
 }
 
-/// Reads the document part by part. Wrong members end up in `error_`.
+/// Reads the document part by part. Faults of members are kept in `error_`.
 class DocumentParser {
   public:
     DocumentParser(const Json& json, const SceneOptions& options)
@@ -284,7 +284,8 @@ void DocumentParser::set_parents() {
                                   fmt::format("is a child of nodes {} and {}", parent, n));
             parent = int(n);
         }
-    // With one parent each, a walk up ends at a root or goes round; what has been walked is not walked again.
+    // Since each node has one parent, a walk upwards ends at a root or is cyclic; nodes already visited are not visited
+    // again.
     std::vector<int> walk(nodes.size(), -1);
     for (std::size_t n = 0; n < nodes.size(); ++n)
         for (int at = int(n); at >= 0; at = nodes[std::size_t(at)].parent) {

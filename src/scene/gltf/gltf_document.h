@@ -1,6 +1,6 @@
 #pragma once
-// What the JSON of a glTF file says, with every type and index checked. Numbers of bytes are as claimed: nothing here
-// has looked at the data.
+// The contents of the JSON of a glTF file, with every type and index checked. Numbers of bytes are not checked against
+// the data here.
 
 #include "domelight/scene/scene.h"
 
@@ -129,8 +129,8 @@ struct GltfDocument {
     std::vector<std::string> warnings;
 };
 
-/// Reads the JSON. Errors: not JSON, not glTF 2.0, members of a wrong type, indices of what is not there, nodes that
-/// are no forest, an extension that is required and not known. They name no file.
+/// Reads the JSON. Errors: not JSON, not glTF 2.0, members of a wrong type, indices out of range, nodes that do not
+/// form a forest, an extension that is required and unknown. They name no file.
 Result<GltfDocument> parse_gltf_document(std::string_view json, const SceneOptions& options);
 
 /// Translation, rotation (a quaternion x, y, z, w of any length; none of it: no rotation) and scale: scale first.

@@ -65,7 +65,7 @@ class DracoVertices : public GltfVertices {
 Result<void> DracoVertices::read(const std::string& semantic, std::uint64_t first, std::uint64_t count, float* out) {
     const draco::PointAttribute& attribute = *find(semantic);
     const int components = attribute.num_components();
-    // Integers come out as they are unless Draco itself knows them as normalised; what the accessor says counts.
+    // Integers are not normalised unless Draco marks them as normalised; the accessor decides.
     float scale = 1;
     const int accessor = gltf_attribute(primitive_.attributes, semantic);
     if (accessor >= 0 && data_.accessor(accessor).normalized && !attribute.normalized()) {
@@ -102,12 +102,12 @@ Result<std::unique_ptr<GltfVertices>> open_draco_vertices(GltfData& data, const 
     if (!packed) return packed.error();
     std::uint64_t faces = 0, vertices = 0;
     if (!claimed_counts(*packed, faces, vertices)) return Error{"Draco data that is no mesh of version 2.2", "", ""};
-    // Nothing real packs a thousand faces into a byte; and a face brings three vertices at most.
+    // No real file compresses a thousand faces into a byte, and a face adds at most three vertices.
     if (faces > 1024 * std::uint64_t(packed->size()) || vertices > 3 * faces)
         return Error{
             fmt::format("Draco: {} bytes cannot hold {} faces and {} vertices", packed->size(), faces, vertices), "",
             ""};
-    constexpr std::uint64_t bytes_a_face = 200;  // corner tables, and attributes on the way
+    constexpr std::uint64_t bytes_a_face = 200;  // corner tables, and attributes while they are decoded
     if (const auto room = budget.take(faces, bytes_a_face, "Draco"); !room) return room.error();
     try {
         draco::DecoderBuffer buffer;

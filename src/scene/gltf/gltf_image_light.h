@@ -30,14 +30,14 @@ Result<void> write_gltf_image_light(const std::filesystem::path& file, const Glt
 
 /// The light of a file's scene (else its first light).
 struct GltfImageLight {
-    double intensity = 1;                       ///< times which all light is meant
+    double intensity = 1;                       ///< the factor on all light
     std::array<float, 4> rotation{0, 0, 0, 1};  ///< of the environment: a quaternion x, y, z, w
     std::vector<Vec3d> irradiance;              ///< as stored, without the intensity
     std::vector<Cubemap> levels;                ///< as stored, without intensity and rotation
     bool low_dynamic_range = false;             ///< pictures without the fourth channel: sRGB
 };
 
-/// Whether the bytes may be a glTF file with such a light, by a look at the start and for the extension's name.
+/// Whether the bytes may be a glTF file with such a light: checks the beginning, and searches for the extension's name.
 bool may_be_gltf_image_light(std::span<const std::uint8_t> bytes);
 
 /// `folder`: where the pictures' URIs are looked up. `most_levels`: 1 for the environment alone. Every picture's size

@@ -174,7 +174,7 @@ Result<GltfImageLight> read_gltf_image_light(std::shared_ptr<const FileBytes> by
                 picture = held->bytes();
             }
             if (f == 0) {
-                // Room for the cube once its first picture says the size it should have.
+                // Allocates the cube once the size of its first picture is known and right.
                 const auto claimed = texture_image_size(picture);
                 if (!claimed) return at(f, claimed.error());
                 if (claimed->width != size || claimed->height != size)

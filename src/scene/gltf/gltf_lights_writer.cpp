@@ -31,8 +31,8 @@ Json light_json(const ExtractedLight& light, int number, double lux_per_unit) {
 }  // namespace
 
 std::array<double, 4> turn_from_minus_z(const Vec3d& d) {
-    // From a to b: (a x b, 1 + a . b), normalised; for a = -Z that is (d.y, -d.x, 0, 1 - d.z). Straight back there is
-    // no shortest turn: about Y.
+    // From a to b: (a x b, 1 + a . b), normalised; for a = -Z that is (d.y, -d.x, 0, 1 - d.z). For the opposite
+    // direction there is no shortest turn: the turn is about Y.
     const double w = 1 - d.z;
     if (w < 1e-12) return {0, 1, 0, 0};
     const double scale = 1 / std::sqrt(d.x * d.x + d.y * d.y + w * w);

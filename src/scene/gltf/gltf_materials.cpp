@@ -71,7 +71,7 @@ void read_metallic_roughness(JsonFields fields, TextureFields& textures, Materia
 void read_specular(JsonFields fields, TextureFields& textures, Material& m) {
     m.specular = fields.number("specularFactor", 1, 0, 1);
     m.specular_color =
-        colour(fields, "specularColorFactor", {1, 1, 1}, k_no_limit);  // may pass 1: F0 is clamped, not this
+        colour(fields, "specularColorFactor", {1, 1, 1}, k_no_limit);  // may exceed 1: F0 is clamped, not this factor
     m.specular_texture = textures.read(fields, "specularTexture");
     m.specular_color_texture = textures.read(fields, "specularColorTexture");
 }

@@ -192,7 +192,7 @@ Result<void> MeshBuilder::skin(const GltfPose& pose, GltfLeftOut& left_out) {
         }
     }
     for (std::size_t i = 0; i < blend.size(); ++i) {
-        // Weights that do not sum to one are brought there; a vertex that no joint holds stays where it is.
+        // Weights are normalised to sum to one; a vertex without joints is not moved.
         if (!(total[i] > 0)) continue;
         const Affine m = scaled(blend[i], 1 / total[i]);
         mesh.positions[i] = m.point(mesh.positions[i]);

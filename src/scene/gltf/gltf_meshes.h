@@ -10,7 +10,7 @@ namespace domelight {
 /// Where the joints of a skin are: world (or model) from the space of the bind pose.
 using GltfPose = std::vector<Affine>;
 
-/// What was left out of the meshes, for the scene's warnings.
+/// Counts what was left out of the meshes, for the scene's warnings.
 struct GltfLeftOut {
     std::int64_t points_and_lines = 0, broken_joints = 0;
 };

@@ -7,9 +7,11 @@ namespace domelight {
 
 namespace {
 
-/// The most elements that so many packed bytes can hold. The library checks as much, but only once the output exists.
+/// The largest number of elements that so many packed bytes can hold. The library checks this too, but only after the
+/// output is allocated.
 std::uint64_t most_elements(const GltfMeshopt& m, std::size_t packed) {
-    // Vertices: a header byte stands for four groups of 16 bytes at most. Triangles and indices: a byte each at least.
+    // Vertices: a header byte represents at most four groups of 16 bytes. Triangles and indices: at least one byte
+    // each.
     if (m.mode == "ATTRIBUTES") return 64 * std::uint64_t(packed) / m.stride;
     return m.mode == "TRIANGLES" ? 3 * std::uint64_t(packed) : std::uint64_t(packed);
 }

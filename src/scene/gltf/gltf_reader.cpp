@@ -22,7 +22,8 @@ bool finite(const Affine& a) {
     return true;
 }
 
-/// A frame without scale or shear that looks the same way, for cameras and lights. None: the axes have collapsed.
+/// A frame without scale or shear that has the same orientation, for cameras and lights. Empty if the axes have
+/// collapsed.
 std::optional<Affine> rigid(const Affine& a) {
     const float depth = length(a.z);
     if (!finite(a) || !(depth > 0)) return std::nullopt;
@@ -57,7 +58,8 @@ class SceneBuilder {
     Scene scene_;
     std::vector<Affine> to_world_;                   // by node
     std::vector<int> order_;                         // nodes of the scene, parents first
-    std::map<int, std::vector<int>> shared_meshes_;  // by mesh: those that no skin and no weights of a node change
+    std::map<int, std::vector<int>> shared_meshes_;  // by mesh: those that are not changed by a skin or by the weights
+                                                     // of a node
     MeshRepairs repairs_;
     GltfLeftOut left_out_;
     int default_material_ = -1;
@@ -86,8 +88,8 @@ void SceneBuilder::find_places() {
     for (const int root : document_.roots) walk(root, &order_);
 }
 
-/// A skin at rest: joint matrices times inverse bind matrices. The node that carries the mesh has no say (glTF 2.0,
-/// section 3.7.3.3).
+/// A skin at rest: joint matrices times inverse bind matrices. The transform of the mesh's own node is ignored (glTF
+/// 2.0, section 3.7.3.3).
 Result<GltfPose> SceneBuilder::pose_of(const GltfSkin& skin) {
     std::vector<float> inverse;
     if (skin.inverse_bind >= 0) {
@@ -146,7 +148,7 @@ Result<std::vector<int>> SceneBuilder::meshes_of(const GltfNode& node) {
     return built;
 }
 
-/// Where a node's mesh is put: once, or as often as EXT_mesh_gpu_instancing says.
+/// The placements of a node's mesh: one, or those of EXT_mesh_gpu_instancing.
 Result<std::vector<Affine>> SceneBuilder::places_of(const GltfNode& node, const Affine& place) {
     if (!node.instanced) return std::vector<Affine>{node.skin >= 0 ? Affine{} : place};
     std::uint64_t count = 0;
@@ -223,7 +225,7 @@ Result<void> SceneBuilder::add_node(int index) {
     return {};
 }
 
-/// Decodes the images that materials use; what no material uses is not even looked at.
+/// Decodes the images that materials use; other images are not even opened.
 Result<void> SceneBuilder::add_images() {
     std::vector<SceneImageSource> sources;
     for (std::size_t i = 0; i < document_.images.size(); ++i) {

@@ -15,7 +15,7 @@ class GltfVertices {
     virtual std::uint64_t count() const = 0;
     /// Components of an attribute; 0: there is none of that name.
     virtual int components(const std::string& semantic) const = 0;
-    /// Whether all of an attribute is there, as long as the positions: asked before memory is allocated for it.
+    /// Checks that an attribute is complete and as long as the positions, before memory is allocated for it.
     virtual Result<void> check(const std::string& semantic) = 0;
     /// Values of vertices [first, first + count), count x components of them. Precondition: checked.
     virtual Result<void> read(const std::string& semantic, std::uint64_t first, std::uint64_t count, float* out) = 0;

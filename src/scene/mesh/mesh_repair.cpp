@@ -16,8 +16,8 @@ bool sound(const Vec3f& p) {
            std::abs(p.z) < k_largest_coordinate;
 }
 
-/// Twice the area times the direction. In double: neither tiny nor huge triangles leave its range, and what is
-/// collinear in float comes out as 0.
+/// Twice the area times the direction. In double: neither tiny nor huge triangles exceed its range, and corners that
+/// are collinear in float give 0.
 Vec3d area_normal(const Mesh& mesh, std::size_t triangle) {
     const Vec3d a(mesh.positions[mesh.indices[triangle]]), b(mesh.positions[mesh.indices[triangle + 1]]),
         c(mesh.positions[mesh.indices[triangle + 2]]);
@@ -72,7 +72,7 @@ void MeshRepairs::drop_triangles(Mesh& mesh) {
         }
     }
     mesh.indices.resize(kept);
-    // No triangle has these vertices any more, but a box round all of them should stay what it is.
+    // These vertices belong to no triangle any more, but must not change the bounding box.
     const Vec3f harmless = kept ? mesh.positions[mesh.indices[0]] : Vec3f{};
     for (std::size_t v = 0; v < bad.size(); ++v)
         if (bad[v]) mesh.positions[v] = harmless;

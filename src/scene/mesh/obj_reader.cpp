@@ -66,7 +66,7 @@ class ObjReader {
     std::map<std::pair<std::string, int>, std::size_t> group_numbers_;
     std::vector<Group> groups_;
     std::string object_ = "object";
-    int material_ = -1;  // -1: none said yet
+    int material_ = -1;  // -1: none stated yet
     bool smooth_ = false;
     std::size_t current_ = std::size_t(-1);
     std::vector<SceneImageSource> sources_;
@@ -210,12 +210,12 @@ void ObjReader::finish(Group& group) {
 }
 
 Result<Scene> ObjReader::read() {
-    // No statement of n bytes leaves more than so much behind.
+    // A statement of n bytes adds at most this much memory.
     if (const auto room = budget_.take(text_.size(), 40, "its text"); !room) return room.error();
     TextLines lines(text_);
     std::string joined;
     for (std::string_view line; lines.next(line);) {
-        // A backslash at the end goes on in the next line.
+        // A backslash at the end continues the line.
         if (line.ends_with('\\')) {
             joined.assign(line.substr(0, line.size() - 1));
             for (bool more = true; more && lines.next(line);) {

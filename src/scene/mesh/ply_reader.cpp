@@ -63,12 +63,12 @@ class PlyValues {
   public:
     PlyValues(std::string_view rest, Format format) : rest_(rest), format_(format) {}
 
-    /// Whether so many entries of an element can be there at all.
+    /// Whether the file can contain so many entries of an element.
     bool holds(const Element& element) const {
         std::size_t least = 0;
         for (const Property& p : element.properties)
             least += format_ == Format::ascii ? 2 : bytes_of(p.count_type == Type::none ? p.type : p.count_type);
-        // The last value of a text needs no blank after it.
+        // The last value of a text file need not be followed by a blank.
         return least == 0 || element.count <= (rest_.size() + 1) / least;
     }
     bool next(Type type, double& value) {

@@ -6,7 +6,7 @@ namespace domelight {
 
 namespace {
 
-constexpr std::size_t k_most_corners = 64;  // ears cost the cube of it
+constexpr std::size_t k_most_corners = 64;  // ear clipping takes time in proportion to its cube
 
 struct Point {
     double x, y;
@@ -67,7 +67,7 @@ void triangulate(std::span<const std::uint32_t> corners, std::span<const Vec3f> 
     while (left.size() >= 3) {
         std::size_t ear = 0;
         while (ear < left.size() && !is_ear(points, left, ear)) ++ear;
-        if (ear == left.size()) ear = 1;  // it crosses itself: any cut is as good
+        if (ear == left.size()) ear = 1;  // the polygon crosses itself, so any cut is as good
         const std::size_t n = left.size();
         out.insert(out.end(), {corners[left[(ear + n - 1) % n]], corners[left[ear % n]], corners[left[(ear + 1) % n]]});
         left.erase(left.begin() + std::ptrdiff_t(ear % n));

@@ -9,7 +9,7 @@
 namespace domelight {
 
 /// Cuts a polygon into triangles: `corners` are indices of `positions`, and three indices a triangle are added to
-/// `out`, in the same direction of turning. Convex polygons become fans, concave ones lose their ears one by one
+/// `out`, in the same direction of turning. Convex polygons become fans; concave ones are triangulated by ear clipping
 /// (Meisters 1975); those of more than 64 corners become fans too. Precondition: every corner is below
 /// positions.size().
 void triangulate(std::span<const std::uint32_t> corners, std::span<const Vec3f> positions,

@@ -9,7 +9,7 @@ namespace domelight {
 
 namespace {
 
-/// Where the endpoint values begin: behind the block mode, the number of subsets, the seed and the endpoint mode.
+/// The position of the endpoint values: after the block mode, the number of subsets, the seed and the endpoint mode.
 constexpr int first_endpoint_bit(int subsets) {
     return subsets == 1 ? 17 : 29;
 }
@@ -108,7 +108,7 @@ std::optional<AstcBlock> unpack_astc(std::span<const std::uint8_t, 16> in) {
     }
     AstcBlock block;
     if (bits.get(0, 9) == 0x1fc) {
-        // HDR, the reserved bits, and no coordinates, as the format wants it.
+        // HDR, the reserved bits, and no coordinates, as the format requires.
         if (bits.low != 0xfffffffffffffffcu || bits.get(112, 16) != 0x3c00) return std::nullopt;
         block.solid = true;
         for (int c = 0; c < 3; ++c) {
@@ -119,7 +119,7 @@ std::optional<AstcBlock> unpack_astc(std::span<const std::uint8_t, 16> in) {
     }
     const std::uint32_t mode = bits.get(0, 11);
     const int r = int((mode & 3) << 1 | (mode >> 4 & 1)), h = int(mode >> 9 & 1);
-    if (r < 2 || (r == 2 && !h)) return std::nullopt;  // two weights take fewer bits than the format wants
+    if (r < 2 || (r == 2 && !h)) return std::nullopt;  // two weights take fewer bits than the format requires
     block.weight_range = r - 2 + 6 * h;
     if (mode != std::uint32_t(block_mode(block.weight_range))) return std::nullopt;
     block.subsets = int(bits.get(11, 2)) + 1;

@@ -1,5 +1,5 @@
 #pragma once
-// One block of ASTC HDR, 4 x 4 texels, as numbers: those forms that UASTC HDR 4x4 consists of. Khronos Data Format
+// One block of ASTC HDR, 4 x 4 texels, as numbers, in the forms that UASTC HDR 4x4 consists of. Khronos Data Format
 // Specification 1.3, chapter 23.
 
 #include <array>
@@ -9,14 +9,14 @@
 
 namespace domelight {
 
-/// Colour endpoint modes: what a pair of HDR colours is made of.
+/// Colour endpoint modes: the representation of a pair of HDR colours.
 enum : int {
     k_cem_hdr_base_scale = 7,  ///< four values: a colour, and the same shifted by one number in all channels
     k_cem_hdr_rgb = 11         ///< six values: two colours
 };
 
 struct AstcBlock {
-    bool solid = false;                      ///< one colour (a "void extent"), nothing else counts then
+    bool solid = false;                      ///< one colour (a "void extent"); everything else is then ignored
     std::array<std::uint16_t, 3> colour{};   ///< halves
     int weight_range = 8;                    ///< index into k_ise_ranges; 4 x 4 weights, one plane
     int endpoint_mode = k_cem_hdr_rgb;       ///< the same in all subsets
@@ -38,10 +38,10 @@ int astc_endpoint_range(int weight_range, int endpoint_mode, int subsets);
 /// Bit i is set where texel i (row by row) belongs to the second of two subsets ("Partition Pattern Generation").
 std::uint32_t astc_partition(int seed);
 
-/// The block's 16 bytes. Endpoint values must be among those of the range.
+/// The block's 16 bytes. Endpoint values must belong to the range.
 void pack_astc(const AstcBlock& block, std::span<std::uint8_t, 16> out);
 
-/// The numbers of 16 bytes; nothing where the block is valid ASTC of another kind, or not valid.
+/// The numbers of 16 bytes. Empty if the block is valid ASTC of another kind, or not valid.
 std::optional<AstcBlock> unpack_astc(std::span<const std::uint8_t, 16> in);
 
 /// The two colours of one subset in steps of 1/128 octave, 0 .. 4095, from its endpoint values ("HDR Endpoint Modes").

@@ -16,7 +16,7 @@ namespace {
 /// Blocks side by side that make the image of one call.
 constexpr int k_most_blocks = 16;
 
-/// What a context is made for.
+/// The parameters that a context is made for.
 struct Purpose {
     int side;
     bool encodes;
@@ -56,7 +56,7 @@ Context make_context(const Purpose& purpose) {
     return Context(context);
 }
 
-/// Contexts take milliseconds to make and serve one thread at a time: kept and lent out.
+/// A context takes milliseconds to make and can be used by one thread at a time, so contexts are kept and reused.
 class Contexts {
   public:
     static Contexts& instance() {

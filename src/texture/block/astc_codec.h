@@ -7,10 +7,10 @@
 namespace domelight {
 
 /// Encodes `count` blocks of `side` x `side` RGB texels (4 or 6), row by row, from 0 to 65504 and never NaN, as ASTC
-/// HDR of 16 bytes each, with Arm's encoder. The same bytes for a block whatever its company.
+/// HDR of 16 bytes each, with Arm's encoder. The bytes of a block do not depend on the other blocks.
 void encode_astc_hdr(int side, const float* rgb, int count, EncodingQuality quality, std::uint8_t* blocks);
 
-/// The texels of any ASTC blocks of that size. What is not a valid block is black.
+/// The texels of any ASTC blocks of that size. An invalid block is black.
 void decode_astc_hdr(int side, const std::uint8_t* blocks, int count, float* rgb);
 
 }  // namespace domelight

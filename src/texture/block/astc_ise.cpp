@@ -121,7 +121,7 @@ constexpr Packed make_packed() {
 }
 constexpr Packed k_packed = make_packed();
 
-/// Where the bits of a group's packed trits or quints go: behind each number's low bits come so many.
+/// How the bits of a group's packed trits or quints are distributed: this many follow the low bits of each number.
 constexpr int k_trit_bits[5] = {2, 2, 1, 2, 1}, k_quint_bits[3] = {3, 2, 2};
 
 }  // namespace
@@ -165,7 +165,7 @@ void ise_decode(const IseRange& range, const Bits128& in, int at, std::span<std:
     for (int first = 0; first < count; first += group) {
         std::uint32_t low[5] = {}, packed = 0;
         for (int i = 0, shift = 0; i < group; shift += share[i++]) {
-            // What lies past the end of the sequence counts as 0.
+            // Bits past the end of the sequence count as 0.
             const auto take = [&](int bits) {
                 const int there = std::clamp(end - at, 0, bits);
                 const std::uint32_t v = there > 0 ? in.get(at, there) : 0;

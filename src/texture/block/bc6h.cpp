@@ -1,4 +1,4 @@
-// The format: where its bits are, and what they mean.
+// The format: the positions of its bits and their meaning.
 #include "texture/block/bc6h.h"
 
 #include "texture/texel/half.h"
@@ -114,7 +114,7 @@ constexpr std::array<Layout, k_modes> parse_layouts() {
 }
 constexpr std::array<Layout, k_modes> k_layout = parse_layouts();
 
-/// The block as one number of 128 bits, used up from its low end.
+/// The block as one number of 128 bits, read from its low end.
 struct Bits {
     std::uint64_t low = 0, high = 0;
 
@@ -133,7 +133,7 @@ struct Bits {
     }
 };
 
-/// The other way: filled from its low end.
+/// The inverse: a number of 128 bits, filled from its low end.
 struct BitWriter {
     std::uint64_t low = 0, high = 0;
     int at = 0;

@@ -1,9 +1,9 @@
 #pragma once
 // BC6H, unsigned (DXGI's BC6H_UF16, Vulkan's BC6H_UFLOAT_BLOCK, OpenGL's RGB_BPTC_UNSIGNED_FLOAT): 4 x 4 texels of RGB
 // half floats in 16 bytes. A block has one or two pairs of colours (subsets); its texels lie on the lines between them,
-// in steps of the half floats' bit patterns, which makes the steps ratios rather than differences. Fourteen modes share
-// the bits out differently. Direct3D 11.3 functional specification, section 19.5.13; Khronos Data Format Specification
-// 1.3, chapter 20.
+// in steps of the half floats' bit patterns, so that steps are ratios rather than differences. Fourteen modes
+// distribute the bits differently. Direct3D 11.3 functional specification, section 19.5.13; Khronos Data Format
+// Specification 1.3, chapter 20.
 //
 // Texels of a block are counted row by row.
 
@@ -37,7 +37,7 @@ extern const std::array<std::uint8_t, k_partitions> k_anchor;
 inline constexpr int k_weights_3[8] = {0, 9, 18, 27, 37, 46, 55, 64};
 inline constexpr int k_weights_4[16] = {0, 4, 9, 13, 17, 21, 26, 30, 34, 38, 43, 47, 51, 55, 60, 64};
 
-/// What the bits of a block say, before anything is computed from it.
+/// The fields of a block as stored, before anything is computed from them.
 struct Fields {
     int mode = 0;
     int partition = 0;

@@ -44,7 +44,7 @@ void pack_solution(int mode_number, int partition, const int* ends, const int* i
                 e > 0 && mode.transformed ? (value - ends[c]) & ((1 << mode.delta_bits[c]) - 1) : value;
         }
     for (std::size_t t = 0; t < k_texels; ++t) fields.index[t] = std::uint8_t(index[t]);
-    // What is not stored must be zero, and what wraps round must not have.
+    // Bits that are not stored must be zero, and differences must not have wrapped around.
     assert(index[0] < 1 << (mode.index_bits() - 1));
     assert(mode.subsets == 1 || index[k_anchor[std::size_t(partition)]] < 1 << (mode.index_bits() - 1));
     pack(fields, block);

@@ -6,15 +6,16 @@
 
 namespace domelight::bc6h {
 
-/// How much is tried.
+/// The effort of the search.
 struct Effort {
-    int partitions = 0;       ///< of the 32, the most promising; 0: modes of one subset alone
-    int fits = 1;             ///< rounds of nearest indices and least squares before anything is quantised
-    int refits = 1;           ///< and with each mode's quantised ends
-    int polish = 0;           ///< the most rounds of moving single ends of the best block by steps
-    int nudges = 0;           ///< the same of every mode and partition's, before the best is chosen
-    float step = 2;           ///< the longest of them
-    float reach = 1;          ///< only where a mode's error is below this times the best one found without
+    int partitions = 0;       ///< how many of the 32 partitions, the most promising first; 0: only modes of one subset
+    int fits = 1;             ///< rounds of nearest indices and least squares before quantisation
+    int refits = 1;           ///< the same with the quantised ends of each mode
+    int polish = 0;           ///< the largest number of rounds in which single ends of the best block are moved by
+                              ///< steps
+    int nudges = 0;           ///< the same for the block of every mode and partition, before the best is chosen
+    float step = 2;           ///< the largest step
+    float reach = 1;          ///< only if a mode's error is below this times the best one found without moving
     bool neighbours = false;  ///< tries the indices beside a texel's projection on the line, too
 };
 Effort effort_of(EncodingQuality quality);

@@ -5,8 +5,8 @@
 // splat(float), load(const float*), store(F, float*), lane_count(), select(M, F, F), smaller(F, F), larger(F, F),
 // floor_of(F), half_bits_of(F) and any(M).
 //
-// All lanes take the same path and every operation rounds as IEEE 754 says, so a block gets the same bytes whatever the
-// width of a vector and whatever lies in the lanes beside it. Whole numbers are kept as floats: those of the format are
+// All lanes take the same path and every operation rounds as IEEE 754 requires, so the bytes of a block depend neither
+// on the width of a vector nor on the blocks in the other lanes. Integers are stored as floats: those of the format are
 // below 2^24 and so exact.
 //
 // Colours are on the 16-bit scale on which the format interpolates; errors are sums of squares in half floats' bits,
@@ -24,22 +24,22 @@ F dot(const Colour& a, const Colour& b) {
     return a.c[0] * b.c[0] + a.c[1] * b.c[1] + a.c[2] * b.c[2];
 }
 
-/// Texels as they are to be stored.
+/// The texels to be stored.
 struct Target {
     Colour bits[k_texels];   ///< half floats' bits
     Colour value[k_texels];  ///< the middle of what decodes to them
 };
 
-/// A mode's numbers, one a lane. In most of the search all lanes have the same.
+/// The numbers of a mode, one for each lane. In most of the search all lanes have the same mode.
 struct Rules {
     F grid, offset;  ///< 16-bit value of an end: end * grid + offset, but 0 and 65535 at the two extremes
     F top;           ///< the largest end
-    F reach[3];      ///< ends lie from the first one less this to the first one plus this less 1
+    F reach[3];      ///< ends lie between the first one minus this and the first one plus this minus 1
     F last;          ///< the largest index
-    F index_weight;  ///< 64ths of the second end an index stands for, before rounding
+    F index_weight;  ///< weight of the second end for each index, in 64ths, before rounding
 };
 
-/// Which texels belong to the second subset (1, else 0), and where that keeps its shortened index.
+/// Which texels belong to the second subset (1, otherwise 0), and the position of its shortened index.
 struct Subsets {
     F second[k_texels];
     F anchor;
@@ -76,7 +76,7 @@ struct ModeNumbers {
 
 ModeNumbers numbers_of(const Mode& mode) {
     const int bits = mode.endpoint_bits;
-    // In a mode of 16 bits ends are values; a mode without differences reaches everywhere.
+    // In a mode of 16 bits, ends are values; a mode without differences can store any end.
     ModeNumbers n{{float(1 << (16 - bits)), bits == 16 ? 0 : float(1 << (15 - bits)), float((1 << bits) - 1)}};
     for (int c = 0; c < 3; ++c) n.of[3 + c] = mode.transformed ? float(1 << (mode.delta_bits[c] - 1)) : 65536;
     n.of[6] = float((1 << mode.index_bits()) - 1);
@@ -107,8 +107,9 @@ Colour times(const Covariance& m, const Colour& v) {
              m.rb * v.c[0] + m.gb * v.c[1] + m.bb * v.c[2]}};
 }
 
-/// Direction of the largest spread; zero where there is none. Powers of the covariance turn any vector towards it, and
-/// squaring three times is worth eight of them; the column with the largest diagonal has most of it.
+/// Direction of the largest spread; zero where there is none. Multiplication by the covariance turns any vector towards
+/// it, and squaring the matrix three times replaces eight multiplications; the column with the largest diagonal is the
+/// best start.
 Colour principal_axis(const Covariance& covariance) {
     Covariance m = covariance;
     for (int i = 0; i < 3; ++i) {
@@ -121,7 +122,7 @@ Colour principal_axis(const Covariance& covariance) {
              select(blue, m.bb, select(green, m.gb, m.rb))}};
 }
 
-/// Spread that is left about the principal axis.
+/// The remaining spread about the principal axis.
 F spread_about_axis(const Covariance& m) {
     const Colour axis = principal_axis(m);
     const F length = dot(axis, axis), all = m.rr + m.gg + m.bb;
@@ -168,12 +169,12 @@ void fit_axis(const Target& target, const Subsets& subsets, float want, Colour& 
     }
 }
 
-/// What share of the second end an index stands for, in 64ths: the format's tables are these products, rounded.
+/// The weight of the second end for an index, in 64ths: the format's tables are these products, rounded.
 F weight_of_index(const F& index, const Rules& rules) {
     return floor_of(index * rules.index_weight + splat(0.5f));
 }
 
-/// The line of one subset made ready for projections.
+/// The line of one subset, prepared for projections.
 struct Projector {
     Colour start, along;  ///< along: scaled so that texels give indices
 };
@@ -193,7 +194,7 @@ F nearest_index(const Colour& texel, const Colour& start, const Colour& along, c
     return smaller(larger(floor_of(at + splat(0.5f)), splat(0)), last);
 }
 
-/// Turns lines round on which the anchor lies in the second half: its index's top bit is not stored.
+/// Reverses lines on which the anchor lies in the second half, because the top bit of its index is not stored.
 void orient(const Target& target, const Subsets& subsets, int count, Ends& ends) {
     for (int s = 0; s < count; ++s) {
         Colour& first = ends.end[2 * s];
@@ -215,7 +216,7 @@ void orient(const Target& target, const Subsets& subsets, int count, Ends& ends)
     }
 }
 
-/// Ends that suit the texels best at the shares of the way that their indices stand for.
+/// The ends that fit the texels best for the weights of their indices.
 void least_squares(const Target& target, const Subsets& subsets, const Rules& rules, int count, const F* index,
                    Ends& ends) {
     for (int s = 0; s < count; ++s) {
@@ -279,7 +280,7 @@ void snap(const Rules& rules, int count, Ends& ends) {
         for (F& v : ends.end[e].c) v = smaller(larger(floor_of(v * scale), splat(0)), rules.top);
 }
 
-/// Brings the other ends to where the mode's differences from the first reach.
+/// Moves the other ends into the range of the mode's differences from the first.
 void bring_into_reach(const Rules& rules, int count, Ends& ends) {
     for (int c = 0; c < 3; ++c) {
         const F low = ends.end[0].c[c] - rules.reach[c], high = ends.end[0].c[c] + rules.reach[c] - splat(1);
@@ -305,8 +306,8 @@ F texel_error(const Colour& bits, const Colour& start, const Colour& end, const 
     return error;
 }
 
-/// Best indices of given ends, and what they come to. The index nearest to a texel's projection is the best but for
-/// rounding; `neighbours` tries also the ones beside it.
+/// The best indices for given ends, and their error. The index nearest to a texel's projection is the best up to
+/// rounding; with `neighbours` those beside it are tried too.
 void evaluate(const Target& target, const Subsets& subsets, const Rules& rules, int count, bool neighbours,
               Solution& s) {
     Ends colours;
@@ -314,7 +315,8 @@ void evaluate(const Target& target, const Subsets& subsets, const Rules& rules, 
         for (int c = 0; c < 3; ++c) colours.end[e].c[c] = unquantised(s.ends.end[e].c[c], rules);
     Projector line[2];
     for (int i = 0; i < count; ++i) line[i] = projector(colours.end[2 * i], colours.end[2 * i + 1], rules);
-    // An anchor beyond the middle of its line, which orient() and rounding leave possible, has to stay before it.
+    // An anchor can still lie beyond the middle of its line after orient() because of rounding; its index is then
+    // clamped.
     const F last_of_anchor = (rules.last - splat(1)) * splat(0.5f);
     s.error = splat(0);
     for (int t = 0; t < k_texels; ++t) {
@@ -345,7 +347,7 @@ void evaluate(const Target& target, const Subsets& subsets, const Rules& rules, 
     }
 }
 
-/// Takes over what is better, lane by lane.
+/// Keeps the better block, lane by lane.
 void keep_better(const Solution& s, const M& better, Solution& best) {
     for (int e = 0; e < 4; ++e)
         for (int c = 0; c < 3; ++c) best.ends.end[e].c[c] = select(better, s.ends.end[e].c[c], best.ends.end[e].c[c]);
@@ -353,7 +355,7 @@ void keep_better(const Solution& s, const M& better, Solution& best) {
     best.error = select(better, s.error, best.error);
 }
 
-/// Moves single ends in single channels of the blocks in `open`, round after round as long as one gets better.
+/// Moves single ends in single channels of the blocks in `open`, round after round as long as a block improves.
 void nudge(const Target& target, const Subsets& subsets, const Rules& rules, int count, const M& open, int rounds,
            const Effort& effort, Solution& best) {
     for (int round = 0; round < rounds; ++round) {
@@ -374,7 +376,7 @@ void nudge(const Target& target, const Subsets& subsets, const Rules& rules, int
     }
 }
 
-/// The best block of one mode that can be found from `lines`.
+/// The best block of one mode that the search finds from `lines`.
 Solution quantise(const Target& target, const Subsets& subsets, const Rules& rules, int count, const Ends& lines,
                   const Effort& effort) {
     Solution best{};
@@ -393,7 +395,7 @@ Solution quantise(const Target& target, const Subsets& subsets, const Rules& rul
     return best;
 }
 
-/// Tries all modes from `first` to `last`. With `nudged`, ends are moved of those blocks that a mode brings to within
+/// Tries all modes from `first` to `last`. With `nudged`, the ends of a block are moved if its error is within
 /// effort.reach of the best error so far.
 void try_modes(const Target& target, const Subsets& subsets, const F& partition, int first, int last,
                const Effort& effort, bool nudged, Best& best) {
@@ -453,7 +455,7 @@ void rank_partitions(const Target& target, int count, F* ranked) {
                 spread + spread_about_axis({m[3] - m[0] * m[0] * n, m[4] - m[0] * m[1] * n, m[5] - m[0] * m[2] * n,
                                             m[6] - m[1] * m[1] * n, m[7] - m[1] * m[2] * n, m[8] - m[2] * m[2] * n});
         }
-        // Sorted in: whoever is better goes to its place, the others move on by one.
+        // Insertion sort: the better partition takes the place, and the others move by one.
         F partition = splat(float(p));
         for (int i = 0; i < count; ++i) {
             const M better = spread < least[i];

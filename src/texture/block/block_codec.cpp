@@ -15,7 +15,8 @@ namespace domelight {
 
 namespace {
 
-/// Blocks that are gathered at once: as many as the widest vectors take, and few enough for the processor's caches.
+/// The number of blocks gathered at a time: as many as the widest vectors hold, and few enough for the processor's
+/// caches.
 constexpr int k_blocks_at_once = 32;
 
 void decode_bc6h(const std::uint8_t* blocks, int count, float* texels) {

@@ -22,7 +22,7 @@ inline constexpr std::array<std::uint16_t, k_uastc_partitions> k_uastc_seeds{
     28, 20, 16,  29,  91, 9,   107, 72,  149, 204, 50,  114, 496, 17,
     78, 39, 252, 828, 43, 156, 116, 210, 476, 273, 684, 359, 246};
 
-/// Squared error of a block, in (1/128 octave)^2, from which two subsets are tried at all: half a step in every number.
+/// The squared error of a block, in (1/128 octave)^2, above which two subsets are tried: half a step in every number.
 inline constexpr float k_uastc_two_subsets_from = 48 * 0.25f;
 
 /// Whether a block is one of the format's 24 modes.
@@ -32,7 +32,7 @@ bool is_uastc_hdr(const AstcBlock& block);
 /// k_uastc_hdr_max; NaN counts as 0. Deterministic.
 void encode_uastc_hdr(const float* rgb, int count, EncodingQuality quality, std::uint8_t* out);
 
-/// The texels of `count` blocks. What is not a block of this format is black.
+/// The texels of `count` blocks. A block that does not have this format is black.
 void decode_uastc_hdr(const std::uint8_t* blocks, int count, float* rgb);
 
 }  // namespace domelight

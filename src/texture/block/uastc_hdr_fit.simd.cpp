@@ -45,7 +45,7 @@ VI choose(M mask, VI yes, VI no) {
 V choose(M mask, V yes, V no) {
     return hn::IfThenElse(mask, yes, no);
 }
-/// Nearest whole number of what is 0 or more, halves upwards; the same on all instruction sets.
+/// The nearest integer of a number >= 0, halves rounded up; the same on all instruction sets.
 VI round_up(V v) {
     return hn::ConvertTo(DI(), hn::Add(v, set(0.5f)));
 }
@@ -68,8 +68,8 @@ struct Colour {
 Colour select(M mask, const Colour& yes, const Colour& no) {
     return {{choose(mask, yes.c[0], no.c[0]), choose(mask, yes.c[1], no.c[1]), choose(mask, yes.c[2], no.c[2])}};
 }
-/// How much the error of a channel counts: a little of what the eye makes of it. Weights of luminance itself would cost
-/// colours more than they gain.
+/// The weight of a channel's error: a compromise between equal weights and those of luminance, which would harm colours
+/// more than they help.
 constexpr float k_channel_weight[3] = {1, 1.5f, 0.75f};
 constexpr float k_channel_weight_sum = k_channel_weight[0] + k_channel_weight[1] + k_channel_weight[2];
 /// The product by which distances between colours are measured.
@@ -102,7 +102,7 @@ struct Ends {
     Colour low, high;
 };
 
-/// What has been found so far: numbers a block is made of, with its error.
+/// The best block so far: its numbers and its error.
 struct Found {
     V error;
     VI form;
@@ -146,13 +146,13 @@ V weight_of(V rank) {
     return choose(upper, hn::Sub(set(64), w), w);
 }
 
-/// Sums over texels that say what any endpoints would cost with the weights held: with a = 1 - w, b = w.
+/// Sums over texels that give the error of any endpoints for fixed weights: with a = 1 - w, b = w.
 struct Moments {
     V aa, ab, bb;
     Colour ap, bp;
 };
 
-/// The weights of all texels for a pair of ends, and what comes of them.
+/// The weights of all texels for a pair of ends, and their error and sums.
 struct Weighted {
     VI ranks[16];
     V error;
@@ -196,7 +196,7 @@ void give_weights(const Texels& texels, const Ends& ends, Weighted& out) {
     }
 }
 
-/// The ends of least error for the weights that gave the moments; `otherwise` where these do not determine them.
+/// The ends of least error for the weights that gave the moments; `otherwise` if these do not determine them.
 Ends best_ends(const Moments& m, const Ends& otherwise) {
     const V det = hn::Sub(hn::Mul(m.aa, m.bb), hn::Mul(m.ab, m.ab));
     const M good = hn::Gt(det, set(1e-3f));
@@ -211,7 +211,7 @@ Ends best_ends(const Moments& m, const Ends& otherwise) {
     return ends;
 }
 
-/// What it costs to have `got` where `wanted` would be the best for the weights.
+/// The additional error of `got` if `wanted` would be the best for the weights.
 V cost_of(const Moments& m, const Ends& wanted, const Ends& got) {
     V cost = hn::Zero(D());
     for (int c = 0; c < 3; ++c) {
@@ -328,7 +328,7 @@ Stored store_rgb(const Moments& moments, const Ends& wanted, const Ends& turned,
             upper = hn::Or(upper, hn::ShiftLeft<6>(x));
         }
         if constexpr (d_bits == 5) upper = hn::Or(upper, hn::ShiftLeft<5>(k == 0 ? bit_of<9>(a) : bit_of<10>(a)));
-        // Of d only the lower four bits may move with the range: above them comes its sign.
+        // Of d, only the lower four bits may change with the range, because the bits above are its sign.
         s.values[4 + k] = storable<levels, 4>(hn::Or(upper, hn::And(d[k], set_int((1 << d_bits) - 1))));
         d[k] = hn::Or(hn::And(d[k], set_int(~15)), hn::And(s.values[4 + k], set_int(15)));
         low[k] = hn::Sub(hn::Sub(high[k], to_float(c)), to_float(d[k]));
@@ -611,8 +611,8 @@ M in_second(VI pattern, int texel) {
     return hn::RebindMask(D(), hn::TestBit(pattern, set_int(1 << texel)));
 }
 
-/// What each partition explains beside a base and a scale in each subset, which remain to be stored: of the variance
-/// along (1, 1, 1) eight weights leave about 1/49.
+/// The error that remains with each partition if a base and a scale are stored in each subset: of the variance along
+/// (1, 1, 1), about 1/49 remains with eight weights.
 struct PartitionGains {
     V gain[k_uastc_partitions];
 };
@@ -637,7 +637,7 @@ PartitionGains partition_gains(const Spread& s) {
     return gains;
 }
 
-/// Takes the best partition out: its index, and the texels of its second subset.
+/// Removes the best partition from the list; gives its index and the texels of its second subset.
 VI take_partition(PartitionGains& gains, VI& index) {
     V best = gains.gain[0];
     VI pattern = set_int(int(uastc_partition_bits(0)));
@@ -689,7 +689,7 @@ void give_weights_two(const Texels& texels, VI pattern, const Ends (&ends)[2], W
     }
 }
 
-/// Two subsets, each with a base and a scale. Only where what was found leaves `worth` or more.
+/// Two subsets, each with a base and a scale. Only if the best error so far is `worth` or more.
 void try_scale_two(const Texels& texels, const Spread& s, VI pattern, VI index, int passes, V worth, Found& found) {
     Ends ends[2];
     V count[2] = {hn::Zero(D()), hn::Zero(D())}, least[2] = {set(1e30f), set(1e30f)},
@@ -729,7 +729,7 @@ void try_scale_two(const Texels& texels, const Spread& s, VI pattern, VI index, 
             for (int i = 0; i < 4; ++i) values[4 * k + i] = stored.values[i];
         }
         give_weights_two(texels, pattern, ends, weighted, moments);
-        // What would not pay is not taken in any lane, so that a block's bytes do not depend on its neighbours.
+        // A lane below that limit never takes the result, so that the bytes of a block do not depend on its neighbours.
         weighted.error = choose(hn::Ge(worth, set(k_uastc_two_subsets_from)), weighted.error, set(1e35f));
         const M better = hn::Lt(weighted.error, found.error);
         found.pattern = choose(better, index, found.pattern);
@@ -748,7 +748,7 @@ constexpr Form k_forms[] = {
     {k_ise_8, k_cem_hdr_base_scale, 2},
 };
 
-/// One colour of all texels: where they are all the same it keeps them to the last bit.
+/// One colour for all texels: if they are all the same it keeps them to the last bit.
 void try_solid(const Spread& s, Found& found) {
     found.error = s.variance;
     found.form = set_int(k_solid);

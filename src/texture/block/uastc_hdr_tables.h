@@ -1,5 +1,5 @@
 #pragma once
-// What the kernels of uastc_hdr_fit.cpp look up.
+// Tables for the kernels of uastc_hdr_fit.simd.cpp.
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 #pragma once
-// Facts of the DDS container (Direct3D documentation, "DDS_HEADER" and "DDS_HEADER_DXT10") that its reader and writer
-// share.
+// Constants of the DDS container (Direct3D documentation, "DDS_HEADER" and "DDS_HEADER_DXT10") for its reader and
+// writer.
 
 #include <cstdint>
 

@@ -300,7 +300,7 @@ std::uint32_t dxgi_number(Encoding encoding) {
         case Encoding::rgbm:
         case Encoding::rgbd:
         case Encoding::rgbp:
-            return 28;  // four bytes: what they mean, DDS cannot say
+            return 28;  // four bytes, whose meaning DDS cannot state
         case Encoding::uastc_hdr:
         case Encoding::astc4x4_hdr:
         case Encoding::astc6x6_hdr:

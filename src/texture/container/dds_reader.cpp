@@ -69,7 +69,7 @@ Result<Dds> parse(ByteSource& source) {
     file.data_offset = k_dds_header_bytes;
     const std::uint32_t flags = word(8), caps2 = word(112), four_cc = word(84);
     const bool dx10 = word(80) & k_ddpf_four_cc && four_cc == k_dds_dx10;
-    // Writers forget the flag, but not the number.
+    // Some writers omit the flag, but none the number.
     std::uint64_t levels = word(28), depth = caps2 & k_ddscaps2_volume && flags & k_ddsd_depth ? word(24) : 0,
                   layers = 0, faces = 1, height = word(12);
     if (dx10) {

@@ -1,6 +1,7 @@
 #pragma once
-// Facts of Babylon's .env container (its environmentTextureTools) that reader and writer share: eight bytes, JSON that
-// ends in a zero, then pictures at the places that the JSON names, counted from behind that zero.
+// Constants of Babylon's .env container (its environmentTextureTools) for the reader and the writer. A file consists of
+// eight bytes, JSON that ends in a zero, and pictures at the offsets that the JSON states, counted from the end of that
+// zero.
 
 #include "domelight/texture/container/babylon_env.h"
 
@@ -14,7 +15,7 @@ namespace domelight {
 inline constexpr std::array<std::uint8_t, 8> k_env_magic{0x86, 0x16, 0x87, 0x96, 0xf6, 0xd6, 0x96, 0x36};
 /// The longest JSON that is read: that of 15 levels has 8 KiB.
 inline constexpr std::uint64_t k_max_env_json = 1 << 20;
-/// The widest cube that is believed.
+/// The widest cube that is accepted.
 inline constexpr int k_max_env_width = 1 << 14;
 
 /// Babylon uploads its pictures upside down: the last row of the picture is the first of the face.

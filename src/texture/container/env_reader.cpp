@@ -19,7 +19,7 @@ struct Place {
     std::uint64_t offset = 0, length = 0;
 };
 
-/// What the JSON says, checked against the file.
+/// The contents of the JSON, checked against the file.
 struct Header {
     int version = 1, width = 0, levels = 0;
     std::vector<Place> pictures;  ///< level by level, +X -X +Y -Y +Z -Z
@@ -27,7 +27,7 @@ struct Header {
     double lod_scale = 0.8;
 };
 
-/// The JSON's text, and in `end` where the pictures begin.
+/// The text of the JSON; `end` is set to the offset of the pictures.
 Result<std::string> header_text(ByteSource& source, std::uint64_t& end) {
     const std::uint64_t start = k_env_magic.size();
     const auto magic = source.take(0, start, "identifier");
@@ -93,7 +93,8 @@ Result<Header> read_header(ByteSource& source) {
     return header;
 }
 
-/// A face's texels. Nothing is allocated for a picture that says another size of itself, or more than its bytes hold.
+/// The texels of a face. No memory is allocated for a picture that states a different size, or a larger one than its
+/// bytes can hold.
 Result<Rgba8Image> read_face(ByteSource& source, const Place& place, int size) {
     const auto bytes = source.take(place.offset, place.length, "picture");
     if (!bytes) return bytes.error();

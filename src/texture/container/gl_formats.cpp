@@ -136,7 +136,7 @@ std::optional<StoredTexels> gl_format_texels(std::uint32_t internal_format, std:
             if (single) return StoredTexels{Encoding::rg32f, 1, 4};
             return std::nullopt;
         case k_gl_bptc_unsigned_float:
-            // Compressed formats come with type 0; with any other OpenGL would compress texels on upload.
+            // Compressed formats have type 0; with any other type OpenGL would compress texels on upload.
             if (type == 0) return StoredTexels{Encoding::bc6h};
             return std::nullopt;
         case k_gl_astc4x4:

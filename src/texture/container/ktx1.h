@@ -1,5 +1,5 @@
 #pragma once
-// Facts of the KTX 1.1 container that its reader and writer share.
+// Constants of the KTX 1.1 container for its reader and writer.
 
 #include <array>
 #include <cstdint>

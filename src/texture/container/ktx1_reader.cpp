@@ -20,7 +20,7 @@ struct Ktx1 {
     std::uint64_t data_offset = 0;
 };
 
-/// Numbers of the file's own endianness.
+/// Numbers in the file's endianness.
 struct Words {
     std::span<const std::uint8_t> bytes;
     bool swapped;
@@ -54,7 +54,7 @@ Result<void> read_key_values(ByteSource& source, bool swapped, std::uint64_t byt
     return {};
 }
 
-/// Walks over the levels' sizes: imageSize before each, faces and levels padded to 4 bytes.
+/// Reads the sizes of the levels: imageSize precedes each, and faces and levels are padded to 4 bytes.
 Result<void> check_levels(ByteSource& source, const Ktx1& file) {
     std::uint64_t at = file.data_offset;
     const std::uint64_t faces = file.info.faces == 6 && file.info.layers == 0 ? 6 : 1;
@@ -105,8 +105,8 @@ Result<Ktx1> parse(ByteSource& source) {
     return file;
 }
 
-/// Bytes of a number that a swap of ends turns round: the packed formats are one 32-bit number, whatever the header's
-/// type size says; blocks are bytes.
+/// The size of the numbers whose bytes must be swapped: the packed formats are one 32-bit number, whatever type size
+/// the header states; blocks are bytes.
 std::size_t swap_unit(const StoredTexels& texels) {
     if (texels.channels > 0) return std::size_t(texels.channel_bytes);
     if (encoding_block(texels.encoding) > 1 || is_scaled_bytes(texels.encoding)) return 1;

@@ -1,4 +1,4 @@
-// Writes KTX 1.1 (Khronos KTX File Format Specification, version 1.1): what Filament loads.
+// Writes KTX 1.1 (Khronos KTX File Format Specification, version 1.1), which Filament loads.
 #include "domelight/texture/texture.h"
 
 #include "io/file/byte_buffer.h"
@@ -13,7 +13,7 @@ namespace domelight {
 
 namespace {
 
-/// How OpenGL is told of an encoding.
+/// An encoding in OpenGL's terms.
 struct GlFormat {
     std::uint32_t internal_format, type, type_bytes, format, base_format;
 };
@@ -45,9 +45,9 @@ GlFormat gl_format(Encoding encoding) {
         case Encoding::r11g11b10f:
             break;
     }
-    // The type should be UNSIGNED_INT_10F_11F_11F_REV, 0x8c3b. Filament, the one engine that reads the format, writes
-    // and expects the internal format here and refuses the right value; readers that go by the internal format take
-    // either.
+    // The type should be UNSIGNED_INT_10F_11F_11F_REV, 0x8c3b. Filament, the only engine that reads the format, writes
+    // and expects the internal format here and rejects the right value; readers that look at the internal format accept
+    // both.
     return {k_gl_r11f_g11f_b10f, k_gl_r11f_g11f_b10f, 4, k_rgb, k_rgb};
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Facts of the KTX 2.0 container that its reader and writer share.
+// Constants of the KTX 2.0 container for its reader and writer.
 
 #include "domelight/texture/texture.h"
 
@@ -15,7 +15,7 @@ inline constexpr std::uint64_t k_ktx2_header_bytes = 80, k_ktx2_level_bytes = 24
 inline constexpr std::uint32_t k_vulkan_rgba8 = 37;  // VK_FORMAT_R8G8B8A8_UNORM
 /// VkFormat numbers of ASTC HDR (VK_EXT_texture_compression_astc_hdr).
 inline constexpr std::uint32_t k_vulkan_astc4x4_hdr = 1000066000, k_vulkan_astc6x6_hdr = 1000066004;
-/// The colour model by which a file in the first of these says that it keeps to UASTC HDR 4x4.
+/// The colour model by which a file in the first of these formats states that its blocks are UASTC HDR 4x4.
 inline constexpr unsigned k_model_uastc_hdr = 167;
 
 /// VkFormat number of an encoding.

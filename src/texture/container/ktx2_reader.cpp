@@ -152,8 +152,8 @@ Result<Ktx2> parse(ByteSource& source) {
     return file;
 }
 
-/// Zstandard cannot pack more than 128 KiB into a block's 4 bytes: a header that promises more lies, and nothing is
-/// allocated for it.
+/// Zstandard cannot compress more than 128 KiB into a block of 4 bytes, so a header that states more is wrong, and no
+/// memory is allocated for it.
 constexpr std::uint64_t k_zstd_max_ratio = 32768;
 
 Result<Bytes> inflate(std::span<const std::uint8_t> packed, std::uint64_t bytes) {

@@ -67,9 +67,8 @@ std::vector<Sample> samples_of(Encoding encoding) {
         case Encoding::rgb9e5:
             break;
     }
-    // Mantissa and exponent are samples of their own; the five exponent bits are shared by all channels. 8448 is the
-    // mantissa that stands for 1.0 at the exponent's bias, 15 (Data Format Specification 1.3, table of the
-    // shared-exponent example).
+    // Mantissa and exponent are separate samples; the five exponent bits are shared by all channels. 8448 is the
+    // mantissa of 1.0 at the exponent's bias, 15 (Data Format Specification 1.3, table of the shared-exponent example).
     std::vector<Sample> samples;
     for (unsigned c : {k_red, k_green, k_blue}) {
         samples.push_back({9 * c, 9, c, 0, 8448});
@@ -84,7 +83,7 @@ unsigned colour_model(Encoding encoding) {
         case Encoding::bc6h:
             return 133;  // KHR_DF_MODEL_BC6H
         case Encoding::uastc_hdr:
-            return k_model_uastc_hdr;  // tells engines that the blocks turn into BC6H
+            return k_model_uastc_hdr;  // states that the blocks can be turned into BC6H
         case Encoding::astc4x4_hdr:
         case Encoding::astc6x6_hdr:
             return 162;  // KHR_DF_MODEL_ASTC
@@ -107,8 +106,8 @@ void append_descriptor(ByteBuffer& out, Encoding encoding) {
     out.u8(0);  // straight alpha
     const unsigned side = unsigned(encoding_block(encoding)) - 1;
     out.u32(side | side << 8);  // texel block, each dimension less one
-    // bytesPlane[0]. Revisions of the specification before 2025 wanted 0 where levels are supercompressed; the current
-    // one keeps the bytes, warns of 0, and readers take both ("DFD for Supercompressed Data").
+    // bytesPlane[0]. Revisions of the specification before 2025 required 0 for supercompressed levels; the current one
+    // keeps the bytes and warns of 0, and readers accept both ("DFD for Supercompressed Data").
     out.u8(unsigned(encoding_bytes(encoding)));
     for (int i = 1; i < 8; ++i) out.u8(0);
     for (const Sample& s : samples) {
@@ -121,7 +120,7 @@ void append_descriptor(ByteBuffer& out, Encoding encoding) {
     }
 }
 
-/// Bytes of what a swap of ends swaps.
+/// The size of the numbers whose bytes a change of endianness swaps.
 std::uint32_t type_bytes(Encoding encoding) {
     if (encoding_block(encoding) > 1 || is_scaled_bytes(encoding)) return 1;
     return encoding == Encoding::rgba16f || encoding == Encoding::rg16f ? 2 : 4;
@@ -140,7 +139,8 @@ void append_key_values(ByteBuffer& out, const std::map<std::string, std::string>
     }
 }
 
-/// The texture's own keys and the container's. What another file said under reserved keys does not hold for this one.
+/// The keys of the texture and of the container. Values of reserved keys from another file are not copied, because they
+/// need not be true of this one.
 std::map<std::string, std::string> complete_metadata(const Texture& texture) {
     std::map<std::string, std::string> metadata = texture.metadata;
     std::erase_if(metadata,

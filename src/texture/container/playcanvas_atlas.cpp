@@ -18,8 +18,8 @@ namespace domelight {
 
 namespace {
 
-/// A rectangle's map from a lat-long image: its inner texels are the whole sphere, its seam goes on over the edges:
-/// round the sphere at the sides, past the poles (half a turn on) above and below.
+/// The map of a rectangle, from a lat-long image. Its inner texels cover the whole sphere; its seam continues over the
+/// edges: around the sphere at the sides, and past the poles (half a turn away) above and below.
 ImageF with_seam(const ImageF& source, const AtlasRect& rect) {
     const int width = rect.width - 2, height = rect.height - 2;
     const ImageF inner = resize_latlong(source.view(), width, height);

@@ -35,12 +35,12 @@ Image<std::uint8_t> make_playcanvas_atlas(std::span<const ImageF* const> maps, c
                                           std::vector<EncodingReport>* reports = nullptr);
 Result<void> write_playcanvas_atlas(const std::filesystem::path& file, const Image<std::uint8_t>& atlas);
 
-/// What an atlas holds, decoded, without the seams: lat-long maps in PlayCanvas' convention.
+/// The decoded contents of an atlas without the seams: lat-long maps in PlayCanvas' convention.
 struct PlayCanvasAtlas {
     std::vector<ImageF> shiny, rough;
     ImageF diffuse;
 };
-/// Errors: no PNG of 512 x 512; broken.
+/// Errors: the file is not a PNG of 512 x 512, or it is broken.
 Result<PlayCanvasAtlas> playcanvas_atlas(std::span<const std::uint8_t> bytes);
 Result<PlayCanvasAtlas> read_playcanvas_atlas(const std::filesystem::path& file);
 

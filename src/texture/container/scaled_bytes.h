@@ -1,5 +1,5 @@
 #pragma once
-// rgbm, rgbd and rgbp are four bytes a texel to every container; what they mean stands in a key beside them.
+// For every container, rgbm, rgbd and rgbp are four bytes a texel; a key states their meaning.
 
 #include "domelight/texture/texture.h"
 
@@ -20,7 +20,7 @@ inline void note_scaled_bytes(Encoding encoding, std::map<std::string, std::stri
     if (is_scaled_bytes(encoding)) metadata[k_encoding_key] = encoding_name(encoding);
 }
 
-/// Takes the key out; nothing where it is missing or names another kind of encoding.
+/// Removes the key and returns its encoding. Empty if the key is missing or names another kind of encoding.
 inline std::optional<Encoding> take_scaled_bytes(std::map<std::string, std::string>& metadata) {
     const auto found = metadata.find(k_encoding_key);
     if (found == metadata.end()) return std::nullopt;

@@ -1,5 +1,6 @@
 #pragma once
-// Texels of eight bits a channel, which old textures have: made for a screen, or RGBM and its like in disguise.
+// Texels of eight bits a channel, as in old textures: pictures for a screen, or RGBM and similar encodings without a
+// mark.
 
 #include "domelight/texture/texture.h"
 
@@ -9,7 +10,7 @@
 
 namespace domelight {
 
-/// How a file stores them.
+/// Their layout in a file.
 struct ScreenTexels {
     enum class Kind { bytes, bc1, bc2, bc3 };
     Kind kind = Kind::bytes;
@@ -17,8 +18,8 @@ struct ScreenTexels {
     std::array<int, 4> channel = {0, 1, 2, 3};  ///< which byte is red, green, blue and alpha; -1: there is none
 };
 
-/// What their numbers mean: "auto" and "srgb", "gamma22", "linear" give half floats; "rgbm", "rgbd" and "rgbp" are kept
-/// as they are.
+/// The meaning of their numbers: "auto" and "srgb", "gamma22", "linear" give half floats; "rgbm", "rgbd" and "rgbp" are
+/// kept as they are.
 Result<Encoding> screen_encoding(const std::string& decode);
 
 /// One image of a level: `stored` holds its rows of texels, or of blocks, to width x height texels of

@@ -25,7 +25,7 @@ Result<void> write_with_layout(const std::filesystem::path& file, const TextureL
             write_frame_before(block.offset);
             const std::span<const std::uint8_t> level = levels[block.level];
             const std::size_t face_bytes = level.size() / std::size_t(faces);
-            // Compressed levels are not made of faces: theirs is one block.
+            // A compressed level is one block, not a sequence of faces.
             out.write(block.faces == faces ? level
                                            : level.subspan(face_bytes * std::size_t(block.first_face),
                                                            face_bytes * std::size_t(block.faces)));

@@ -9,9 +9,9 @@
 
 namespace domelight {
 
-/// Where the bytes of a texture go in a container's file.
+/// The positions of a texture's bytes in a container's file.
 struct TextureLayout {
-    /// Header, keys and padding at some place.
+    /// Header, keys or padding at a position.
     struct Frame {
         std::uint64_t offset;
         std::vector<std::uint8_t> bytes;
@@ -26,8 +26,8 @@ struct TextureLayout {
     std::uint64_t size = 0;     ///< of the file
 };
 
-/// The layout of a texture whose levels have, or are going to have, `level_bytes` bytes (all faces) each; what
-/// `texture` itself has in its levels does not matter. Errors: what the container cannot hold.
+/// The layout of a texture whose levels have, or are going to have, `level_bytes` bytes (all faces) each; the contents
+/// of the levels of `texture` do not matter. Errors: a texture that the container cannot store.
 Result<TextureLayout> ktx1_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes);
 Result<TextureLayout> dds_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes);
 /// DDS with the header from before DX10: half and float RGBA, RG only, as D3DFORMAT numbers.
@@ -39,7 +39,7 @@ Result<TextureLayout> ktx2_layout(const Texture& texture, std::span<const std::u
 /// Bytes of each of a texture's levels.
 std::vector<std::uint64_t> level_bytes_of(const Texture& texture);
 
-/// Writes levels that are in memory where a layout wants them. The file appears whole or not at all.
+/// Writes levels from memory at the positions of a layout. The file appears whole or not at all.
 Result<void> write_with_layout(const std::filesystem::path& file, const TextureLayout& layout, int faces,
                                std::span<const TexelBytes> levels);
 

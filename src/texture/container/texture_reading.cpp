@@ -1,4 +1,4 @@
-// Reading of textures: which container, and what all three need.
+// Reading of textures: detects the container, and has what all three containers need.
 #include "texture/container/texture_reading.h"
 
 #include "texture/container/env.h"
@@ -76,7 +76,7 @@ void widen_texels(const StoredTexels& texels, const std::uint8_t* in, std::size_
         std::memcpy(out, in, count * wide);
         return;
     }
-    // What follows the stored channels: zeros, and one in the fourth channel.
+    // The missing channels: zeros, and one in the fourth channel.
     std::uint8_t rest[16] = {};
     if (texels.encoding == Encoding::rgba16f) rest[7] = 0x3c;
     if (texels.encoding == Encoding::rgba32f) rest[14] = 0x80, rest[15] = 0x3f;
@@ -111,7 +111,7 @@ bool is_utf8_text(std::span<const std::uint8_t> bytes) {
             if ((bytes[i] & 0xc0) != 0x80) return false;
             point = point << 6 | (bytes[i++] & 0x3fu);
         }
-        // Overlong forms, surrogates and what lies beyond Unicode.
+        // Overlong forms, surrogates and code points beyond Unicode.
         if (point < (more == 1   ? 0x80u
                      : more == 2 ? 0x800u
                                  : 0x10000u) ||

@@ -1,5 +1,5 @@
 #pragma once
-// What the readers of the three texture containers share.
+// Functions shared by the readers of the three texture containers.
 
 #include "domelight/texture/texture.h"
 
@@ -12,9 +12,9 @@
 
 namespace domelight {
 
-/// The most that read_texture puts into a Texture, whatever a header says.
+/// The largest size of a Texture that read_texture makes, whatever a header states.
 inline constexpr std::uint64_t k_max_texture_bytes = std::uint64_t(2) << 30;
-/// The longest side that is believed.
+/// The longest side that is accepted.
 inline constexpr std::uint32_t k_max_texture_side = 1u << 20;
 /// The most key/value data that is read.
 inline constexpr std::uint64_t k_max_metadata_bytes = std::uint64_t(16) << 20;
@@ -29,11 +29,11 @@ struct StoredTexels {
     int bytes() const { return channels > 0 ? channels * channel_bytes : encoding_bytes(encoding); }
 };
 
-/// A number's decimal text with what it counts: "faceCount of 7".
+/// A number with its name, in decimal: "faceCount of 7".
 std::string count_text(const char* name, std::uint64_t value);
 
-/// Checks the sizes every container states, and fills them in. `levels` 0 counts as 1.
-/// Errors: no width, a side that is not believed, a cube that is not square, more levels than the size has.
+/// Checks the sizes that every container states, and fills them in. `levels` 0 counts as 1. Errors: no width, a side
+/// that is too long, a cube that is not square, more levels than the size has.
 Result<void> set_shape(TextureInfo& info, std::uint64_t width, std::uint64_t height, std::uint64_t depth,
                        std::uint64_t layers, std::uint64_t faces, std::uint64_t levels);
 
@@ -47,10 +47,10 @@ std::uint64_t stored_level_bytes(const Texture& texture, const StoredTexels& tex
 /// Turns `count` stored texels or blocks into the encoding's, filling missing colours with 0 and alpha with 1.
 void widen_texels(const StoredTexels& texels, const std::uint8_t* in, std::size_t count, std::uint8_t* out);
 
-/// Stored bytes of one level to a Texture's (in place where nothing changes).
+/// Converts the stored bytes of one level to those of a Texture (in place if nothing changes).
 Bytes widen_level(const StoredTexels& texels, Bytes stored);
 
-/// A metadata value as UTF-8 text: a terminator is cut off; what is not text is given as "hex:" and its bytes.
+/// A metadata value as UTF-8 text: a terminator is removed; a value that is not text becomes "hex:" and its bytes.
 std::string metadata_text(std::span<const std::uint8_t> value);
 bool is_utf8_text(std::span<const std::uint8_t> bytes);
 
@@ -63,7 +63,7 @@ Result<TextureInfo> dds_info(ByteSource& source);
 /// `decode`: what texels of eight bits a channel mean (screen_texels.h).
 Result<Texture> dds_texture(ByteSource& source, const std::string& decode = "auto");
 
-/// read_texture() with that.
+/// read_texture() with that option.
 Result<Texture> read_texture(const std::filesystem::path& file, const std::string& decode);
 
 }  // namespace domelight

@@ -15,12 +15,12 @@ namespace domelight {
 
 namespace {
 
-/// Bytes of texels that are encoded, written and hashed at once: they stay in a core's cache in between.
+/// The number of bytes of texels that are encoded, written and hashed together, so that they stay in the core's cache.
 constexpr std::size_t k_piece_bytes = std::size_t(128) << 10;
-/// Rows of blocks take much longer than rows of texels: few at once, so that all threads have some.
+/// Rows of blocks take much longer than rows of texels, so a piece has few of them, and all threads have work.
 constexpr int k_piece_block_rows = 8;
 
-/// A part of the file: bytes that are there already, or rows to encode.
+/// A part of the file: existing bytes, or rows to encode.
 struct Piece {
     std::uint64_t offset;
     std::span<const std::uint8_t> frame;
@@ -48,8 +48,8 @@ std::vector<Piece> list_pieces(const ChainEncoder& encoder, const TextureLayout&
     return pieces;
 }
 
-/// Lets tasks that run side by side do a part of their work one after the other, in the order of their numbers. Each
-/// task makes a Turn as its first act and drops it last, whatever happens in between: the next one waits for it.
+/// Lets parallel tasks do a part of their work one after the other, in the order of their numbers. Each task must
+/// create a Turn first and destroy it last, in all cases, because the next task waits for it.
 class Queue {
   public:
     class Turn {
@@ -62,7 +62,7 @@ class Queue {
         }
         Turn(const Turn&) = delete;
         Turn& operator=(const Turn&) = delete;
-        /// Returns once all tasks of lower numbers are through.
+        /// Returns once all tasks with lower numbers have finished.
         void await() const {
             for (int now; (now = queue_.next_.load()) != number_;) queue_.next_.wait(now);
         }
@@ -85,7 +85,7 @@ Result<std::string> encode_to_file(const std::filesystem::path& file, ChainEncod
     const auto written = write_file_atomically(file, [&](const std::filesystem::path& path) {
         OutputFile out(path);
         Queue queue;
-        // The pieces are taken in order, so whoever has the lowest number waits for nobody.
+        // The pieces are taken in order, so the task with the lowest number never waits.
         parallel_for(int(pieces.size()), threads, [&](int i) {
             std::optional<Queue::Turn> turn;
             if (hash) turn.emplace(queue, i);

@@ -11,7 +11,7 @@ namespace domelight {
 /// "VK_FORMAT_BC7_SRGB_BLOCK"; "VkFormat N" for numbers that no specification known here lists.
 std::string vulkan_format_name(std::uint32_t format);
 
-/// How read_texture holds a Vulkan format, if it can.
+/// The encoding in which read_texture stores a Vulkan format, if it can.
 std::optional<StoredTexels> vulkan_format_texels(std::uint32_t format);
 
 }  // namespace domelight

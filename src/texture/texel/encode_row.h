@@ -10,7 +10,7 @@
 
 namespace domelight {
 
-/// What storing a run of texels did, as weighted sums (weights: solid angle up to a factor; luminance: Rec. 709).
+/// The effect of storing a run of texels, as weighted sums (weights: solid angle up to a factor; luminance: Rec. 709).
 struct EncodeSums {
     std::int64_t clipped = 0;  ///< texels with a channel outside the encoding's range
     double power = 0;          ///< sum w L(v)
@@ -20,7 +20,7 @@ struct EncodeSums {
     double log_error = 0;      ///< sum w |log2(stored + f) - log2(v + f)|^2 over the same; f: LogScale's
     double log_norm = 0;       ///< sum w over the same and over channels
 
-    /// One texel: as read, brought into the encoding's range, as it will be decoded.
+    /// One texel: as read, clipped to the encoding's range, and as it will be decoded.
     void add(const Vec3f& read, const Vec3f& inside, const Vec3f& stored, double weight, float log_floor);
 
     void operator+=(const EncodeSums& b) {
@@ -34,7 +34,7 @@ struct EncodeSums {
     }
 };
 
-/// How logarithms of radiance are measured over one level.
+/// The scale on which logarithms of radiance are compared over one level.
 struct LogScale {
     float floor = 1;   ///< added before the logarithm: 1e-4 of the mean luminance (1 where all is black)
     double range = 0;  ///< of log2(channel + floor), channels below 0 counting as 0
@@ -72,9 +72,9 @@ inline void EncodeSums::add(const Vec3f& read, const Vec3f& inside, const Vec3f&
     }
 }
 
-/// Encodes `count` RGB float texels into `out` (count * encoding_bytes(encoding) bytes) and adds up what that did;
-/// `weight` has one entry a texel. For encodings of single texels; block_codec.h has the others. Alpha is 1;
-/// two-channel encodings take red and green. NaN is stored as 0.
+/// Encodes `count` RGB float texels into `out` (count * encoding_bytes(encoding) bytes) and adds to the sums; `weight`
+/// has one entry a texel. For encodings of single texels; block_codec.h has the others. Alpha is 1; two-channel
+/// encodings take red and green. NaN is stored as 0.
 EncodeSums encode_row_scalar(Encoding encoding, const float* rgb, int count, const float* weight, float log_floor,
                              std::uint8_t* out);
 

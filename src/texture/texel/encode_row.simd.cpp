@@ -1,4 +1,4 @@
-// Vector forms of texture/texel/encode_row.cpp; see there and in codec/ for what each step is.
+// Vector forms of texture/texel/encode_row.cpp, which explains each step.
 #include "texture/texel/encode_row_simd.h"
 
 #include "texture/texel/half.h"
@@ -29,8 +29,8 @@ struct Rgb {
     V r, g, b;
 };
 
-/// Stores texels inside the range and gives back what was stored. Half: by the processor's own conversion, which rounds
-/// to nearest even.
+/// Stores texels that are inside the range and returns the stored values. Half floats use the processor's conversion,
+/// which rounds to nearest even.
 struct HalfCoder {
     static constexpr int k_bytes = 8;
     static constexpr bool k_exact = false;
@@ -120,7 +120,7 @@ struct R11g11b10fCoder {
     }
 };
 
-/// EncodeSums of a row in the making: those of each lane.
+/// The partial EncodeSums of a row, one for each lane.
 class Accumulator {
     using D = hn::ScalableTag<float>;
     using V = hn::Vec<D>;

@@ -23,8 +23,8 @@ inline std::uint32_t rgb9e5_from_rgb(const Vec3f& rgb) {
     float largest = r > g ? r : g;
     largest = largest > b ? largest : b;
 
-    // floor(log2(largest)) is the float's own exponent; subnormal floats fall below the clamp at -B - 1 = -16 all the
-    // same.
+    // floor(log2(largest)) is the float's own exponent; subnormal floats are below the clamp at -B - 1 = -16 in any
+    // case.
     const int floor_log2 = int(std::bit_cast<std::uint32_t>(largest) >> 23) - 127;
     int exponent = (floor_log2 > -16 ? floor_log2 : -16) + 1 + 15;
     // 1 / 2^(exponent - B - N), a power of two within float's range.

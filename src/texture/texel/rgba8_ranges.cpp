@@ -31,8 +31,8 @@ struct Gamma {
     static float byte(float v) { return 255 * std::pow(v, 1 / 2.2f); }
 };
 
-/// Factor on the colours for a scale byte, and the tightest byte whose factor reaches `largest`; looser ones lie in
-/// direction k_step from there, none below k_least.
+/// The factor on the colours for a scale byte, and the smallest scale whose factor reaches `largest`; larger scales lie
+/// in direction k_step from there, none below k_least.
 struct RgbmScale {
     static constexpr int k_step = 1, k_least = 1;
     static float factor(int scale) {
@@ -66,7 +66,7 @@ Rgba8 encode(const Vec3f& rgb) {
         Rgba8 candidate{0, 0, 0, std::uint8_t(scale)};
         float error = 0;
         for (std::size_t c = 0; c < 3; ++c) {
-            // The nearest value is that of one of the two bytes around, not always of the nearer byte.
+            // The nearest value belongs to one of the two neighbouring bytes, but not always to the nearer one.
             const int below = std::clamp(int(Curve::byte(channel[c] / factor)), 0, 255),
                       above = std::min(below + 1, 255);
             const float d0 = Curve::linear(below) * factor - channel[c],

@@ -1,12 +1,14 @@
 #pragma once
-// Colours beyond 1 in four bytes, the fourth one a scale: what engines without float textures read from a PNG.
+// Colours above 1 in four bytes, of which the fourth is a scale: for engines that read them from a PNG instead of a
+// float texture.
 //
 //   rgbm  (8 a rgb)^2           PlayCanvas; up to 64
 //   rgbp  ((8 - 7 a) rgb)^2     PlayCanvas; up to 64
 //   rgbd  rgb^2.2 / a           Babylon.js; up to 255
 //
-// with rgb and a as shares of 255. A colour can be written with many scales: the one is taken that decodes nearest to
-// it, out of the tightest (largest colours, so finest steps) and those just looser.
+// with rgb and a as shares of 255. A colour can be written with many scales. Of the smallest possible scale (which has
+// the largest colours, and so the finest steps) and some larger ones, the one is taken that decodes nearest to the
+// colour.
 
 #include "domelight/base/vec.h"
 
@@ -17,8 +19,9 @@ namespace domelight {
 
 inline constexpr float k_rgbm_max = 64, k_rgbp_max = 64, k_rgbd_max = 255;
 
-/// Scales that are tried. More would gain little, and neighbouring texels of about the same colour should have about
-/// the same scale: a filter that blends the bytes before they are decoded is off by the product of both differences.
+/// The number of scales that are tried. More would gain little, and neighbouring texels of similar colour should have
+/// similar scales, because the error of a filter that blends the bytes before they are decoded is the product of both
+/// differences.
 inline constexpr int k_scales_tried = 8;
 
 using Rgba8 = std::array<std::uint8_t, 4>;

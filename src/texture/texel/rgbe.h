@@ -12,8 +12,8 @@ namespace domelight {
 /// mantissa (2^-9 relative), the others by the same amount; rounding to the nearest keeps means. Negative values and
 /// NaN become 0, values above 255 * 2^119 that.
 ///
-/// Radiance's own tools truncate and add half a step when they read; readers in use today (and ours) decode the
-/// mantissa as it stands.
+/// Radiance's own tools truncate, and add half a step when they read; today's readers (and ours) decode the mantissa as
+/// it is.
 inline std::array<std::uint8_t, 4> rgbe_from_rgb(float r, float g, float b) {
     r = r > 0 ? r : 0.0f;  // false for NaN
     g = g > 0 ? g : 0.0f;
