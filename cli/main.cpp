@@ -21,16 +21,16 @@ struct Command {
 };
 
 constexpr Command k_commands[] = {
-    {"bake", "an environment to specular levels, irradiance, harmonics and BRDF table, as an engine loads them",
-     run_bake},
-    {"compare", "how far two pictures are apart, or a bake of any tool from the exact filter", run_compare},
-    {"convert", "an environment to another projection, convention, orientation, size or format", run_convert},
-    {"info", "what an environment, a texture or a bake holds", run_info},
-    {"render", "a scene under an environment: the truth by path tracing, or what an engine draws", run_render},
-    {"lights", "the sun and other small bright sources as lights, and the environment without them", run_lights},
-    {"sample", "light directions from an environment, pictures of them, and the error each strategy leaves",
+    {"bake", "bakes an environment for an engine: specular levels, irradiance, harmonics and BRDF table", run_bake},
+    {"compare", "compares two pictures, or a bake by any tool with the exact filter", run_compare},
+    {"convert", "converts an environment to another projection, convention, orientation, size or format", run_convert},
+    {"info", "describes an environment, a texture or a bake", run_info},
+    {"render", "renders a scene under an environment: by path tracing, or as an engine draws it", run_render},
+    {"lights", "extracts the sun and other small bright sources as lights, and the environment without them",
+     run_lights},
+    {"sample", "draws light directions from an environment, and compares the errors of sampling strategies",
      run_sample},
-    {"sky", "a physically based sky, or the labelled six-axis environment", run_sky},
+    {"sky", "makes a physically based sky, or the labelled six-axis environment", run_sky},
 };
 
 std::string help() {
@@ -39,10 +39,11 @@ std::string help() {
         "  domelight bake studio.hdr -o out\n"
         "  domelight info studio.hdr\n"
         "  domelight sky -o evening.hdr --sun-elevation-deg 4\n"
-        "\ndomelight COMMAND ...\nImage-based lighting: exact, and about as fast as reading the file.\n\nCommands:\n";
+        "\ndomelight COMMAND ...\nImage-based lighting, computed exactly: bakes for real-time engines, light samples, "
+        "reference renders.\n\nCommands:\n";
     for (const Command& command : k_commands) text += fmt::format("  {:<28}{}\n", command.name, command.does);
     return text +
-           "\ndomelight COMMAND --help tells of a command's options.\n"
+           "\ndomelight COMMAND --help lists a command's options.\n"
            "  --version                   the version\n"
            "  --help                      this text\n"
            "\nExit status: 0 done, 1 failed, 2 wrong usage.\n";

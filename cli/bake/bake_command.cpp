@@ -28,7 +28,7 @@ struct BakeWords {
     EnvironmentOptions environment;
 };
 
-/// Each engine with what is made for it.
+/// Each engine with what is baked for it.
 std::vector<std::pair<std::string, std::string>> engine_table() {
     std::vector<std::pair<std::string, std::string>> table;
     for (const Engine& engine : engines()) table.emplace_back(engine.name, engine.loads);
@@ -38,7 +38,8 @@ std::vector<std::pair<std::string, std::string>> engine_table() {
 void declare(Arguments& a, BakeWords& w) {
     a.positional(
         "ENV", w.environments,
-        "environments; without one the built-in sky, eight stops down; six faces (px nx py ny pz nz) are one cube");
+        "environments; without one, the built-in sky, darkened by eight stops; six faces (px nx py ny pz nz) are one "
+        "cube");
     a.group("What to bake");
     a.text("-o,--output", "DIR", w.output,
            "folder for the results; several environments go to DIR/NAME, several engines to DIR/ENGINE");
@@ -50,12 +51,12 @@ void declare(Arguments& a, BakeWords& w) {
     a.integer("--levels", "N", w.levels, "number of levels, each half the size (the engine's)");
     a.numbers("--roughness", "r0,r1,...", w.roughness, "roughness of each level, 0 to 1 (the engine's curve)");
     a.choice("--lobe", w.lobe, {"ggx", "charlie", "phong", "phong-plain"},
-             "ggx; charlie (sheen); phong, the modified BRDF's (n + 2) cos^(n+1); phong-plain, (n + 1) cos^n (ggx)");
+             "ggx; charlie (sheen); phong, (n + 2) cos^(n+1) of the modified BRDF; phong-plain, (n + 1) cos^n (ggx)");
     a.numbers("--exponents", "n0,n1,...", w.exponents,
               "Phong exponent of each level; inf is the environment itself (inf, 2048, 512, ...)");
     a.choice("--method", w.method, {"exact", "bruteforce", "riemann", "montecarlo"},
-             "exact, or one of the plain slow methods (exact)");
-    a.integer("--samples", "N", w.samples, "montecarlo: samples a texel (1024)");
+             "exact, or one of the plain, slow methods (exact)");
+    a.integer("--samples", "N", w.samples, "montecarlo: samples for each texel (1024)");
     a.text("--riemann-steps", "KxJ", w.riemann_steps,
            "riemann: K steps of phi (azimuth, to 2 pi) by J of theta (polar angle, to pi/2), as in the lectures "
            "(256x64)");
@@ -64,29 +65,29 @@ void declare(Arguments& a, BakeWords& w) {
              "gives E = 3.224 and not pi for L = 1 and J = 4 (normalised)");
     a.integer("--irradiance-size", "N", w.irradiance_size, "face size of the irradiance cube (the engine's)");
     a.integer("--sh-bands", "N", w.sh_bands, "bands of spherical harmonics, 1 to 64 (3)");
-    a.choice("--sh-window", w.sh_window, {"none", "hann", "lanczos"}, "window against their ringing (none)");
-    a.choice("--brdf-g", w.brdf_g, {"correlated", "smith", "karis"}, "masking of the BRDF table (correlated)");
+    a.choice("--sh-window", w.sh_window, {"none", "hann", "lanczos"}, "window against ringing of the harmonics (none)");
+    a.choice("--brdf-g", w.brdf_g, {"correlated", "smith", "karis"}, "masking function of the BRDF table (correlated)");
     a.choice("--brdf-form", w.brdf_form, {"none", "scale-bias", "multiscatter", "scale-bias-charlie"},
-             "its channels (the engine's)");
-    a.integer("--brdf-size", "N", w.brdf_size, "its width and height (128)");
+             "channels of the BRDF table (the engine's)");
+    a.integer("--brdf-size", "N", w.brdf_size, "width and height of the BRDF table (128)");
     a.group("How to store it");
     a.choice("--encoding", w.encoding,
              {"rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "bc6h", "uastc-hdr", "astc4x4-hdr", "astc6x6-hdr", "rgbm",
               "rgbd", "rgbp"},
              "texels of the maps; left out, an EXR holds halves, or rgba32f where halves would clip (the engine's)");
     a.choice("--encoding-quality", w.encoding_quality, {"fast", "default", "high", "exhaustive"},
-             "how hard bc6h, uastc-hdr and astc search for the best block; exhaustive takes minutes (default)");
+             "how thoroughly bc6h, uastc-hdr and astc search for the best block; exhaustive takes minutes (default)");
     a.choice("--format", w.format, {"ktx2", "ktx1", "dds", "dds9", "exr", "exr-mip", "hdr"},
-             "container of the maps; dds9 is DDS with the old header; exr and hdr hold one level a file, exr-mip all "
-             "of them with OpenEXR's envmap attribute (the engine's)");
+             "container of the maps; dds9 is DDS with the old header; exr and hdr are one file for each level, "
+             "exr-mip one file with all levels and OpenEXR's envmap attribute (the engine's)");
     a.choice("--cube-picture", w.cube_picture, {"cross", "strip", "faces"},
-             "a cube in exr and hdr: one picture or six (cross)");
+             "layout of a cube in exr and hdr: one picture or six (cross)");
     a.flag("--zstd", w.zstd, "compress ktx2 without loss");
-    a.flag("--no-zstd", w.no_zstd, "do not, even for an engine that does");
+    a.flag("--no-zstd", w.no_zstd, "do not compress, even if the engine's default is to do so");
     a.flag("--brdf-float", w.brdf_float, "32-bit floats in the BRDF table");
     a.flag("--no-preview", w.no_preview, "no preview.png");
     a.flag("--no-hashes", w.no_hashes, "no SHA-256 in the manifest");
-    a.flag("--force", w.force, "with several environments: bake also what is up to date");
+    a.flag("--force", w.force, "with several environments: also bake those that are up to date");
     add_environment_options(a, w.environment);
     add_common_options(a, w.common);
 }
@@ -209,8 +210,8 @@ int run_bake(const std::vector<std::string>& words) {
     Arguments arguments("bake",
                         "Bakes environments (Radiance HDR, OpenEXR, PNG, JPEG; lat-long or cube) for real-time "
                         "engines: specular levels, "
-                        "irradiance, spherical harmonics, BRDF table, a picture of them, and a manifest that says "
-                        "exactly what they are.",
+                        "irradiance, spherical harmonics, BRDF table, a picture of them, and a manifest that "
+                        "describes every file.",
                         {"domelight bake studio.hdr -o out",
                          "domelight bake studio.hdr evening.hdr -o lights --for khronos --for filament",
                          "domelight bake studio.hdr -o small --size 128 --levels 5 --encoding rgb9e5 --zstd",

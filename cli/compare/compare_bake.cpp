@@ -247,16 +247,19 @@ void add_bake_options(Arguments& a, BakeWords& w) {
     for (const Engine& engine : engines()) names.push_back(engine.name);
     a.group("A bake against its source");
     a.texts("--bake", "FILE", w.bake,
-            "a baked specular cube: KTX2, KTX or DDS with its levels, or one cube picture or folder of faces a level");
+            "a baked specular cube: KTX2, KTX or DDS with its levels, or a cube picture or folder of faces for each "
+            "level");
     a.texts("--env", "SRC", w.env, "the environment it was baked from");
     a.choice("--for", w.engine, names,
-             "whose curve says which roughness a level should have (a Domelight file says it itself)");
+             "the engine whose roughness curve the bake should have (not needed for a Domelight file, which states "
+             "it)");
     a.choice("--lobe", w.lobe, {"ggx", "charlie", "phong", "phong-plain"},
-             "what the levels were filtered with (what the file says, else ggx)");
+             "the lobe that the levels were filtered with (what the file states, otherwise ggx)");
     a.number("--within", "ERROR", w.within,
-             "exit with status 1 also where a level is further off, at its stated roughness and brightness or else at "
-             "the best fit: 0.01 is 1 %. Without it the status is 0 for any bake of this environment and 1 for others");
-    a.integer("--texels", "N", w.texels, "compared in each level, a quarter of them the brightest (6144)");
+             "also exit with status 1 if the error of a level, at its stated roughness and brightness or else at the "
+             "best fit, is above this: 0.01 is 1 %. Without it the status is 0 for any bake of this environment and 1 "
+             "for others");
+    a.integer("--texels", "N", w.texels, "texels compared in each level, a quarter of them the brightest (6144)");
     add_environment_options(a, w.environment);
 }
 

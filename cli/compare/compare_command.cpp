@@ -16,10 +16,9 @@ int run_compare(const std::vector<std::string>& words) {
     std::vector<std::string> inputs;
     Arguments arguments(
         "compare",
-        "Says how far picture A is from the reference B: in numbers, as a heat map, side by side. With --bake, "
-        "how far a baked specular cube of any tool is from the exact filter of its source; the exit status is 0 for a "
-        "bake "
-        "of that environment and 1 for any other.",
+        "Compares picture A with the reference B: in numbers, as a heat map, side by side. With --bake, compares a "
+        "specular cube baked by any tool with the exact filter of its source; the exit status is then 0 for a bake of "
+        "that environment and 1 for any other.",
         {"domelight compare studio.hdr evening.hdr",
          "domelight compare studio.hdr studio.hdr --fail-above relative=0.01 --json",
          "domelight compare studio.hdr evening.hdr --heat heat.png --sheet sheet.png",

@@ -551,30 +551,31 @@ void add_picture_options(Arguments& a, PictureWords& w) {
     a.group("Two pictures: what is compared");
     a.text("--layer", "NAME", w.layer,
            "OpenEXR: the layer or channel to compare (the unnamed one, else the first with colour)");
-    a.text("--layer-b", "NAME", w.layer_b, "the layer of B, where it differs");
+    a.text("--layer-b", "NAME", w.layer_b, "the layer of B, if it differs");
     a.integer("--level", "N", w.level, "textures: the level to compare (0)");
     a.text("--mask", "FILE", w.mask, "an image of the same size: only pixels above 0 count");
     a.text("--objects", "FILE", w.objects,
            "an image of object indices, 0 for none (PNG codes, or an EXR channel): a table by object; else B's channel "
            "\"object\"");
     a.choice("--variance", w.variance, {"pixel", "sample"},
-             "what the layer \"variance\" holds: that of the pixel's value, or that of a sample, to be divided by the "
+             "the meaning of the layer \"variance\": that of the pixel's value, or that of a sample, to be divided by the "
              "channel \"samples\" (pixel)");
-    a.flag("--skip-bad", w.skip_bad, "leave NaN and infinite pixels out instead of refusing them");
+    a.flag("--skip-bad", w.skip_bad, "ignore NaN and infinite pixels, which are otherwise an error");
     a.number("--pixels-per-degree", "P", w.pixels_per_degree,
-             "how closely FLIP looks (67.02: 0.7 m from a 0.7 m wide display of 3840 pixels)");
-    a.flag("--no-flip", w.no_flip, "without FLIP and HDR-FLIP, which take most of the time");
+             "viewing distance for FLIP, as pixels per degree (67.02: 0.7 m from a 0.7 m wide display of 3840 pixels)");
+    a.flag("--no-flip", w.no_flip, "leave out FLIP and HDR-FLIP, which take most of the time");
     a.group("Two pictures: what is written");
     a.text("--heat", "FILE", w.heat, "a heat map with its scale, .png or .jpg");
-    a.choice("--heat-of", w.heat_of, k_maps, "what it shows (auto: hdr-flip, of screen pictures flip)");
-    a.number("--heat-max", "X", w.heat_max, "the value of its last colour (FLIP: 1; else by the values)");
+    a.choice("--heat-of", w.heat_of, k_maps, "the metric of the heat map (auto: hdr-flip, or flip for screen "
+                                             "pictures)");
+    a.number("--heat-max", "X", w.heat_max, "the value of the last colour (FLIP: 1; otherwise from the values)");
     a.text("--sheet", "FILE", w.sheet,
            "A, B, their signed difference and the perceived one side by side, .png or .jpg");
     a.text("--view-exposure", "EV", w.view_exposure,
            "stops for the sheet and for FLIP; auto brings B's log-average luminance to 0.18 (auto)");
     a.texts("--fail-above", "METRIC=VALUE", w.fail_above,
-            "exit with status 1 where a metric is above: " + join(k_metrics, ", ") + " (mean: |A / B - 1|)");
-    a.texts("--fail-below", "METRIC=VALUE", w.fail_below, "the same below, for psnr and ssim");
+            "exit with status 1 if a metric is above the value: " + join(k_metrics, ", ") + " (mean: |A / B - 1|)");
+    a.texts("--fail-below", "METRIC=VALUE", w.fail_below, "the same if psnr or ssim is below the value");
 }
 
 int compare_pictures(const std::string& a, const std::string& b, const PictureWords& w, const CommonOptions& common) {

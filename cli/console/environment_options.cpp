@@ -75,17 +75,18 @@ void add_environment_options(Arguments& arguments, EnvironmentOptions& options) 
     arguments.group("Reading the environment");
     arguments.text(
         "--projection", "NAME", options.projection,
-        "what the image shows: latlong, cube-cross, cube-strip, cube-faces, sphere-map, mirror-ball/fov=DEGREES, "
+        "the projection of the image: latlong, cube-cross, cube-strip, cube-faces, sphere-map, "
+        "mirror-ball/fov=DEGREES, "
         "angular, hemisphere, paraboloid, paraboloid-opposite, dual-paraboloid, octahedral, "
-        "equal-area-octahedral, each with /centre=+Z,right=+X,up=+Y where it differs (auto: latlong or a "
-        "cube, from its shape and attributes)");
+        "equal-area-octahedral, each with /centre=+Z,right=+X,up=+Y if it differs (auto: latlong or a cube, from its "
+        "shape and attributes)");
     arguments.text(
         "--latlong", "NAME", options.latlong,
         "lat-long convention: default, usd, mitsuba, openexr, materialx, mod, pbrt, or centre=+X,right=+Z[,up=+Y]");
     arguments.choice("--decode", options.decode, {"auto", "srgb", "gamma22", "linear", "rgbm", "rgbd", "rgbp"},
                      "transfer function of PNG and JPEG (auto: srgb)");
     arguments.number("--rotate-y-deg", "DEGREES", options.rotate_y_deg, "turn the light about +Y: +X moves towards +Z");
-    arguments.text("--up", "AXIS", options.up, "the axis that the image's top shows: +Y, +Z, ... (+Y)");
+    arguments.text("--up", "AXIS", options.up, "the axis at the top of the image: +Y, +Z, ... (+Y)");
     arguments.number("--exposure", "STOPS", options.exposure, "multiply radiance by 2^STOPS");
 }
 

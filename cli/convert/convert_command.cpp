@@ -30,7 +30,7 @@ struct ConvertWords {
 void declare(Arguments& a, ConvertWords& w) {
     a.positional("IN", w.files,
                  "an environment (or the six faces of a cube, a folder of them, front and back of a dual paraboloid), "
-                 "then where to write: .hdr, .exr, .ktx2, .ktx, .dds, or .png or .jpg for a look");
+                 "then the output: .hdr, .exr, .ktx2, .ktx, .dds, or .png or .jpg for viewing");
     a.group("What to make");
     a.text("--to", "PROJECTION", w.to,
            "latlong, cube, sphere-map, mirror-ball/fov=DEGREES, angular, hemisphere, paraboloid, paraboloid-opposite, "
@@ -39,7 +39,7 @@ void declare(Arguments& a, ConvertWords& w) {
            "texture, else latlong)");
     a.integer("--size", "N", w.size, "height of the picture, of a cube's face, of one half (as fine as the source)");
     a.flag("--sharp", w.sharp,
-           "keep more of the finest detail in lat-long to cube and to lat-long, for ten times the time");
+           "keep more of the finest detail from lat-long to cube or lat-long; takes ten times as long");
     a.text("--layout", "NAME", w.output.layout,
            "a cube: cross, vertical-cross, strip, vertical-strip, faces (name_px.hdr ...); a dual paraboloid: "
            "side-by-side, files (name_front.hdr ...)");
@@ -48,8 +48,8 @@ void declare(Arguments& a, ConvertWords& w) {
            "r11g11b10f, bc6h, .ktx2 also uastc-hdr, astc4x4-hdr, astc6x6-hdr, rgbm, rgbd, rgbp (rgba16f)");
     a.texts("--rotate", "X,Y,Z,DEGREES", w.rotations,
             "turn the light about an axis, clockwise as seen from the axis's tip: 0,1,0,90 is --rotate-y-deg 90; "
-            "several are done one after the other");
-    a.text("--mirror", "AXIS", w.mirror, "mirror the light: x, y or z is turned around");
+            "several are applied one after the other");
+    a.text("--mirror", "AXIS", w.mirror, "mirror the light along the x, y or z axis");
     add_environment_options(a, w.environment);
     a.text("--from", "NAME", w.environment.projection, "the same as --projection");
     add_common_options(a, w.common);
@@ -186,8 +186,8 @@ int run_convert(const std::vector<std::string>& words) {
     Arguments arguments(
         "convert",
         "Converts an environment to another projection, convention, orientation, size or format. Light is kept: "
-        "texels are averaged by solid angle, and the radiant power before and after is told. Without IN the built-in "
-        "sky.",
+        "texels are averaged by solid angle, and the radiant power before and after is printed. Without IN, the "
+        "built-in sky is converted.",
         {"domelight convert studio.hdr studio_cube.hdr --to cube --layout faces --size 32",
          "domelight convert studio.hdr studio_usd.exr --to latlong/usd --exposure 1",
          "domelight convert studio.hdr ball.hdr --to mirror-ball/fov=20 --size 64",

@@ -235,13 +235,13 @@ bool is_texture(const fs::path& file) {
 int run_info(const std::vector<std::string>& words) {
     InfoWords w;
     Arguments arguments("info",
-                        "Tells of an environment (size, projection, range, mean radiance, irradiance by direction, "
+                        "Describes an environment (size, projection, range, mean radiance, irradiance by direction, "
                         "brightest lights, bad texels), "
-                        "of a texture (KTX2, KTX, DDS, other tools' too), or of a folder that a bake wrote.",
+                        "a texture (KTX2, KTX, DDS, from any tool), or the folder of a bake.",
                         {"domelight info studio.hdr", "domelight info studio.hdr --json", "domelight info out",
                          "domelight info out/specular.ktx2"});
     arguments.positional("ENV|FILE|FOLDER", w.inputs,
-                         "an environment, a texture, or a bake; without one the built-in sky");
+                         "an environment, a texture, or a bake; without one, the built-in sky");
     add_environment_options(arguments, w.environment);
     add_common_options(arguments, w.common);
     if (const auto code = begin_command(arguments, words, w.common)) return *code;

@@ -41,21 +41,22 @@ void declare(Arguments& a, LightsWords& w) {
         "ENV", w.environment_files,
         "an environment; without one the built-in sky, eight stops down; six faces (px nx py ny pz nz) are one cube");
     a.group("What counts as a light");
-    a.integer("--max-lights", "N", w.max_lights, "the strongest are taken, the others stay in the remainder (8)");
-    a.number("--least-share", "SHARE", w.options.least_share, "of all luminance that a light must hold, 0 to 1 (0.01)");
+    a.integer("--max-lights", "N", w.max_lights, "the largest number of lights; weaker ones stay in the remainder (8)");
+    a.number("--least-share", "SHARE", w.options.least_share, "the least share of all luminance that a light must "
+                                                              "have, 0 to 1 (0.01)");
     a.number("--least-contrast", "RATIO", w.options.least_contrast,
-             "how far the luminance must fall all around it, 1.5 or more (4)");
+             "the ratio by which the luminance must fall all around a light, 1.5 or more (4)");
     a.number("--largest-diameter-deg", "DEGREES", w.options.largest_diameter_deg,
-             "widest angle that counts as small, up to 30 (6); three texels always do");
-    a.number("--merge-deg", "DEGREES", w.options.merge_deg, "sources closer than this are one light (1.5)");
+             "the largest diameter that counts as small, up to 30 (6); three texels always do");
+    a.number("--merge-deg", "DEGREES", w.options.merge_deg, "sources closer than this are merged into one light (1.5)");
     a.group("What to write");
     a.text("-o,--output", "DIR", w.output,
            "folder for lights.json, lights.gltf, remainder.hdr or .exr, and preview.png");
     a.choice("--format", w.format, {"auto", "hdr", "exr"},
              "of the remainder; exr has 32-bit floats (auto: hdr where ENV is Radiance HDR, else exr)");
     a.number("--lux-per-unit", "LUX", w.lux_per_unit,
-             "of an irradiance of 1, for lights.gltf: 1 keeps the environment's unit; 683 or 179 (lm/W) if that is "
-             "watts (1)");
+             "illuminance for an irradiance of 1, in lights.gltf: 1 keeps the environment's unit; 683 or 179 (lm/W) "
+             "if that is in watts (1)");
     a.flag("--no-preview", w.no_preview, "no preview.png");
     add_environment_options(a, w.environment);
     add_common_options(a, w.common);
@@ -278,8 +279,8 @@ int run_lights(const std::vector<std::string>& words) {
     LightsWords w;
     Arguments arguments(
         "lights",
-        "Takes the sun and other small bright sources out of an environment: directional lights as JSON and glTF "
-        "(KHR_lights_punctual), and the environment without them. No light is lost or counted twice.",
+        "Extracts the sun and other small bright sources from an environment: writes directional lights as JSON and "
+        "glTF (KHR_lights_punctual), and the environment without them. No light is lost or counted twice.",
         {"domelight lights studio.hdr -o lights", "domelight lights studio.hdr -o sun --max-lights 1 --format exr",
          "domelight lights -o sky --lux-per-unit 179 --json"});
     declare(arguments, w);

@@ -19,34 +19,34 @@ namespace {
 
 void declare(Arguments& a, RenderWords& w) {
     a.positional("SCENE", w.scenes,
-                 "a model (.glb, .gltf, .obj, .ply), or one that is built in: " + join(built_in_scene_names(), ", "));
+                 "a model (.glb, .gltf, .obj, .ply), or a built-in one: " + join(built_in_scene_names(), ", "));
     a.group("The picture");
     a.texts("-o,--output", "FILE", w.outputs,
-            "where to write it, several allowed: .exr (all layers), .hdr, .png or .jpg (tone mapped)");
+            "the output, several are allowed: .exr (all layers), .hdr, .png or .jpg (tone mapped)");
     a.integer("--width", "N", w.width, "pixels (512)");
-    a.integer("--height", "N", w.height, "pixels (by the camera's own shape; 512 where it has none)");
-    a.text("--camera", "N|NAME", w.camera, "which of the scene's cameras, 1 is the first (1)");
+    a.integer("--height", "N", w.height, "pixels (from the aspect ratio of the scene's camera, otherwise 512)");
+    a.text("--camera", "N|NAME", w.camera, "the camera of the scene to use, 1 is the first (1)");
     a.numbers("--camera-position", "x,y,z", w.camera_position,
               "the eye (the scene's camera, or one that shows all of it)");
-    a.numbers("--camera-target", "x,y,z", w.camera_target, "what it looks at (0,0,0)");
+    a.numbers("--camera-target", "x,y,z", w.camera_target, "the point that the camera looks at (0,0,0)");
     a.number("--fov-deg", "DEGREES", w.fov_deg, "vertical field of view with --camera-position (35)");
     a.choice("--background", w.background, {"environment", "blurred", "colour", "color", "transparent"},
-             "where no surface is (environment)");
+             "what is seen where there is no surface (environment)");
     a.text("--background-color,--background-colour", "#rrggbb|R,G,B", w.background_color,
-           "shown as it is, sRGB or linear (#ffffff)");
-    a.number("--background-roughness", "R", w.background_roughness, "how blurred, 0 to 1 (0.35)");
-    a.flag("--shadow-catcher", w.shadow_catcher, "an invisible ground under the scene that shows its shadow");
+           "the colour of the background, sRGB or linear (#ffffff)");
+    a.number("--background-roughness", "R", w.background_roughness, "how blurred the background is, 0 to 1 (0.35)");
+    a.flag("--shadow-catcher", w.shadow_catcher, "an invisible ground under the scene that receives its shadow");
     std::vector<std::string> tonemaps;
     for (const TonemapName& t : tonemap_names()) tonemaps.emplace_back(t.name);
-    a.choice("--tonemap", w.tonemap, tonemaps, "of a .png or .jpg (agx)");
+    a.choice("--tonemap", w.tonemap, tonemaps, "tone map of a .png or .jpg (agx)");
     a.number("--ev", "STOPS", w.ev,
              "exposure of a .png or .jpg (from the log-average luminance of what the surfaces show)");
     a.group("Going round");
     a.integer("--frames", "N", w.frames,
-              "numbered pictures of one turn, and an animation (.webp) beside the .png or .jpg ones");
-    a.choice("--turn", w.turn, {"camera", "environment"}, "what goes round (camera)");
+              "numbered pictures of one turn, and with .png or .jpg also an animation (.webp)");
+    a.choice("--turn", w.turn, {"camera", "environment"}, "what turns (camera)");
     a.number("--fps", "N", w.fps, "frames a second of the animation (30)");
-    a.flag("--resume", w.resume, "keep the frames that exist, draw the others");
+    a.flag("--resume", w.resume, "keep the frames that exist, render the others");
     a.group("The light");
     a.texts("--env", "ENV", w.environment_files, "the environment (the built-in sky)");
     a.texts("--lights", "FILE", w.light_files,
@@ -58,34 +58,37 @@ void declare(Arguments& a, RenderWords& w) {
     add_environment_options(a, w.environment);
     a.group("How it is computed");
     a.choice("--shading", w.shading, {"reference", "split-sum", "stretched", "phong", "mirror", "refract"},
-             "reference = path tracing; the others as a real-time engine draws them from baked maps (reference)");
-    a.choice("--strategy", w.strategy, {"mis", "env", "brdf"}, "reference: where light directions come from (mis)");
+             "reference = path tracing; the others draw like a real-time engine from baked maps (reference)");
+    a.choice("--strategy", w.strategy, {"mis", "env", "brdf"}, "reference: how light directions are sampled (mis)");
     a.integer("--spp", "N", w.spp, "samples of each pixel (64)");
     a.number("--noise", "X", w.noise,
-             "reference: more samples where a pixel's standard error of L/(1+L) is above this");
+             "reference: take more samples in pixels whose standard error of L/(1+L) is above this");
     a.number("--time", "SECONDS", w.time, "reference: as many samples as fit into this time");
-    a.integer("--bounces", "N", w.bounces, "reference: of indirect light; 0 is direct light with shadows (4)");
+    a.integer("--bounces", "N", w.bounces, "reference: bounces of indirect light; 0 is direct light with shadows (4)");
     a.choice("--occlusion", w.occlusion, {"on", "off"},
-             "off: no shadows, no indirect light, no occlusion maps, as a shader without them (on)");
-    a.flag("--multiple-scattering", w.multiple_scattering, "gives back what single scattering loses on rough surfaces");
-    a.text("--maps", "DIR", w.maps, "split-sum, stretched, phong: what `domelight bake` wrote (baked in memory)");
+             "off: no shadows, no indirect light, no occlusion maps, like a shader without them (on)");
+    a.flag("--multiple-scattering", w.multiple_scattering, "compensate the energy that single scattering loses on "
+                                                           "rough surfaces");
+    a.text("--maps", "DIR", w.maps, "split-sum, stretched, phong: the folder of a bake by `domelight bake` (baked in "
+                                    "memory)");
     a.choice("--irradiance", w.irradiance, {"cube", "sh"},
              "split-sum, stretched, phong: the irradiance cube, or nine harmonics (cube)");
     a.choice("--lookup", w.lookup, {"environment", "cube", "latlong", "sphere-map", "dual-paraboloid"},
-             "mirror, refract: the texture that is read, made from the environment (none: the environment itself)");
-    a.integer("--lookup-size", "N", w.lookup_size, "its size: of a face, its height, or of each disc (512)");
+             "mirror, refract: look up the environment through this kind of texture (none: the environment itself)");
+    a.integer("--lookup-size", "N", w.lookup_size, "the size of the texture: of a face, its height, or of each disc "
+                                                   "(512)");
     a.choice("--brdf", w.brdf, {"scene", "phong"},
-             "phong: modified Phong lobes of matching width instead of GGX, the truth for --shading phong (scene)");
-    a.flag("--bent-lookup", w.bent_lookup, "split-sum: the lookup leans towards the normal on rough surfaces");
+             "phong: modified Phong lobes of matching width instead of GGX, the reference for --shading phong (scene)");
+    a.flag("--bent-lookup", w.bent_lookup, "split-sum: move the lookup towards the normal on rough surfaces");
     a.choice("--diffuse-weight", w.diffuse_weight, {"energy", "fresnel"},
-             "split-sum, stretched: what is left for the diffuse layer, 1 - (F0 scale + bias), or 1 - F(NdotV) as in most "
+             "split-sum, stretched: weight of the diffuse layer, 1 - (F0 scale + bias), or 1 - F(NdotV) as in most "
              "courses (energy)");
     a.integer("--seed", "N", w.seed, "another randomisation (0)");
     a.number("--save-every", "SECONDS", w.save_every,
-             "reference: write the picture so far every so often, and when interrupted");
+             "reference: write the picture so far at this interval, and when interrupted");
     a.flag("--study", w.study,
-           "instead of a picture: which sampling suits which light and surface, noise by samples, split-sum's error; "
-           "-o DIR or study.png");
+           "instead of a picture, three figures: the error of each sampling strategy by light and surface, noise over "
+           "samples, the error of split-sum; -o DIR or study.png");
     add_common_options(a, w.common);
 }
 
@@ -206,7 +209,7 @@ int run_render(const std::vector<std::string>& words) {
     RenderWords w;
     Arguments arguments(
         "render",
-        "Renders a scene under an environment: the truth by path tracing, or what a real-time engine would draw.",
+        "Renders a scene under an environment: the reference by path tracing, or what a real-time engine would draw.",
         {"domelight render spheres -o spheres.png --width 256 --height 128 --spp 4",
          "domelight render helmet.glb --env sunset.hdr -o truth.exr,truth.png --spp 256",
          "domelight render ball --env sunset.hdr --shading split-sum -o engine.png",

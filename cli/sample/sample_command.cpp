@@ -101,8 +101,8 @@ int run_sample(const std::vector<std::string>& words) {
     SampleWords w;
     Arguments arguments("sample",
                         "Draws light directions from an environment in proportion to its radiance, shows where they "
-                        "fall, how one is found, and "
-                        "what error each strategy leaves in the light that a surface reflects.",
+                        "lie, explains how one is found, and compares the error of each strategy for the light that a "
+                        "surface reflects.",
                         {"domelight sample studio.hdr -n 8",
                          "domelight sample studio.hdr -n 4096 -o samples.json --picture samples.png --heat density.png",
                          "domelight sample studio.hdr --explain 0.25,0.5 --method binary",

@@ -100,43 +100,49 @@ std::string SampleWords::environment_name() const {
 }
 
 void declare_sample_options(Arguments& a, SampleWords& w) {
-    a.positional("ENV", w.inputs, "one image, or the six faces of a cube; without one the built-in sky");
+    a.positional("ENV", w.inputs, "one image, or the six faces of a cube; without one, the built-in sky");
     a.group("What to draw");
-    a.integer("-n,--count", "N", w.count, "how many samples (1024); with --estimate the most a strategy gets (4096)");
+    a.integer("-n,--count", "N", w.count, "the number of samples (1024); with --estimate the largest number for each "
+                                          "strategy (4096)");
     a.text("-o,--output", "FILE", w.output,
-           "where the samples go, .csv or .json; without it, and without anything else to do, CSV on stdout");
+           "file for the samples, .csv or .json; without it, and if nothing else is asked for, CSV on stdout");
     std::vector<std::string> methods;
     for (const DistributionMethod m : k_methods) methods.push_back(method_word(m));
     a.choice("--method", w.method, methods,
-             "how (bilinear): the first six draw texels, the last two from the bilinear interpolation of them");
+             "sampling method (bilinear): the first six sample texels, the last two their bilinear interpolation");
     a.choice(
         "--weight", w.weight, {"radiant-power", "grayscale"},
-        "in proportion to what (radiant-power): luminance times sin theta, or the textbook's grayscale without it");
-    a.flag("--compensate", w.compensate, "subtract the mean (MIS compensation): only for use beside BRDF sampling");
+        "the weight of a texel (radiant-power): luminance times sin theta, or the textbook's grayscale without sin "
+        "theta");
+    a.flag("--compensate", w.compensate, "subtract the mean (MIS compensation): only for use together with BRDF "
+                                         "sampling");
     a.number("--uniform-share", "SHARE", w.uniform_share,
-             "draw this part of the samples evenly over the sphere, 0 to 1 (0)");
+             "draw this part of the samples uniformly over the sphere, 0 to 1 (0)");
     a.choice("--sequence", w.sequence, {"random", "stratified", "hammersley", "halton", "sobol", "r2"},
              "the points of the unit square (sobol; with --estimate random, for which its standard errors hold)");
-    a.text("--seed", "N", w.seed, "another number, another randomisation; 0: the textbook's plain points (1)");
+    a.text("--seed", "N", w.seed, "selects the randomisation; 0: the textbook's plain points (1)");
     a.group("Pictures and tables");
-    a.text("--picture", "FILE", w.picture, "the environment, as it is stored, with the samples on it, .png or .jpg");
+    a.text("--picture", "FILE", w.picture, "the environment as it is stored, with the samples drawn on it, .png or "
+                                           ".jpg");
     a.text("--heat", "FILE", w.heat, "the density as a heat map, .png or .jpg");
     a.choice("--heat-measure", w.heat_measure, {"solid-angle", "uv"},
              "the density per steradian or over the image (solid-angle)");
-    a.integer("--picture-width", "PIXELS", w.picture_width, "width of the environment in these, 256 to 8192 (1024)");
+    a.integer("--picture-width", "PIXELS", w.picture_width, "width of the environment in these pictures, 256 to 8192 "
+                                                            "(1024)");
     a.text("--tables", "DIR", w.tables,
            "the cumulative functions as textures for shaders: rows.* and columns.*, RG float");
     a.choice("--tables-format", w.tables_format, {"ktx2", "exr"}, "their format (ktx2)");
     a.group("How good each strategy is");
     a.flag("--estimate", w.estimate, "estimate the light that a surface reflects by every strategy, and compare them");
     a.choices("--strategy", w.strategies, studied_strategies(), "compare only these with environment (all)");
-    a.text("--plot", "FILE", w.plot, "each strategy's error over the number of samples, with slopes, .png or .jpg");
+    a.text("--plot", "FILE", w.plot,
+           "plot of each strategy's error over the number of samples, with slopes, .png or .jpg");
     a.numbers("--normal", "X,Y,Z", w.normal, "the surface's normal (0,1,0)");
-    a.numbers("--view", "X,Y,Z", w.view, "towards the viewer (the normal)");
+    a.numbers("--view", "X,Y,Z", w.view, "direction towards the viewer (the normal)");
     a.choice("--brdf", w.brdf, {"lambert", "phong", "ggx", "charlie"}, "the surface (lambert)");
-    a.number("--roughness", "R", w.roughness, "of ggx and charlie, 0 to 1 (0.3)");
+    a.number("--roughness", "R", w.roughness, "roughness of ggx and charlie, 0 to 1 (0.3)");
     a.number("--exponent", "N", w.exponent, "of phong (32)");
-    a.numbers("--metal-f0", "F0", w.metal_f0, "of ggx, reflectance at normal incidence: one number or R,G,B (1)");
+    a.numbers("--metal-f0", "F0", w.metal_f0, "ggx: reflectance at normal incidence, one number or R,G,B (1)");
     a.group("How it works");
     a.numbers("--explain", "U,V", w.explain,
               "show how this point of the unit square becomes a direction: row, column, density");

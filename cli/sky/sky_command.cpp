@@ -27,11 +27,12 @@ struct SkyWords {
 
 void declare(Arguments& a, SkyWords& w) {
     a.group("The picture");
-    a.text("-o,--output", "FILE", w.output, "where to write it: .hdr, .exr, or .png or .jpg (8 bits, not HDR)");
+    a.text("-o,--output", "FILE", w.output, "the output: .hdr, .exr, or .png or .jpg (8 bits, not HDR)");
     a.integer("--height", "N", w.height, "rows of the lat-long image, which is twice as wide (512)");
     a.choice("--exr", w.encoding, {"auto", "half", "float"},
-             "channels of an .exr; half clips the sun at 65504, so auto takes float where the sun is up (auto)");
-    a.flag("--axes", w.axes, "the labelled six-axis environment instead of a sky: it shows every orientation mistake");
+             "type of the channels of an .exr; half clips the sun at 65504, so auto is float if the sun is up (auto)");
+    a.flag("--axes", w.axes,
+           "the labelled six-axis environment instead of a sky: it reveals every mistake in orientation");
     a.group("The sky");
     a.number("--sun-elevation-deg", "DEGREES", w.sky.sun_elevation_deg,
              "height of the sun over the horizon, -18 to 90 (30)");
