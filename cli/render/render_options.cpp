@@ -42,9 +42,9 @@ Result<void> check_numbers(const RenderWords& w) {
         if (auto ok = within(r.option, r.value, r.low, r.high); !ok) return ok;
     for (const auto& [option, value] :
          {std::pair{"--camera-position", &w.camera_position}, {"--camera-target", &w.camera_target}}) {
-        if (!value->empty() && value->size() != 3) return Error{"wants three numbers", option, "x,y,z"};
+        if (!value->empty() && value->size() != 3) return Error{"needs three numbers", option, "x,y,z"};
         for (const double v : *value)
-            if (!std::isfinite(v)) return Error{"wants three finite numbers", option, "x,y,z"};
+            if (!std::isfinite(v)) return Error{"needs three finite numbers", option, "x,y,z"};
     }
     return {};
 }
@@ -111,7 +111,7 @@ Result<void> check_company(const RenderWords& w, const Arguments& a) {
 }  // namespace
 
 Result<Vec3f> parse_colour(const std::string& text) {
-    const Error wrong{fmt::format("\"{}\" is no colour", text), "", "Accepted: #rrggbb (sRGB), or R,G,B (linear)."};
+    const Error wrong{fmt::format("\"{}\" is not a colour", text), "", "Accepted: #rrggbb (sRGB), or R,G,B (linear)."};
     if (text.starts_with("#")) {
         unsigned value = 0;
         const char* const end = text.data() + text.size();

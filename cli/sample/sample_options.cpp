@@ -81,8 +81,8 @@ Result<void> check_explain(const Arguments& arguments, const SampleWords& w) {
     for (const double u : w.explain)
         if (!(u >= 0 && u < 1)) return Error{fmt::format("{:g} is not in [0, 1)", u), "--explain", ""};
     if (w.method == "alias" || w.method == "hierarchical")
-        return Error{fmt::format("shows rows and columns being found, which {} does not do", w.method), "--explain",
-                     "Accepted with --method linear, walk, binary, guided, bilinear, bilinear-plain."};
+        return Error{fmt::format("explains a search in rows and columns, which {} does not make", w.method),
+                     "--explain", "Accepted with --method linear, walk, binary, guided, bilinear, bilinear-plain."};
     if (w.uniform_share > 0) return Error{"does not go with --uniform-share", "--explain", ""};
     return {};
 }
@@ -169,7 +169,7 @@ Result<void> check_sample_options(const Arguments& arguments, SampleWords& w) {
     if (arguments.given("--tables-format") && w.tables.empty())
         return Error{"has no meaning without --tables", "--tables-format", ""};
     if (!w.picture.empty() && w.count.value_or(1024) > 1'000'000 && !w.estimate)
-        return Error{"at most a million samples can be told apart", "--picture", "Ask for fewer with -n."};
+        return Error{"a picture can show at most a million samples", "--picture", "Ask for fewer with -n."};
     const char* const end = w.seed.data() + w.seed.size();
     if (const auto [stop, code] = std::from_chars(w.seed.data(), end, w.seed_number);
         code != std::errc() || stop != end || w.seed.empty())

@@ -139,7 +139,8 @@ Result<void> plan_encoding(EnginePlan& plan, const BakeOptions& o) {
                             "It holds rgba16f (half) and rgba32f (float).");
     if (plan.container == Container::dds9 && plan.encoding != Encoding::rgba16f && plan.encoding != Encoding::rgba32f &&
         !is_scaled_bytes(plan.encoding))
-        return option_error("--encoding", encoding_name(plan.encoding) + " has no number in DDS headers of its time",
+        return option_error("--encoding",
+                            encoding_name(plan.encoding) + " does not exist in DDS headers from before DX10",
                             "dds9 holds rgba16f, rgba32f, and as bytes rgbm, rgbd and rgbp.");
     if (own_container(plan.container) && plan.encoding != engine.encoding)
         return option_error(
@@ -254,7 +255,7 @@ Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& o, const
             if (level.spec.size % 2)
                 return option_error("--size",
                                     fmt::format("a lat-long map {} high cannot be turned by a quarter: its "
-                                                "width is no multiple of 4",
+                                                "width is not a multiple of 4",
                                                 level.spec.size),
                                     "Use a size and a number of levels that keep every height even.");
     return plan;

@@ -60,7 +60,7 @@ class Audit {
             const Cubemap& cube = given_[l].cube;
             samples_.push_back(sample_texels(cube, std::max(options_.texels, 96)));
             if (!(samples_.back().mean > 0))
-                return Error{fmt::format("level {} is black: nothing can be found out about it", l), "", ""};
+                return Error{fmt::format("level {} is black, so it cannot be audited", l), "", ""};
             broad_samples_.push_back(sample_broadly(cube, k_broad_texels, options_.threads));
         }
         return {};

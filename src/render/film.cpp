@@ -42,7 +42,7 @@ RenderStatus StatusSums::after(int t, double seconds) {
 
 Result<void> check_size(int width, int height) {
     if (width >= 1 && height >= 1 && width <= 16384 && height <= 16384) return {};
-    return Error{fmt::format("{} x {} is no size of a picture", width, height), "",
+    return Error{fmt::format("{} x {} is not a valid picture size", width, height), "",
                  "Accepted: 1 x 1 to 16384 x 16384."};
 }
 

@@ -43,7 +43,7 @@ Result<Scene> load_scene(const std::filesystem::path& file, const SceneOptions& 
     try {
         auto scene = read_scene(file, std::move(*bytes), options);
         if (!scene) return scene.error().at(file.string());
-        if (scene->instances.empty()) return Error{"there are no triangles in it", file.string(), ""};
+        if (scene->instances.empty()) return Error{"the scene has no triangles", file.string(), ""};
         return scene;
     } catch (const std::bad_alloc&) {
         return Error{"there is not enough memory for this scene", file.string(), ""};

@@ -165,7 +165,7 @@ TEST_CASE("gltf material: images by uri, by buffer view and by WebP, and those t
     outside.json["images"][0] = {
         {"bufferView", outside.add("bufferViews", {{"buffer", 0}, {"byteOffset", 1000}, {"byteLength", 5}})},
         {"mimeType", "image/png"}};
-    CHECK(contains(error_of(outside.load()), "are not there"));
+    CHECK(contains(error_of(outside.load()), "do not exist"));
     GltfSample nothing = sample;
     nothing.json["images"][0] = Json::object();
     CHECK(contains(error_of(nothing.load()), "images[0]: names neither or both"));

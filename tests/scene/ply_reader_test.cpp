@@ -78,7 +78,7 @@ TEST_CASE("ply: truncated and lying files are errors") {
     };
     CHECK(contains(changed("vertex 4", "vertex 4000000000"), "do not fit"));
     CHECK(contains(changed("vertex 4", "vertex 18446744073709551615"), "do not fit"));
-    CHECK(contains(changed("vertex 4", "vertex -1"), "is no number of elements"));
+    CHECK(contains(changed("vertex 4", "vertex -1"), "is not a number of elements"));
     CHECK(contains(changed("float x", "complex x"), "property of type"));
     CHECK(contains(changed("float x", "float w"), "no x, y and z"));
     CHECK(contains(changed("list uchar", "list float"), "no whole type"));

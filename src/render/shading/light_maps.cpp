@@ -43,7 +43,7 @@ float matching_roughness(double exponent) {
 
 Result<Lobe> lobe_of(const std::string& name) {
     if (const auto lobe = lobe_from_name(name); lobe && *lobe != Lobe::charlie) return *lobe;
-    return Error{fmt::format("tells of a chain of lobe \"{}\"", name), "", "Bake with --lobe ggx or --lobe phong."};
+    return Error{fmt::format("describes a chain of lobe \"{}\"", name), "", "Bake with --lobe ggx or --lobe phong."};
 }
 
 float level_roughness(const Json& level, Lobe lobe) {
@@ -89,8 +89,9 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
     const Json& chain = std::as_const(*manifest)["specular"];
     const Json& levels = chain["levels"];
     if (levels.size() != specular->size())
-        return Error{fmt::format("tells of {} specular levels, specular.ktx2 has {}", levels.size(), specular->size()),
-                     name, ""};
+        return Error{
+            fmt::format("describes {} specular levels, but specular.ktx2 has {}", levels.size(), specular->size()), name,
+            ""};
     const auto lobe = lobe_of(chain["lobe"].is_string() ? chain["lobe"].get<std::string>() : lobe_name(Lobe::ggx));
     if (!lobe) return lobe.error().at(name);
     impl.lobe = *lobe;

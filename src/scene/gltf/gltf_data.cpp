@@ -112,7 +112,7 @@ Result<GltfData> GltfData::open(const GltfDocument& document, std::span<const st
 Result<std::span<const std::uint8_t>> GltfData::range(int buffer, std::uint64_t offset, std::uint64_t length) const {
     const std::span<const std::uint8_t> bytes = buffers_[std::size_t(buffer)];
     if (offset > bytes.size() || length > bytes.size() - offset)
-        return Error{fmt::format("bytes {} to {} of buffer {} are not there: it has {}", offset, offset + length,
+        return Error{fmt::format("bytes {} to {} of buffer {} do not exist: it has {}", offset, offset + length,
                                  buffer, bytes.size()),
                      "", ""};
     return bytes.subspan(offset, length);

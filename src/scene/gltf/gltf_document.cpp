@@ -305,7 +305,7 @@ void DocumentParser::read_roots() {
         std::vector<bool> seen(nodes.size());
         for (const int root : document_.roots) {
             if (nodes[std::size_t(root)].parent >= 0)
-                scenes[std::size_t(shown)].fail("nodes", fmt::format("node {} is no root", root));
+                scenes[std::size_t(shown)].fail("nodes", fmt::format("node {} is not a root", root));
             if (seen[std::size_t(root)])
                 scenes[std::size_t(shown)].fail("nodes", fmt::format("node {} is there twice", root));
             seen[std::size_t(root)] = true;

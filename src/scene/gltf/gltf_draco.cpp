@@ -101,7 +101,7 @@ Result<std::unique_ptr<GltfVertices>> open_draco_vertices(GltfData& data, const 
     const auto packed = data.view(primitive.draco_view);
     if (!packed) return packed.error();
     std::uint64_t faces = 0, vertices = 0;
-    if (!claimed_counts(*packed, faces, vertices)) return Error{"Draco data that is no mesh of version 2.2", "", ""};
+    if (!claimed_counts(*packed, faces, vertices)) return Error{"the data is not a Draco mesh of version 2.2", "", ""};
     // No real file compresses a thousand faces into a byte, and a face adds at most three vertices.
     if (faces > 1024 * std::uint64_t(packed->size()) || vertices > 3 * faces)
         return Error{

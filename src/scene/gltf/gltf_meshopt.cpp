@@ -22,7 +22,7 @@ Result<void> check(const GltfMeshopt& m, std::size_t packed) {
     if (attributes ? m.stride == 0 || m.stride > 256 || m.stride % 4 : m.stride != 2 && m.stride != 4)
         return Error{fmt::format("meshopt: a stride of {} bytes", m.stride), "", ""};
     if (m.mode == "TRIANGLES" && m.count % 3)
-        return Error{"meshopt: triangles with a number of indices that is no multiple of 3", "", ""};
+        return Error{"meshopt: the number of indices is not a multiple of 3", "", ""};
     if (!attributes && m.filter != "NONE") return Error{"meshopt: indices with a filter", "", ""};
     if (m.filter == "OCTAHEDRAL" ? m.stride != 4 && m.stride != 8 : m.filter == "QUATERNION" && m.stride != 8)
         return Error{fmt::format("meshopt: filter with a stride of {} bytes", m.stride), "", ""};

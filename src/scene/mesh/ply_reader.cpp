@@ -115,7 +115,7 @@ class PlyValues {
 };
 
 Error too_early() {
-    return {"file ends too early, or holds what is no number", "", "The file is truncated or damaged."};
+    return {"file ends too early, or contains a word that is not a number", "", "The file is truncated or damaged."};
 }
 
 /// IEC 61966-2-1: colours of scans are made for a screen.
@@ -163,7 +163,7 @@ Result<void> PlyReader::header_line(std::string_view key, std::string_view rest)
         const std::string_view count = take_word(rest);
         const auto parsed = std::from_chars(count.data(), count.data() + count.size(), element.count);
         if (element.name.empty() || parsed.ec != std::errc() || parsed.ptr != count.data() + count.size())
-            return Error{fmt::format("'{}' is no number of elements", printable(count)), "", ""};
+            return Error{fmt::format("'{}' is not a number of elements", printable(count)), "", ""};
         elements_.push_back(std::move(element));
     } else if (key == "property") {
         Property property;
