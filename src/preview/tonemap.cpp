@@ -31,7 +31,7 @@ Vec3f neutral(Vec3f v) {
 }
 
 /// ACES 1.0's reference rendering and sRGB output transforms (RRT + ODT), by S. Hill's fit: into a desaturated AP1, one
-/// rational curve a channel, and back to Rec. 709. Middle grey 0.18 becomes 0.106, as darkly as the original has it.
+/// rational curve a channel, and back to Rec. 709. Middle grey 0.18 becomes 0.106, as dark as in the original.
 Vec3f aces(const Vec3f& v) {
     const auto curve = [](float x) {
         return (x * (x + 0.0245786f) - 0.000090537f) / (x * (0.983729f * x + 0.4329510f) + 0.238081f);

@@ -18,8 +18,8 @@ constexpr double k_air_scale = 8.4, k_aerosol_scale = 1.2;                 // sc
 constexpr double k_ozone_middle = 25, k_ozone_half_width = 15;             // a triangle, km
 constexpr double k_dobson_units = 300, k_molecules_per_dobson = 2.687e20;  // per m^2
 constexpr double k_angstrom_exponent = 1.3, k_single_scattering_albedo = 0.94;
-// RGB such that luminance = 179 lm/W x (0.2126 R + 0.7152 G + 0.0722 B), as the Radiance format has it (Ward 1994); 683
-// lm/W is the candela's.
+// RGB such that luminance = 179 lm/W x (0.2126 R + 0.7152 G + 0.0722 B), as in the Radiance format (Ward 1994); the
+// candela is defined by 683 lm/W.
 constexpr double k_efficacy_ratio = 683.0 / 179.0;
 
 constexpr int k_mu_nodes = 160, k_radius_nodes = 48;  // columns
@@ -64,8 +64,8 @@ double distance_to_top(double r, double mu) {
     return std::max(0.0, -r * mu + std::sqrt(std::max(0.0, r * r * (mu * mu - 1) + k_top_radius * k_top_radius)));
 }
 
-/// Columns over `distance` outward from radius r at cosine mu >= 0. The midpoint rule in x, t = distance x^2: dense
-/// where the air is.
+/// Columns over `distance` outward from radius r at cosine mu >= 0, by the midpoint rule in x with t = distance x^2,
+/// which is dense where the air is dense.
 Columns columns_outward(double r, double mu, double distance, int steps) {
     double air = 0, aerosol = 0, ozone = 0;
     for (int i = 0; i < steps; ++i) {
@@ -80,14 +80,14 @@ Columns columns_outward(double r, double mu, double distance, int steps) {
 
 /// One of the directions that multiple scattering is gathered from.
 struct GatherDirection {
-    double mu, nu, length;    ///< cosines to the zenith and to the sun; how far it goes, km
+    double mu, nu, length;    ///< cosines to the zenith and to the sun; length, km
     float weight;             ///< share of the sphere
     float rayleigh, aerosol;  ///< weight times phase function
     bool hits_ground;
 };
 
 /// Directions over half a turn of azimuth (the other half is its mirror image), quadratic away from the sun; above and
-/// below the horizon apart and quadratic away from it: twilight comes from close to it.
+/// below the horizon separately, and quadratic away from it, because twilight comes from near the horizon.
 void gather_directions(double r, double mu_sun, std::span<GatherDirection> out) {
     double node[k_gather_polar], node_weight[k_gather_polar];
     gauss_legendre(k_gather_polar, node, node_weight);
@@ -111,8 +111,8 @@ void gather_directions(double r, double mu_sun, std::span<GatherDirection> out) 
             aerosol += pm;
         }
     }
-    // So few directions miss much of the aerosol's forward lobe or count it twice: what they have is scaled to the
-    // lobe's true integral.
+    // So few directions miss much of the aerosol's forward lobe or count it twice, so their sum is scaled to the lobe's
+    // true integral.
     for (GatherDirection& d : out) {
         d.rayleigh *= float(1 / (4 * k_pi * rayleigh));
         d.aerosol *= float(1 / (4 * k_pi * aerosol));
@@ -166,7 +166,7 @@ Columns density(double height) {
 
 Columns columns_to_top(double r, double mu, int steps) {
     if (mu >= 0) return columns_outward(r, mu, distance_to_top(r, mu), steps);
-    // Down to the point closest to the ground and up again: outward from there, both ways.
+    // Down to the point closest to the ground and up again: computed outward from this point in both directions.
     const double tangent = r * std::sqrt(std::max(0.0, 1 - mu * mu));
     return columns_outward(tangent, 0, -r * mu, steps) +
            columns_outward(tangent, 0, distance_to_top(tangent, 0), steps);
@@ -180,12 +180,12 @@ Spectrum transmittance(const Medium& m, const Columns& c) {
 }
 
 /// A path: from radius r at cosine mu over `length` km, under a sun at cosine mu_sun from the start's zenith, nu from
-/// the ray. `lowest` is how far along it comes closest to the ground: 0 for one that climbs.
+/// the ray. `lowest` is the distance along it to the point closest to the ground: 0 for a path that climbs.
 struct Atmosphere::Ray {
     double r, mu, length, mu_sun, nu, lowest;
 
-    /// Distance along it of point x of [0, 1]: quadratic away from the lowest point on either side, dense where the air
-    /// is.
+    /// Distance along it of point x of [0, 1]: quadratic away from the lowest point on either side, so dense where the
+    /// air is dense.
     double distance(double x) const {
         if (lowest <= 0) return length * x * x;
         if (lowest >= length) return length * (1 - (1 - x) * (1 - x));
@@ -235,8 +235,8 @@ Columns Atmosphere::sun_columns(double r, double mu, float* visible) const {
     return *visible > 0 ? columns(r, std::max(mu, horizon)) : Columns{};
 }
 
-/// Gathers along the ray. Each step takes the source at its middle as constant and integrates its extinction exactly
-/// (Hillaire 2020, sec. 5.2). `transfer` (when not null) gets the light that a uniform unit source would send by one
+/// Gathers light along the ray. In each step the source at its middle is taken as constant and extinction is integrated
+/// exactly (Hillaire 2020, sec. 5.2). `transfer` (if not null) receives the light from a uniform unit source after one
 /// scattering (Hillaire's L_f).
 Gathered Atmosphere::march(const Ray& ray, int steps, bool with_multiple, Spectrum* transfer) const {
     Gathered out;
@@ -278,9 +278,9 @@ Gathered Atmosphere::march(const Ray& ray, int steps, bool with_multiple, Spectr
     return out;
 }
 
-// The second order's in-scattered light is gathered over the sphere; all higher ones are taken to be spread as evenly,
-// each f times the one before: Psi = L_2 / (1 - f) (Hillaire 2020, eqs. 5 to 10). Unlike there, the first scattering
-// keeps its phase functions.
+// The second order's in-scattered light is gathered over the sphere; all higher orders are assumed to be isotropic,
+// each f times the one before: Psi = L_2 / (1 - f) (Hillaire 2020, eqs. 5 to 10). In contrast to Hillaire, the first
+// scattering keeps its phase functions.
 Spectrum Atmosphere::multiple_scattering_at(double r, double mu_sun) const {
     std::array<GatherDirection, 2 * k_gather_polar * k_gather_azimuth> directions;
     gather_directions(r, mu_sun, directions);
@@ -311,7 +311,8 @@ void Atmosphere::make_multiple_scattering(int threads) {
         const double x = double(i / k_sun_nodes) / (k_height_nodes - 1);
         const double r = k_ground_radius + (k_top_radius - k_ground_radius) * x * x;
         multiple_[i] = multiple_scattering_at(r, std::sin(multiple_first_ + multiple_step_ * (i % k_sun_nodes)));
-        // As logarithms: in twilight it falls threefold a degree, and straight lines between nodes would show.
+        // As logarithms: in twilight the light falls to a third with each degree, and linear interpolation between
+        // nodes would be visible.
         for (float& v : multiple_[i]) v = std::log(std::max(v, 1e-30f));
     });
 }

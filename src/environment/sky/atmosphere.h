@@ -7,7 +7,7 @@
 
 namespace domelight::sky {
 
-/// Bands of 20 nm from 380 to 700 nm; the last one stands for all up to 780 nm when colours are made.
+/// Bands of 20 nm from 380 to 700 nm; for colours the last one represents everything up to 780 nm.
 inline constexpr int k_bands = 16;
 using Spectrum = std::array<float, k_bands>;
 
@@ -16,8 +16,8 @@ inline constexpr double k_ground_radius = 6371, k_top_radius = 6471;
 /// Half of the sun's 0.533 degrees, radians.
 inline constexpr double k_sun_radius = 0.533 / 2 * k_pi / 180;
 
-/// What the air is made of, per band. The densities of air, aerosol and ozone are profiles that are 1 where these
-/// values hold.
+/// The optical properties of the atmosphere, per band. The densities of air, aerosol and ozone are relative to the
+/// place where these values hold.
 struct Medium {
     Spectrum rayleigh;            ///< scattering of air at the ground, per km
     Spectrum aerosol_extinction;  ///< of aerosol at the ground, per km
@@ -29,8 +29,8 @@ struct Medium {
 
     /// `turbidity` is (tau_air + tau_aerosol) / tau_air at 550 nm, so 1 is pure air.
     explicit Medium(double turbidity);
-    /// The colour of a spectrum relative to the sun's. One outside Rec. 709 is drawn towards the grey of its luminance
-    /// until no channel is negative, which keeps the luminance.
+    /// The colour of a spectrum relative to the sun's. A colour outside Rec. 709 is moved towards the grey of its
+    /// luminance until no channel is negative, which keeps the luminance.
     Vec3f colour(const Spectrum& relative_to_sun) const;
 };
 
@@ -75,7 +75,7 @@ struct Gathered {
     Columns columns;      ///< of the path
 };
 
-/// The atmosphere under one sun: what a path through it gathers.
+/// The atmosphere under one sun: computes the light gathered along a path.
 ///
 /// Rays, transmittance and the multiple scattering follow Hillaire 2020 ("A Scalable and Production Ready Sky and
 /// Atmosphere Rendering Technique", EGSR), here per wavelength band; the transmittance table's parameters are

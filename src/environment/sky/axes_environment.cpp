@@ -11,7 +11,7 @@
 namespace domelight {
 namespace {
 
-/// One of the six: where it is, which way is right and up for who looks along it from the inside, its colour and its
+/// One of the six axes: its direction, right and up for a viewer who looks along it from the inside, its colour and its
 /// name.
 struct Axis {
     Vec3d forward, right, up;
@@ -19,8 +19,8 @@ struct Axis {
     const char* name;
 };
 
-// Right is forward x up. Around the horizon up is +Y; overhead and below it is what a viewer who faces +X and tilts the
-// head sees.
+// Right is forward x up. Around the horizon up is +Y; overhead and below, up is that of a viewer who faces +X and tilts
+// the head.
 constexpr std::array<Axis, 6> k_axes{{
     {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}, {0.80f, 0.06f, 0.05f}, "+X"},
     {{-1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {0.05f, 0.55f, 0.60f}, "-X"},
@@ -56,8 +56,8 @@ Vec3f graticule(const Vec3d& d, double texel) {
     const double elevation = std::asin(std::clamp(d.y, -1.0, 1.0)), azimuth = std::atan2(d.z, d.x), spacing = k_pi / 12;
     const auto nearest = [&](double angle) { return angle - spacing * std::round(angle / spacing); };
     Vec3f v = d.y > 0 ? Vec3f{0.24f, 0.25f, 0.27f} : Vec3f{0.11f, 0.10f, 0.09f};
-    // Slightly warmer towards +X and cooler towards -X, brighter towards +Z than -Z: no two quarters are alike even
-    // between the discs.
+    // Slightly warmer towards +X and cooler towards -X, brighter towards +Z than -Z, so that no two quarters are alike
+    // even between the discs.
     v = v + Vec3f{0.05f, 0.0f, -0.05f} * float(d.x) + Vec3f{0.04f, 0.04f, 0.04f} * float(d.z);
     const Vec3f light{0.62f, 0.62f, 0.62f};
     v = mix(v, light, 0.8f * line(nearest(elevation), 0.0028, texel));
@@ -87,7 +87,7 @@ Vec3f axes_radiance(const Vec3d& d, double texel) {
         const double inside = k_disc - std::hypot(x, y);
         v = mix(v, {1, 1, 1}, coverage(inside, pixel));
         v = mix(v, axis.colour, coverage(inside - k_rim, pixel));
-        // An arrow that points up, and a dot towards the upper right: a turn or a mirror image moves them.
+        // An arrow that points up, and a dot at the upper right, by which a turn or a reflection can be recognised.
         const double arrow = std::min(y - 0.37, (0.50 - y - 1.1 * std::abs(x)) / std::hypot(1.0, 1.1));
         v = mix(v, {1, 1, 1}, coverage(arrow, pixel));
         v = mix(v, {1, 1, 1}, coverage(0.045 - std::hypot(x - 0.30, y - 0.32), pixel));

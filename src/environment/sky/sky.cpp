@@ -36,7 +36,8 @@ class SkyRows : public RowSource {
 
     Result<void> read(ImageView<float> rows) override {
         assert(rows.width == width() && rows.channels == 3 && next_row_ + rows.height <= height());
-        // A row depends on its number alone, so neither threads nor the caller's pieces show in the result.
+        // A row depends on its number alone, so the result depends neither on the threads nor on how many rows are read
+        // at a time.
         parallel_for(rows.height, options_.threads, [&](int y) { make_row(next_row_ + y, rows.row(y)); });
         next_row_ += rows.height;
         return {};

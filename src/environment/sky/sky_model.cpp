@@ -13,8 +13,8 @@ namespace {
 
 constexpr int k_above_nodes = 96, k_below_nodes = 32, k_steps = 56;
 constexpr int k_row_nodes = SkyModel::k_azimuths;
-// Eye height (km) that sets how far off the ground is at each angle below the horizon, hence the haze before it; and
-// the horizon's distance.
+// The eye height (km) determines the distance of the ground at each angle below the horizon, and hence the haze in
+// front of it; and the distance of the horizon.
 constexpr double k_eye_height = 0.05;
 
 /// Elevation (radians) of a node: quadratic, dense at the horizon where the sky changes fastest.
@@ -95,7 +95,7 @@ void SkyModel::store(std::vector<float>& table, int i, int k, const Gathered& li
         }
     };
     put(k + 1);
-    // The sky is even in the azimuth about both ends.
+    // The sky is an even function of the azimuth about both ends.
     if (k == 1) put(0);
     if (k == k_azimuths - 2) put(k_azimuths + 1);
 }
@@ -126,7 +126,7 @@ void SkyModel::row(double elevation, bool above, std::span<float> out) const {
     const int i = std::min(int(x), nodes - 2);
     float w[4];
     catmull_rom(x - i, w);
-    // Beyond an end the spline goes on in a straight line: node -1 = 2 node 0 - node 1.
+    // Beyond an end the spline continues linearly: node -1 = 2 node 0 - node 1.
     if (i == 0) {
         w[1] += 2 * w[0];
         w[2] -= w[0];
@@ -160,7 +160,7 @@ Vec3f SkyModel::radiance(const float* row, const Tap& tap, double sine_product, 
                tap.weight[3] * n[3 * k_node + f];
     const float c = float(sine_product) + float(cosine_product) * tap.cosine;
     const float pr = phase_rayleigh(c), pm = phase_aerosol(std::min(c, 1.0f));
-    // The spline may dip below zero where the sky is next to black.
+    // The spline may be slightly negative where the sky is nearly black.
     const auto sum = [&](int k) { return std::max(0.0f, v[k] * pr + v[3 + k] * pm + v[6 + k]); };
     return {sum(0), sum(1), sum(2)};
 }

@@ -13,7 +13,7 @@ namespace domelight::sky {
 /// interpolation.
 ///
 /// The tables hold the light once scattered by air and by aerosol without their phase functions, which are applied
-/// exactly on evaluation, and the rest: what is left is smooth enough for a few thousand nodes.
+/// exactly on evaluation, and the rest of the light. Both are smooth enough for a few thousand nodes.
 class SkyModel {
   public:
     explicit SkyModel(const SkyOptions& options);
@@ -21,7 +21,8 @@ class SkyModel {
     /// Azimuth nodes over half a turn, with a ghost on either side; floats a node: air rgb, aerosol rgb, rest rgb, and
     /// padding.
     static constexpr int k_azimuths = 33, k_node = 12, k_row = (k_azimuths + 2) * k_node;
-    /// The table's row at an elevation (radians): k_row floats. `above` tells the sides of the horizon apart at 0.
+    /// The table's row at an elevation (radians): k_row floats. `above` distinguishes the sides of the horizon at
+    /// elevation 0.
     void row(double elevation, bool above, std::span<float> out) const;
     /// Places an azimuth (radians from the sun's) among a row's nodes.
     struct Tap {
@@ -35,7 +36,7 @@ class SkyModel {
 
     /// Radiance in a direction (elevation and azimuth from the sun's, radians) without the disc.
     Vec3f radiance(double elevation, double azimuth_from_sun) const;
-    /// Radiance, W / (m^2 sr), that the sun's disc has on average where it is seen at this elevation (radians).
+    /// The mean radiance, W / (m^2 sr), of the sun's disc at this elevation (radians).
     Vec3f sun_radiance(double elevation) const;
     /// On a horizontal surface from the sky alone, W / m^2.
     Vec3d sky_irradiance() const { return sky_irradiance_; }

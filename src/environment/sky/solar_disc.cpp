@@ -46,13 +46,14 @@ double half_width(double e, double centre) {
 /// Calls f(elevation, weight) for quadrature nodes over the part [from, to] of the disc at `centre` (weights include
 /// cos e, for solid angles).
 ///
-/// Piece by piece of the extinction table, which is straight between its nodes: near the horizon it falls so steeply
-/// that nodes across them would give each grid of texels another sum. Pieces at the disc's ends, where its width goes
-/// as a square root, take e = middle + half sin(pi s / 2), which makes that smooth in s.
+/// Integrated separately between the nodes of the extinction table, which is linear there: near the horizon it is so
+/// steep that a rule across its nodes would give a different sum for each grid of texels. Pieces at the disc's ends,
+/// where its width behaves like a square root, use e = middle + half sin(pi s / 2), which makes it smooth in s.
 template <typename F>
 void for_each_latitude(double centre, double from, double to, F f) {
     const double first = centre - k_sun_radius, step = 2 * k_sun_radius / (k_extinction_nodes - 1);
-    // Above k_pi - centre - radius the whole circle of latitude is on the disc (the zenith is): another root.
+    // Above k_pi - centre - radius the whole circle of latitude is on the disc (the zenith is on it), which is another
+    // square root.
     const double full = k_pi - centre - k_sun_radius;
     const auto between = [&](double low, double high, bool rooted) {
         const double middle = 0.5 * (low + high), half = 0.5 * (high - low);

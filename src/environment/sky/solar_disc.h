@@ -9,11 +9,11 @@ namespace domelight::sky {
 
 class SkyModel;
 
-/// The sun's disc: how bright it is at each point, and how much of it each texel of a lat-long image holds.
+/// The sun's disc: its radiance at each point, and its part in each texel of a lat-long image.
 ///
 /// Limb darkening is Hestroffer and Magnan's (1998) power law, I(mu) = mu^a with a = -0.023 + 0.292 um / lambda, at one
-/// wavelength a channel. Extinction is that of each point's own elevation, so that a setting sun is redder below than
-/// above. No refraction.
+/// wavelength for each channel. The extinction is that at the elevation of each point, so a setting sun is redder at
+/// its lower edge. There is no refraction.
 class SolarDisc {
   public:
     explicit SolarDisc(const SkyModel& model);

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstring>
 
-// jpeglib.h wants <cstdio> before it.
+// jpeglib.h requires <cstdio> before it.
 #include "io/picture/screen_curve.h"
 
 #include <jerror.h>

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-// jpeglib.h wants <cstdio> before it.
+// jpeglib.h requires <cstdio> before it.
 #include <jpeglib.h>
 
 namespace domelight {

@@ -8,7 +8,7 @@ namespace domelight {
 
 namespace {
 
-/// What a colour byte stands for before it is scaled.
+/// The value of a colour byte before it is scaled.
 struct Square {
     static float linear(int byte) {
         const float share = float(byte) / 255;
