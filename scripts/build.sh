@@ -47,7 +47,7 @@ need_packages() {
             fi
         fi
     else
-        say "this is not Debian: going on in the hope that the equivalents of these are there: $*"
+        say "this is not Debian: the build needs the equivalents of these packages: $*"
     fi
     printf '%s' "$*" >"$stamp"
 }
