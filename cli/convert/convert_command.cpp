@@ -1,13 +1,18 @@
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/bake/bake.h"
 #include "domelight/image/colour.h"
 #include "domelight/io/environment/convert.h"
+#include "domelight/io/environment/open_environment.h"
+#include "domelight/io/file/file_extension.h"
+#include "domelight/io/write_image.h"
 
 #include "base/json.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
-#include "cli/convert/convert_output.h"
+#include "cli/console/display_options.h"
 #include "cli/console/environment_options.h"
+#include "cli/convert/convert_output.h"
+#include "cli/convert/convert_picture.h"
+#include "preview/screen_picture.h"
 
 #include <fmt/core.h>
 
@@ -22,15 +27,19 @@ struct ConvertWords {
     std::string to, mirror;
     std::vector<std::string> rotations;
     std::optional<int> size;
-    bool sharp = false;
+    bool sharp = false, picture = false;
+    std::string layer;
     ConvertOutput output;
+    DisplayWords display;
     EnvironmentOptions environment;
 };
 
 void declare(Arguments& a, ConvertWords& w) {
     a.positional("IN", w.files,
                  "an environment (or the six faces of a cube, a folder of them, front and back of a dual paraboloid), "
-                 "then the output: .hdr, .exr, .ktx2, .ktx, .dds, or .png or .jpg for viewing");
+                 "or any picture for a .png or .jpg; without -o, then the output");
+    a.text("-o,--output", "OUT", w.output.file,
+           "the output: .hdr, .exr, .ktx2, .ktx, .dds, or .png or .jpg for viewing");
     a.group("What to make");
     a.text("--to", "PROJECTION", w.to,
            "latlong, cube, sphere-map, mirror-ball/fov=DEGREES, angular, hemisphere, paraboloid, paraboloid-opposite, "
@@ -50,6 +59,12 @@ void declare(Arguments& a, ConvertWords& w) {
             "turn the light about an axis, clockwise as seen from the axis's tip: 0,1,0,90 is --rotate-y-deg 90; "
             "several are applied one after the other");
     a.text("--mirror", "AXIS", w.mirror, "mirror the light along the x, y or z axis");
+    a.group("Pictures for a screen");
+    add_display_options(a, w.display);
+    a.flag("--picture", w.picture,
+           "treat IN as a picture, not as an environment: every pixel stays where it is (for a .png or .jpg, and where "
+           "an environment has no such shape, unless an option such as --to asks for an environment)");
+    a.text("--layer", "NAME", w.layer, "the layer or channel of an OpenEXR picture (the picture itself)");
     add_environment_options(a, w.environment);
     a.text("--from", "NAME", w.environment.projection, "the same as --projection");
     add_common_options(a, w.common);
@@ -166,10 +181,13 @@ void print_text(const ConvertWords& w, const Conversion& made, const WrittenPict
 }
 
 Result<void> check(ConvertWords& w) {
-    if (w.files.empty())
-        return Error{"is missing", "OUT", "Say what to convert and where to: domelight convert IN OUT."};
-    w.output.file = w.files.back();
-    w.files.pop_back();
+    if (w.output.file.empty() && w.files.empty())
+        return Error{"is missing", "--output", "Say what to convert and where to: domelight convert IN -o OUT."};
+    if (w.output.file.empty()) {
+        w.output.file = w.files.back();
+        w.files.pop_back();
+    }
+    if (auto ok = check_display_options(w.display); !ok) return ok;
     if (w.size && (*w.size < 1 || *w.size > 32768))
         return Error{fmt::format("{} is not from 1 to 32768", *w.size), "--size", ""};
     if (w.to.empty()) {
@@ -177,6 +195,60 @@ Result<void> check(ConvertWords& w) {
         w.to = f.ends_with(".ktx2") || f.ends_with(".ktx") || f.ends_with(".dds") ? "cube" : "latlong";
     }
     return {};
+}
+
+/// The first of the given options that needs an environment, and so does not go with a picture; empty: none was given.
+std::string environment_option(const Arguments& a) {
+    for (const char* option : {"--to", "--size", "--sharp", "--layout", "--rotate", "--mirror", "--projection",
+                               "--latlong", "--rotate-y-deg", "--up", "--from"})
+        if (a.given(option)) return option;
+    return "";
+}
+
+/// Whether the input is converted as a picture.
+Result<bool> wants_picture(const ConvertWords& w, const Arguments& a) {
+    const std::string other = environment_option(a);
+    for (const auto& [option, given] : {std::pair{"--picture", w.picture}, {"--layer", !w.layer.empty()}}) {
+        if (!given) continue;
+        if (w.files.size() != 1)
+            return Error{fmt::format("goes with one picture, not with {} files", w.files.size()), option, ""};
+        if (!other.empty()) return Error{"keeps every pixel where it is, and does not go with " + other, option, ""};
+        return true;
+    }
+    if (w.files.size() != 1 || !other.empty()) return false;
+    const std::string extension = lower_case_extension(w.output.file);
+    if (is_screen_picture(w.output.file)) return may_be_a_picture(w.files[0]);
+    return (extension == ".exr" || extension == ".hdr") && holds_a_picture(w.files[0]);
+}
+
+int run_picture(const ConvertWords& w) {
+    PictureConversion conversion;
+    conversion.input = w.files[0];
+    conversion.output = w.output.file;
+    conversion.layer = w.layer;
+    conversion.decode = w.environment.decode;
+    conversion.encoding = w.output.encoding == "srgb" && is_screen_picture(w.output.file) ? "" : w.output.encoding;
+    conversion.exposure = w.environment.exposure;
+    conversion.display = w.display;
+    if (auto ok = check_picture_output(conversion); !ok) return print_error(ok.error(), exit_usage);
+    return convert_picture(conversion, w.common);
+}
+
+/// How the target's pixels are shown on a screen. Each counts by its solid angle for the exposure.
+Display display_for(const ConvertWords& w, const Environment& environment, const ProjectedImage& image) {
+    const bool for_screen = environment.format == "PNG" || environment.format == "JPEG";
+    return display_of(w.display, for_screen, [&]() -> double {
+        if (w.environment.exposure != 0) return 0;
+        ImageF weights(image.width(), image.height() * image.projection.charts(), 1);
+        std::vector<double> row(std::size_t(image.width()));
+        for (int y = 0; y < weights.height(); ++y) {
+            image.projection.texel_solid_angles(y % image.height(), image.width(), image.height(), row);
+            // Times the number of texels, so that the weights do not get small with the picture's size.
+            for (int x = 0; x < image.width(); ++x)
+                *weights.at(x, y) = float(row[std::size_t(x)] * image.width() * image.height());
+        }
+        return automatic_ev(image.pixels, weights);
+    });
 }
 
 }  // namespace
@@ -187,15 +259,19 @@ int run_convert(const std::vector<std::string>& words) {
         "convert",
         "Converts an environment to another projection, convention, orientation, size or format. Light is kept: "
         "texels are averaged by solid angle, and the radiant power before and after is printed. Without IN, the "
-        "built-in sky is converted.",
-        {"domelight convert studio.hdr studio_cube.hdr --to cube --layout faces --size 32",
-         "domelight convert studio.hdr studio_usd.exr --to latlong/usd --exposure 1",
-         "domelight convert studio.hdr ball.hdr --to mirror-ball/fov=20 --size 64",
-         "domelight convert ball.hdr studio_again.hdr --from mirror-ball/fov=20",
-         "domelight convert studio.hdr studio.ktx2 --rotate 0,0,1,90 --mirror x --encoding rgb9e5"});
+        "built-in sky is converted. Any other picture (a render, a layer of one) becomes a .png or .jpg with a tone map.",
+        {"domelight convert studio.hdr -o studio_cube.hdr --to cube --layout faces --size 32",
+         "domelight convert studio.hdr -o studio_usd.exr --to latlong/usd --exposure 1",
+         "domelight convert studio.hdr -o ball.hdr --to mirror-ball/fov=20 --size 64",
+         "domelight convert ball.hdr -o studio_again.hdr --from mirror-ball/fov=20",
+         "domelight convert studio.hdr -o studio.ktx2 --rotate 0,0,1,90 --mirror x --encoding rgb9e5",
+         "domelight convert studio.hdr -o studio.jpg --tonemap neutral --ev -1"});
     declare(arguments, w);
     if (const auto code = begin_command(arguments, words, w.common)) return *code;
     if (auto ok = check(w); !ok) return print_error(ok.error(), exit_usage);
+    const auto picture = wants_picture(w, arguments);
+    if (!picture) return print_error(picture.error(), exit_usage);
+    if (*picture) return run_picture(w);
     const auto target = projection_from_name(w.to);
     if (!target) return print_error({target.error().what, "--to", target.error().hint}, exit_usage);
     if (auto ok = check_output(w.output, *target); !ok) return print_error(ok.error(), exit_usage);
@@ -212,10 +288,12 @@ int run_convert(const std::vector<std::string>& words) {
     ConvertOptions options{*turn, size->first, size->second, w.sharp, threads, bar.callback()};
     const auto made = convert(*environment, *target, options);
     if (!made) return print_error(made.error());
+    if (is_screen_picture(w.output.file)) w.output.display = display_for(w, *environment, made->image);
     const auto written = write_projected(made->image, w.output);
     if (!written) return print_error(written.error());
     print_warnings(environment->report().warnings, w.common);
-    if (written->clips) print_warnings({w.output.file + ": 8 bits clip at 1; write .hdr or .exr for light"}, w.common);
+    if (is_screen_picture(w.output.file))
+        print_warnings({w.output.file + " is for the eye: write .hdr or .exr for light"}, w.common);
     if (!target->full())
         print_warnings({fmt::format("{} shows {:.0f} % of all directions: the rest is lost", target->name(),
                                     25 * target->shape().coverage() / k_pi)},

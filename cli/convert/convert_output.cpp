@@ -5,8 +5,8 @@
 #include "domelight/io/write_image.h"
 
 #include "cli/console/arguments.h"
-#include "cli/console/eight_bit.h"
 #include "cli/console/output_endings.h"
+#include "preview/screen_picture.h"
 
 #include <fmt/core.h>
 
@@ -87,10 +87,8 @@ Result<void> write_picture(const std::string& file, ImageView<const float> pictu
                            const ConvertOutput& output) {
     const std::string extension = lower_case_extension(file);
     if (extension == ".hdr") return write_hdr(file, picture, output.threads);
-    if (is_screen_picture(file)) {
-        ImageRowSource rows(picture);
-        return write_8bit(file, rows);
-    }
+    if (is_screen_picture(file))
+        return write_screen_picture(file, screen_picture(picture, {}, output.display, output.threads));
     ExrWriteOptions exr;
     exr.half = output.encoding == "half";
     exr.threads = output.threads;
@@ -130,7 +128,6 @@ Result<WrittenPicture> write_projected(const ProjectedImage& image, const Conver
         output.encoding = written.widened ? "float" : "half";
     }
     written.encoding_name = output.encoding;
-    written.clips = is_screen_picture(output.file);
     if (is_texture(extension)) {
         const FilteredMap level = as_level(image);
         std::vector<EncodingReport> reports;

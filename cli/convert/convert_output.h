@@ -1,8 +1,10 @@
 #pragma once
 
-#include "domelight/filtering/resample/reproject.h"
 #include "domelight/base/result.h"
+#include "domelight/filtering/resample/reproject.h"
 #include "domelight/texture/texture.h"
+
+#include "preview/tonemap.h"
 
 #include <optional>
 #include <string>
@@ -15,6 +17,7 @@ struct ConvertOutput {
     std::string file;
     std::string layout;    ///< empty: the format's and projection's own
     std::string encoding;  ///< empty: auto for .exr (half, or float where half would clip), rgba16f for textures
+    Display display;       ///< of .png and .jpg
     int threads = 0;
 };
 
@@ -27,7 +30,6 @@ struct WrittenPicture {
     std::string encoding_name;
     bool widened = false;     ///< `encoding_name` is float, because half would clip
     EncodingReport encoding;  ///< what the encoding clipped; textures and half .exr
-    bool clips = false;       ///< 8 bits: everything above 1
 };
 
 /// Writes the picture, in one file or one a chart (`name_px.hdr`, `name_front.hdr`). Each appears whole or not at all.

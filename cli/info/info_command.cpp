@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/environment_options.h"
+#include "compare/picture_survey.h"
 
 #include <fmt/core.h>
 
@@ -24,6 +25,8 @@ struct InfoWords {
     CommonOptions common;
     std::vector<std::string> inputs;
     EnvironmentOptions environment;
+    bool picture = false;
+    std::string layer;
 };
 
 const char* const k_axes[] = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
@@ -58,7 +61,7 @@ Json environment_json(const std::string& name, const Environment& e, const Envir
             {"projection", e.projection},
             {"width", e.width},
             {"height", e.height},
-            {"range", {s.least, s.largest}},
+            {"range", Json::array({s.least, s.largest})},
             {"mean_radiance", vector_json(s.mean_radiance)},
             {"irradiance", irradiance},
             {"lights", lights},
@@ -111,7 +114,7 @@ int info_environment(const InfoWords& w) {
     return exit_done;
 }
 
-// --- a texture ---
+// --- a picture ---
 
 /// Values of keys may be anything in other tools' files: one line, printable, not too long.
 std::string shown(const std::string& value) {
@@ -119,6 +122,90 @@ std::string shown(const std::string& value) {
     for (const unsigned char c : value.substr(0, 200)) line += c == '\n' ? ' ' : c < 32 || c == 127 ? '?' : char(c);
     return value.size() > 200 ? line + "..." : line;
 }
+
+/// Whether the file is described as a picture: because that was asked for, or because its shape or its layers rule out
+/// an environment. A pipe cannot be read twice, and is taken for an environment.
+bool is_picture(const InfoWords& w, const Arguments& a) {
+    if (w.picture || !w.layer.empty()) return true;
+    for (const char* option : {"--projection", "--latlong", "--rotate-y-deg", "--up"})
+        if (a.given(option)) return false;
+    std::error_code failure;
+    if (!fs::is_regular_file(w.inputs[0], failure)) return false;
+    return is_picture_of_its_own(w.inputs[0]);
+}
+
+/// Names in brackets as `compare --layer` takes them.
+std::vector<std::string> named_layers(const PictureFacts& facts) {
+    std::vector<std::string> names;
+    for (const std::string& layer : facts.layers) names.push_back(layer.empty() ? "(unnamed)" : shown(layer));
+    return names;
+}
+
+void print_picture(const std::string& file, const PictureFacts& facts, const Picture& picture, const PictureSurvey& s) {
+    fmt::print("{}: {}, {} x {}, a picture\n", file, facts.format, picture.rgb.width(), picture.rgb.height());
+    if (!facts.layers.empty()) fmt::print("  layers           {}\n", join(named_layers(facts), ", "));
+    fmt::print("  range            {:.6g} to {:.6g}\n", s.least, s.largest);
+    fmt::print("  mean             {}   (red, green, blue)\n", rgb(s.mean));
+    fmt::print("  exposure         {:+.2f} stops suit a screen\n", s.ev);
+    if (!picture.opacity.empty())
+        fmt::print("  opacity          {:.1f} % of the picture is covered{}\n", 100 * s.coverage,
+                   s.coverage == 1 ? ""
+                   : s.cut_out     ? ", the rest is transparent"
+                                   : ", and the background shows in the rest");
+    if (s.not_a_number + s.infinite + s.negative > 0)
+        fmt::print("  bad pixels       {} not a number, {} infinite, {} negative\n", s.not_a_number, s.infinite,
+                   s.negative);
+    else
+        fmt::print("  bad pixels       none\n");
+    if (picture.rgb.width() == picture.rgb.height())
+        fmt::print(
+            "  environment      where it is one, say which: --projection sphere-map, mirror-ball/fov=DEGREES, "
+            "angular, octahedral, ...\n");
+}
+
+Json picture_json(const std::string& file, const PictureFacts& facts, const Picture& picture, const PictureSurvey& s) {
+    Json json{{"version", version()},
+              {"kind", "picture"},
+              {"file", file},
+              {"format", facts.format},
+              {"width", picture.rgb.width()},
+              {"height", picture.rgb.height()},
+              {"layers", facts.layers},
+              {"channels", facts.channels},
+              {"range", Json::array({s.least, s.largest})},
+              {"mean", vector_json(s.mean)},
+              {"ev", s.ev},
+              {"bad", {{"not_a_number", s.not_a_number}, {"infinite", s.infinite}, {"negative", s.negative}}},
+              {"warnings", picture.warnings}};
+    if (picture.opacity.empty())
+        json["opacity"] = nullptr;
+    else
+        json["opacity"] = {{"coverage", s.coverage}, {"transparent", s.cut_out}};
+    return json;
+}
+
+int info_picture(const InfoWords& w) {
+    const std::string& file = w.inputs[0];
+    const auto facts = read_picture_facts(file);
+    if (!facts) return print_error(facts.error());
+    PictureOptions options;
+    options.layer = w.layer;
+    options.opacity = true;
+    options.decode = w.environment.decode;
+    options.threads = w.common.threads.value_or(0);
+    auto picture = read_picture(file, options);
+    if (!picture) return print_error(picture.error());
+    for (float& v : picture->rgb.pixels()) v *= float(std::exp2(w.environment.exposure));
+    const PictureSurvey survey = survey_picture(*picture);
+    print_warnings(picture->warnings, w.common, file);
+    if (w.common.json)
+        print_document(picture_json(file, *facts, *picture, survey));
+    else
+        print_picture(file, *facts, *picture, survey);
+    return exit_done;
+}
+
+// --- a texture ---
 
 int info_texture(const std::string& file, const InfoWords& w) {
     const auto info = read_texture_info(file);
@@ -234,14 +321,20 @@ bool is_texture(const fs::path& file) {
 
 int run_info(const std::vector<std::string>& words) {
     InfoWords w;
-    Arguments arguments("info",
-                        "Describes an environment (size, projection, range, mean radiance, irradiance by direction, "
-                        "brightest lights, bad texels), "
-                        "a texture (KTX2, KTX, DDS, from any tool), or the folder of a bake.",
-                        {"domelight info studio.hdr", "domelight info studio.hdr --json", "domelight info out",
-                         "domelight info out/specular.ktx2"});
+    Arguments arguments(
+        "info",
+        "Describes an environment (size, projection, range, mean radiance, irradiance by direction, "
+        "brightest lights, bad texels), any other picture (layers, range, exposure, opacity, bad pixels), "
+        "a texture (KTX2, KTX, DDS, from any tool), or the folder of a bake.",
+        {"domelight info studio.hdr", "domelight info studio.hdr --json", "domelight info out",
+         "domelight info out/specular.ktx2"});
     arguments.positional("ENV|FILE|FOLDER", w.inputs,
-                         "an environment, a texture, or a bake; without one, the built-in sky");
+                         "an environment, any other picture, a texture, or a bake; without one, the built-in sky");
+    arguments.group("Pictures");
+    arguments.flag(
+        "--picture", w.picture,
+        "describe it as a picture, not as an environment (where an environment has no such shape or layers)");
+    arguments.text("--layer", "NAME", w.layer, "the layer or channel of an OpenEXR picture (the picture itself)");
     add_environment_options(arguments, w.environment);
     add_common_options(arguments, w.common);
     if (const auto code = begin_command(arguments, words, w.common)) return *code;
@@ -251,6 +344,10 @@ int run_info(const std::vector<std::string>& words) {
         if (fs::exists(input / "manifest.json", failure)) return info_bake(input, w);
         if (input.filename() == "manifest.json" && fs::exists(input, failure)) return info_bake(input.parent_path(), w);
         if (is_texture(input)) return info_texture(input.string(), w);
+        if (is_picture(w, arguments)) return info_picture(w);
+    } else if (w.picture || !w.layer.empty()) {
+        return print_error({fmt::format("goes with one picture, not with {} files", w.inputs.size()),
+                            w.picture ? "--picture" : "--layer", ""});
     } else if (w.inputs.size() > 1 && !are_cube_faces(w.inputs) && w.environment.projection != "cube-faces") {
         return print_error({"more than one input, and not the six faces of a cube", "", "Ask for one at a time."},
                            exit_usage);

@@ -1,6 +1,7 @@
 #include "cli/render/render_job.h"
 
 #include "cli/render/render_outputs.h"
+#include "preview/exposure_meter.h"
 
 #include <fmt/core.h>
 
@@ -43,7 +44,7 @@ Result<FinishedPicture> finish(const RenderWords& w, const RayScene& scene, cons
     const RenderOptions tracing = tracing_options(w, options);
     if (std::isnan(ev)) {
         ExposureMeter meter;
-        meter.add(out.result, tracing.background != Background::transparent);
+        meter.add(out.result.radiance, out.result.opacity, tracing.background == Background::transparent);
         out.ev = meter.ev();
     }
     if (!w.shadow_catcher) return out;

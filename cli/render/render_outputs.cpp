@@ -1,10 +1,9 @@
 #include "cli/render/render_outputs.h"
 
-#include "domelight/image/colour.h"
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
-#include "preview/tonemap.h"
+#include "preview/screen_picture.h"
 
 #include <fmt/core.h>
 
@@ -13,68 +12,11 @@
 
 namespace domelight::cli {
 
-void ExposureMeter::add(const RenderResult& r, bool background_shows) {
-    for (int y = 0; y < r.radiance.height(); ++y)
-        for (int x = 0; x < r.radiance.width(); ++x) {
-            const double opacity = *r.opacity.at(x, y), shown = luminance(r.radiance.at(x, y));
-            if (!std::isfinite(shown)) continue;
-            // Behind a part of the pixel nothing shows, so the rest of it shone the brighter.
-            if (opacity > 0)
-                surfaces_.push_back({background_shows ? shown : shown / opacity, opacity});
-            else
-                background_.push_back({shown, 1});
-        }
-    pixels_ += double(r.radiance.width()) * r.radiance.height();
-}
-
-double ExposureMeter::mean(const std::vector<Shown>& shown) {
-    double sum = 0, weights = 0;
-    for (const Shown& s : shown) sum += s.weight * s.luminance, weights += s.weight;
-    return weights > 0 ? sum / weights : 0;
-}
-
-/// The luminance that `part` of what is brighter than `darkest` lies below; 0 where nothing is brighter.
-double ExposureMeter::quantile(std::vector<Shown> shown, double part, double darkest) {
-    std::erase_if(shown, [&](const Shown& s) { return !(s.luminance > darkest); });
-    if (shown.empty()) return 0;
-    std::ranges::sort(shown, {}, &Shown::luminance);
-    double weights = 0, below = 0;
-    for (const Shown& s : shown) weights += s.weight;
-    for (const Shown& s : shown)
-        if ((below += s.weight) >= part * weights) return s.luminance;
-    return shown.back().luminance;
-}
-
-double ExposureMeter::ev() const {
-    double covered = 0;
-    for (const Shown& s : surfaces_) covered += s.weight;
-    const bool any = covered > 1e-4 * pixels_;
-    const std::vector<Shown>& shown = any ? surfaces_ : background_;
-    const double average = mean(shown);
-    if (!(average > 0)) return 0;
-    const double floor = 1e-3 * average;
-    double sum = 0, weights = 0;
-    for (const Shown& s : shown) sum += s.weight * std::log(std::max(floor, s.luminance)), weights += s.weight;
-    double exposure = 0.18 / std::exp(sum / weights);
-    constexpr double most_shown = 4;
-    if (const double bright = quantile(shown, 0.95, floor); bright > 0)
-        exposure = std::min(exposure, most_shown / bright);
-    if (const double behind = quantile(background_, 0.5, 0); any && behind > 0)
-        exposure = std::min(exposure, most_shown / behind);
-    return std::log2(exposure);
-}
-
 std::string exposure_text(const RenderWords& w, double ev) {
     return std::ranges::any_of(w.outputs, is_screen_picture) ? fmt::format(", exposure {:+.2f} EV", ev) : "";
 }
 
 namespace {
-
-Tonemap tonemap_of(const std::string& name) {
-    for (const TonemapName& t : tonemap_names())
-        if (name == t.name) return t.method;
-    return Tonemap::agx;
-}
 
 /// The radiance with the colour behind it, for files that hold radiance.
 ImageF over_colour(const RenderResult& r, const Vec3f& colour) {
@@ -86,6 +28,22 @@ ImageF over_colour(const RenderResult& r, const Vec3f& colour) {
             q[0] = p[0] + rest * colour.x, q[1] = p[1] + rest * colour.y, q[2] = p[2] + rest * colour.z;
         }
     return out;
+}
+
+/// As a display shows it, before a colour that exposure and tone map leave as it is.
+Image<std::uint8_t> over_display_colour(const RenderResult& r, const Vec3f& colour, const Display& display) {
+    Image<std::uint8_t> pixels(r.radiance.width(), r.radiance.height(), 3);
+    for (int y = 0; y < pixels.height(); ++y)
+        for (int x = 0; x < pixels.width(); ++x) {
+            const float *p = r.radiance.at(x, y), opacity = std::clamp(*r.opacity.at(x, y), 0.f, 1.f);
+            // The radiance is that of the covered part of the pixel only.
+            Vec3f c{p[0], p[1], p[2]};
+            if (opacity > 0) c = c / opacity;
+            const Vec3f shown = tonemap(c * display.exposure, display.method) * opacity + colour * (1 - opacity);
+            const float channels[] = {shown.x, shown.y, shown.z};
+            for (int i = 0; i < 3; ++i) pixels.at(x, y)[i] = to_byte(display.curve(std::clamp(channels[i], 0.f, 1.f)));
+        }
+    return pixels;
 }
 
 Result<void> write_layers(const std::string& file, const RenderResult& r, ImageView<const float> radiance,
@@ -104,30 +62,10 @@ Result<void> write_layers(const std::string& file, const RenderResult& r, ImageV
 }  // namespace
 
 Image<std::uint8_t> display_picture(const RenderResult& r, const RenderWords& w, double ev) {
-    const int width = r.radiance.width(), height = r.radiance.height();
-    const bool transparent = w.backdrop == Background::transparent, colour = w.backdrop == Background::colour;
-    Image<std::uint8_t> pixels(width, height, transparent ? 4 : 3);
-    const Display display{tonemap_of(w.tonemap), float(std::exp2(ev))};
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const float *p = r.radiance.at(x, y), opacity = std::clamp(*r.opacity.at(x, y), 0.f, 1.f);
-            Vec3f c{p[0], p[1], p[2]};
-            // What is behind is not in the radiance, so a part of a pixel is taken for the whole: PNG's colours are not
-            // multiplied with their opacity.
-            if ((transparent || colour) && opacity > 0) c = c / opacity;
-            std::uint8_t* q = pixels.at(x, y);
-            if (colour) {
-                const Vec3f shown =
-                    tonemap(c * display.exposure, display.method) * opacity + w.backdrop_colour * (1 - opacity);
-                const float channels[] = {shown.x, shown.y, shown.z};
-                for (int i = 0; i < 3; ++i) q[i] = to_byte(display.curve(std::clamp(channels[i], 0.f, 1.f)));
-                continue;
-            }
-            const auto rgb = display.rgb8(c);
-            std::copy(rgb.begin(), rgb.end(), q);
-            if (transparent) q[3] = to_byte(opacity);
-        }
-    return pixels;
+    const Display display{tonemap_from_name(w.tonemap).value_or(Tonemap::agx), float(std::exp2(ev))};
+    if (w.backdrop == Background::colour) return over_display_colour(r, w.backdrop_colour, display);
+    const bool transparent = w.backdrop == Background::transparent;
+    return screen_picture(r.radiance, transparent ? r.opacity.view() : ImageView<const float>(), display, w.threads());
 }
 
 Result<void> write_picture(const std::string& file, const FinishedPicture& picture, const Scene& scene,

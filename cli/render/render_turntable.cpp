@@ -9,6 +9,7 @@
 #include "cli/render/render_outputs.h"
 #include "io/file/file_reader.h"
 #include "io/picture/texture_image.h"
+#include "preview/exposure_meter.h"
 
 #include <fmt/core.h>
 
@@ -70,7 +71,7 @@ class Turntable {
         for (int i = 0; i < views; ++i) {
             const auto picture = draw_at(words, o, double(i) / views, words_.ev);
             if (!picture) return picture.error();
-            meter.add(picture->result, background_shows);
+            meter.add(picture->result.radiance, picture->result.opacity, !background_shows);
         }
         return meter.ev();
     }

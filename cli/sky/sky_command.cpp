@@ -6,8 +6,9 @@
 #include "base/json.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
-#include "cli/console/eight_bit.h"
+#include "cli/console/display_options.h"
 #include "cli/console/output_endings.h"
+#include "preview/screen_picture.h"
 
 #include <fmt/core.h>
 
@@ -23,14 +24,16 @@ struct SkyWords {
     std::optional<int> height;
     SkyOptions sky;
     bool axes = false, no_sun_disc = false;
+    DisplayWords display;
 };
 
 void declare(Arguments& a, SkyWords& w) {
     a.group("The picture");
-    a.text("-o,--output", "FILE", w.output, "the output: .hdr, .exr, or .png or .jpg (8 bits, not HDR)");
+    a.text("-o,--output", "FILE", w.output, "the output: .hdr, .exr, or .png or .jpg for viewing");
     a.integer("--height", "N", w.height, "rows of the lat-long image, which is twice as wide (512)");
     a.choice("--exr", w.encoding, {"auto", "half", "float"},
              "type of the channels of an .exr; half clips the sun at 65504, so auto is float if the sun is up (auto)");
+    add_display_options(a, w.display);
     a.flag("--axes", w.axes,
            "the labelled six-axis environment instead of a sky: it reveals every mistake in orientation");
     a.group("The sky");
@@ -50,6 +53,7 @@ Result<void> check(const SkyWords& w) {
     };
     if (w.output.empty()) return Error{"is missing", "--output", "Say where the picture goes: -o sky.hdr."};
     if (auto ok = check_ending("--output", w.output, light_and_screen_endings()); !ok) return ok;
+    if (auto ok = check_display_options(w.display); !ok) return ok;
     if (auto ok = within("--height", w.height.value_or(512), 1, 32768); !ok) return ok;
     if (auto ok = within("--sun-elevation-deg", w.sky.sun_elevation_deg, -18, 90); !ok) return ok;
     if (auto ok = within("--sun-azimuth-deg", w.sky.sun_azimuth_deg, -3600, 3600); !ok) return ok;
@@ -110,8 +114,16 @@ Result<std::string> choose_channels(const SkyWords& w) {
     return std::string(*fits ? "half" : "float");
 }
 
+/// The axes have the colours of a screen and are shown as they are.
+Result<void> write_for_screen(const SkyWords& w, WatchedRows& rows) {
+    const auto image = read_latlong(rows);
+    if (!image) return image.error();
+    const Display display = display_of(w.display, w.axes, [&] { return automatic_ev(image->view()); });
+    return write_screen_picture(w.output, screen_picture(*image, {}, display, w.sky.threads));
+}
+
 Result<void> write(const SkyWords& w, const std::string& channels, WatchedRows& rows) {
-    if (is_screen_picture(w.output)) return write_8bit(w.output, rows);
+    if (is_screen_picture(w.output)) return write_for_screen(w, rows);
     if (lower_case_extension(w.output) == ".hdr") return write_hdr(w.output, rows);
     ExrWriteOptions exr;
     exr.half = channels == "half";
@@ -164,7 +176,7 @@ int run_sky(const std::vector<std::string>& words) {
     WatchedRows rows(*source->rows, bar.callback());
     if (auto ok = write(w, *channels, rows); !ok) return print_error(ok.error().at(w.output));
     if (is_screen_picture(w.output) && !w.axes)
-        print_warnings({w.output + ": 8 bits clip the sky at 1; write .hdr or .exr for light"}, w.common);
+        print_warnings({w.output + " is for the eye: write .hdr or .exr for light"}, w.common);
     if (is_exr(w) && w.encoding == "half" && rows.largest() > 65504)
         print_warnings({fmt::format("{}: half floats clip the sun ({:.4g}) at 65504; --exr float keeps it", w.output,
                                     rows.largest())},

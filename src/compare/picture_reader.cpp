@@ -1,15 +1,19 @@
 #include "compare/picture_reader.h"
 
 #include "domelight/base/parallel.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/texture/texture.h"
 
+#include "io/environment/cube_input.h"
 #include "io/environment/cube_texture_reader.h"
 #include "io/exr/exr_layers.h"
 #include "io/image_reader.h"
+#include "io/picture/texture_image.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -103,6 +107,41 @@ Result<void> read_objects(ExrLayers& layers, Picture& picture) {
     return {};
 }
 
+/// The channel of opacity that goes with a layer's colour; empty: none. `layer` as in ExrLayers::colour_of, and empty
+/// for the unnamed one, else the first that has an opacity. A layer without one of its own has the whole picture's.
+std::string opacity_channel(const ExrLayers& layers, const std::string& layer) {
+    if (layer.empty() && layers.has("A")) return "A";
+    for (const std::string& name : layers.layers())
+        if ((layer.empty() || name == layer || name.ends_with("." + layer)) && layers.has(name + ".A"))
+            return name + ".A";
+    return layers.has("A") ? "A" : "";
+}
+
+Result<void> read_exr_opacity(ExrLayers& layers, const std::string& layer, Picture& picture) {
+    const std::string channel = opacity_channel(layers, layer);
+    if (channel.empty()) return {};
+    auto opacity = layers.read(std::vector<std::string>{channel});
+    if (!opacity) return opacity.error();
+    picture.opacity = std::move(*opacity);
+    return {};
+}
+
+/// A PNG's colours are not multiplied with its opacity: this multiplies them, as OpenEXR files have it.
+Result<void> read_png_opacity(const FileBytes& bytes, Picture& picture) {
+    const auto texels = decode_png_texture(bytes.bytes());
+    if (!texels) return texels.error();
+    ImageF opacity(texels->width, texels->height, 1);
+    bool opaque = true;
+    for (std::size_t i = 0; i < opacity.pixels().size(); ++i) {
+        const std::uint8_t code = texels->rgba[4 * i + 3];
+        opaque = opaque && code == 255;
+        opacity.pixels()[i] = float(code) / 255;
+        for (std::size_t c = 0; c < 3; ++c) picture.rgb.pixels()[3 * i + c] *= float(code) / 255;
+    }
+    if (!opaque) picture.opacity = std::move(opacity);
+    return {};
+}
+
 Result<Picture> read_exr_picture(std::shared_ptr<const FileBytes> bytes, const PictureOptions& options,
                                  const ReaderOptions& reader) {
     auto layers = open_exr_layers(bytes, reader);
@@ -126,6 +165,8 @@ Result<Picture> read_exr_picture(std::shared_ptr<const FileBytes> bytes, const P
     const bool same = (*layers)->width() == picture.rgb.width() && (*layers)->height() == picture.rgb.height();
     if (same && options.layer.empty())
         if (auto ok = read_variance(**layers, options, picture); !ok) return ok.error();
+    if (same && options.opacity)
+        if (auto ok = read_exr_opacity(**layers, options.layer, picture); !ok) return ok.error();
     if (same)
         if (auto ok = read_objects(**layers, picture); !ok) return ok.error();
     return picture;
@@ -146,11 +187,101 @@ Result<Picture> read_picture(const std::filesystem::path& file, const PictureOpt
     ReaderOptions reader;
     reader.max_bytes = options.max_bytes;
     reader.threads = options.threads;
+    reader.decode = options.decode;
     if (!is_exr(**bytes) && !options.layer.empty())
         return Error{"only OpenEXR files have layers", file.string(), "Leave out --layer."};
     auto picture = is_exr(**bytes) ? read_exr_picture(*bytes, options, reader) : read_plain(*bytes, reader);
     if (!picture) return picture.error().at(file.string());
+    if (options.opacity && picture->format == "PNG")
+        if (auto ok = read_png_opacity(**bytes, *picture); !ok) return ok.error().at(file.string());
     return picture;
+}
+
+namespace {
+
+/// Whether a cell of a cross holds one colour, but for the noise that JPEG leaves at its rim.
+bool is_empty_cell(const ImageF& rgb, int column, int row, int n) {
+    const int margin = std::min(8, n / 4);
+    const float* first = rgb.at(column * n + margin, row * n + margin);
+    for (int y = row * n + margin; y < (row + 1) * n - margin; ++y)
+        for (int x = column * n + margin; x < (column + 1) * n - margin; ++x)
+            for (int c = 0; c < 3; ++c)
+                if (!(std::abs(rgb.at(x, y)[c] - first[c]) <= 0.01f * std::max(1.0f, std::abs(first[c])))) return false;
+    return true;
+}
+
+/// Whether the cells that a cross of cube faces leaves unused are empty, as they are in a cross.
+bool is_cross(const ImageF& rgb, CubeLayout layout) {
+    using Cells = std::vector<std::array<int, 2>>;  // column, row
+    const bool horizontal = layout == CubeLayout::horizontal_cross;
+    const Cells unused = horizontal ? Cells{{0, 0}, {2, 0}, {3, 0}, {0, 2}, {2, 2}, {3, 2}}
+                                    : Cells{{0, 0}, {2, 0}, {0, 2}, {2, 2}, {0, 3}, {2, 3}};
+    const int n = rgb.width() / (horizontal ? 4 : 3);
+    return std::all_of(unused.begin(), unused.end(),
+                       [&](const auto& cell) { return is_empty_cell(rgb, cell[0], cell[1], n); });
+}
+
+}  // namespace
+
+bool Picture::cut_out() const {
+    for (std::size_t i = 0; i < opacity.pixels().size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c)
+            if (opacity.pixels()[i] <= 0 && rgb.pixels()[3 * i + c] != 0) return false;
+    return !opacity.empty();
+}
+
+namespace {
+
+Result<PictureFacts> facts_of(std::shared_ptr<const FileBytes> bytes) {
+    PictureFacts facts;
+    const auto reader = open_image_reader(bytes, {});
+    if (reader) {
+        const ImageFacts& head = (*reader)->facts();
+        facts.format = head.format;
+        facts.width = head.width;
+        facts.height = head.height;
+        facts.environment = head.envmap != ImageFacts::Envmap::none;
+    }
+    if (!is_exr(*bytes)) return reader ? Result<PictureFacts>(facts) : reader.error();
+    const auto layers = open_exr_layers(bytes, {});
+    if (!layers) return reader ? Result<PictureFacts>(facts) : layers.error();
+    facts.layers = (*layers)->layers();
+    facts.channels = (*layers)->channels();
+    if (reader) return facts;
+    facts.format = "OpenEXR";  // without colour in it: numbers such as depth alone
+    facts.width = (*layers)->width();
+    facts.height = (*layers)->height();
+    return facts;
+}
+
+}  // namespace
+
+Result<PictureFacts> read_picture_facts(const std::filesystem::path& file) {
+    const auto bytes = FileBytes::open(file, std::int64_t(1) << 30);
+    if (!bytes) return bytes.error().at(file.string());
+    if (const std::string container = texture_container((*bytes)->bytes()); !container.empty()) {
+        const auto info = read_texture_info(file);
+        if (!info) return info.error().at(file.string());
+        PictureFacts facts;
+        facts.format = container;
+        facts.width = info->width;
+        facts.height = info->height;
+        facts.cube = info->faces == 6;
+        return facts;
+    }
+    auto facts = facts_of(*bytes);
+    if (!facts) return facts.error().at(file.string());
+    return facts;
+}
+
+bool is_picture_of_its_own(const std::filesystem::path& file) {
+    const auto facts = read_picture_facts(file);
+    if (!facts || facts->environment || facts->cube) return false;
+    if (facts->layers.size() > 1 || !has_environment_shape(facts->width, facts->height)) return true;
+    const auto layout = cube_layout_of_shape(facts->width, facts->height);
+    if (layout != CubeLayout::horizontal_cross && layout != CubeLayout::vertical_cross) return false;
+    const auto picture = read_picture(file);
+    return picture && !is_cross(picture->rgb, *layout);
 }
 
 Result<ImageF> read_number_image(const std::filesystem::path& file, const std::string& name) {

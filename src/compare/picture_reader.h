@@ -21,7 +21,14 @@ struct Picture {
                      ///< "object"
     std::vector<std::string>
         object_names;  ///< of the objects from 1 on, by the attribute "objects", one a line; may be short
+    /// One channel, the OpenEXR channel A or a PNG's alpha; empty: none, or not asked for (PictureOptions::opacity).
+    /// `rgb` is multiplied with it where cut_out().
+    ImageF opacity;
     std::vector<std::string> warnings;
+
+    /// Whether the opacity cuts the picture out: nothing shines where it is 0. Renderers store the opacity of their
+    /// objects also in pictures that show a background, and there it is not.
+    bool cut_out() const;
 };
 
 struct PictureOptions {
@@ -30,9 +37,27 @@ struct PictureOptions {
     /// The meaning of a file's layer "variance": the variance of the pixel's value, or that of one sample, to be
     /// divided by the channel "samples".
     std::string variance = "pixel";  ///< pixel | sample
+    bool opacity = false;            ///< read it where there is one
+    std::string decode = "auto";     ///< PNG and JPEG: see EnvironmentOptions
     std::int64_t max_bytes = std::int64_t(1) << 30;
     int threads = 0;
 };
+
+/// What a file says of the picture in it.
+struct PictureFacts {
+    std::string format;  ///< "OpenEXR", "PNG", "KTX2", ...
+    int width = 0, height = 0;
+    std::vector<std::string> layers;    ///< OpenEXR: "" for the unnamed one, "direct", ...
+    std::vector<std::string> channels;  ///< OpenEXR: all that are not deep
+    bool environment = false;           ///< OpenEXR's attribute envmap is set
+    bool cube = false;                  ///< a texture with six faces
+};
+/// From the head of the file. Errors as read_picture's.
+Result<PictureFacts> read_picture_facts(const std::filesystem::path& file);
+/// Whether the file holds a picture rather than an environment: its shape is no environment's (open_environment.h), it
+/// has several layers, as renderers write them, or it is 4:3 or 3:4 with something where a cross of cube faces is
+/// empty. False where the file cannot be read.
+bool is_picture_of_its_own(const std::filesystem::path& file);
 
 /// Reads OpenEXR, Radiance HDR, PNG, JPEG, or a level of a KTX2, KTX or DDS texture (2D or cube). Errors name the file.
 Result<Picture> read_picture(const std::filesystem::path& file, const PictureOptions& options = {});

@@ -81,6 +81,12 @@ std::span<const TonemapName> tonemap_names() {
     return names;
 }
 
+std::optional<Tonemap> tonemap_from_name(std::string_view name) {
+    for (const TonemapName& t : tonemap_names())
+        if (name == t.name) return t.method;
+    return std::nullopt;
+}
+
 float srgb_encode(float v) {
     return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
 }

@@ -1,13 +1,15 @@
 #pragma once
 
+#include "domelight/base/vec.h"
 #include "domelight/image/colour.h"
 #include "domelight/image/image.h"
-#include "domelight/base/vec.h"
 
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string_view>
 
 namespace domelight {
 
@@ -32,6 +34,7 @@ struct TonemapName {
     Tonemap method;
 };
 std::span<const TonemapName> tonemap_names();
+std::optional<Tonemap> tonemap_from_name(std::string_view name);
 
 /// Tone maps linear Rec. 709 (already exposed); the result is display-linear Rec. 709 in 0..1. NaN gives 0.
 Vec3f tonemap(const Vec3f& rgb, Tonemap method);

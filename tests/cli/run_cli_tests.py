@@ -129,7 +129,12 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["bake", "studio.hdr", "-o", "o", "--latlong", "sideways"], "materialx"),
         (["bake", "studio.hdr", "-o", "o", "--projection", "fisheye"], "cube-cross"),
         (["bake", "studio.hdr", "-o", "o", "--up", "w"], "--up"),
-        (["convert"], "IN OUT"),
+        (["convert"], "IN -o OUT"),
+        (["convert", "studio.hdr", "-o", "out.png", "--picture", "--to", "cube"], "does not go with --to"),
+        (["convert", "studio.hdr", "-o", "out.ktx2", "--picture"], ".hdr, .exr, .png, .jpg, .jpeg"),
+        (["convert", "studio.hdr", "-o", "out.png", "--tonemap", "film"], "agx, agx-punchy, neutral"),
+        (["convert", "studio.hdr", "-o", "out.png", "--ev", "200"], "from -100 to 100"),
+        (["info", "studio.hdr", "evening.hdr", "--picture"], "one picture"),
         (["convert", "studio.hdr", "out.tga"], ".hdr, .exr, .png, .jpg, .jpeg, .ktx2"),
         (["convert", "studio.hdr", "out.hdr", "--to", "mercator"], "sphere-map, mirror-ball, angular"),
         (["convert", "studio.hdr", "out.hdr", "--to", "latlong/sideways"], "materialx"),
@@ -812,8 +817,9 @@ def test_a_mirror_ball_goes_through_every_command(folder):
     run("bake", "ball.hdr", "-o", "out", "--projection", "sphere-map", *SMALL, folder=folder)
     assert manifest_of(folder / "out")["source"]["projection"] == "sphere-map"
     run("sample", "ball.hdr", "-n", "10", "--projection", "sphere-map", folder=folder)
-    refused = run("info", "ball.hdr", folder=folder, code=1).stderr
+    refused = run("bake", "ball.hdr", "-o", "none", folder=folder, code=1).stderr
     assert "--projection sphere-map" in refused
+    assert "--projection sphere-map" in run("info", "ball.hdr", folder=folder).stdout
     assert "must be square" in run("info", "axes.hdr", "--projection", "angular", folder=folder, code=1).stderr
 
 
@@ -923,7 +929,7 @@ def matte_light(scene, *words, folder):
     """The radiance that a matte square about the origin shows from above, without what other surfaces send to it."""
     view = ["--width", "32", "--height", "16", "--spp", "256", "--bounces", "0", "--camera-position", "0,1,0.001", "--fov-deg", "1"]
     run("render", scene, "-o", "matte.exr", *view, *words, "--quiet", folder=folder)
-    return json.loads(run("info", "matte.exr", "--json", folder=folder).stdout)["mean_radiance"]
+    return json.loads(run("info", "matte.exr", "--projection", "latlong", "--json", folder=folder).stdout)["mean_radiance"]
 
 
 def same_light(a, b, tolerance=0.01):
@@ -1290,6 +1296,47 @@ def test_pictures_for_a_screen_may_be_jpeg(folder):
     assert (folder / "r.webp").exists()
     said = json.loads(run("info", "axes.jpeg", "--json", folder=folder).stdout)
     assert (said["format"], said["width"], said["height"]) == ("JPEG", 64, 32)
+
+
+def test_convert_shows_a_render_as_render_does(folder):
+    run("render", "ball", "-o", "r.exr,r.png", *TINY, "--background", "transparent", folder=folder)
+    run("convert", "r.exr", "-o", "c.png", folder=folder)
+    width, height, channels, shown = png_of(folder / "c.png")
+    assert (width, height, channels) == (16, 12, 4)
+    assert max(abs(a - b) for a, b in zip(shown, png_of(folder / "r.png")[3])) <= 1
+    run("convert", "r.exr", "darker.png", "--tonemap", "neutral", "--ev", "-20", folder=folder)
+    assert max(png_of(folder / "darker.png")[3][0::4]) == 0
+    said = run("convert", "r.exr", "-o", "c.jpg", folder=folder)
+    assert "JPEG holds no opacity" in said.stderr and "16 x 12" in said.stdout, said
+    assert (folder / "c.jpg").read_bytes().startswith(b"\xff\xd8\xff")
+    layer = json.loads(run("convert", "r.exr", "-o", "l.png", "--layer", "direct", "--json", folder=folder).stdout)
+    assert (layer["source"]["layer"], layer["tonemap"], layer["projection"]) == ("direct", "agx", None), layer
+    assert "direct" in run("convert", "r.exr", "-o", "l.png", "--layer", "gloss", folder=folder, code=1).stderr
+    # What was made for a screen stays as it is, whatever its shape.
+    run("convert", "r.png", "-o", "again.png", folder=folder)
+    assert max(abs(a - b) for a, b in zip(png_of(folder / "again.png")[3], png_of(folder / "r.png")[3]) if b) <= 1
+    # An environment is shown as it lies, and light from all around keeps its own way.
+    run("convert", "studio.hdr", "-o", "studio.jpg", folder=folder)
+    assert json.loads(run("convert", "studio.hdr", "-o", "s.png", "--to", "angular", "--json", folder=folder).stdout)["projection"]
+
+
+def test_info_tells_of_any_picture(folder):
+    run("render", "ball", "-o", "r.exr", *TINY, folder=folder)
+    said = json.loads(run("info", "r.exr", "--json", folder=folder).stdout)
+    assert (said["kind"], said["width"], said["height"], said["format"]) == ("picture", 16, 12, "OpenEXR"), said
+    assert {"", "direct", "albedo"} <= set(said["layers"]) and 0 < said["opacity"]["coverage"] < 1, said
+    assert said["range"][0] >= 0 and said["bad"] == {"not_a_number": 0, "infinite": 0, "negative": 0}
+    text = run("info", "r.exr", folder=folder).stdout
+    assert "16 x 12, a picture" in text and "layers" in text and "covered" in text, text
+    layer = json.loads(run("info", "r.exr", "--layer", "albedo", "--json", folder=folder).stdout)
+    assert layer["range"][1] <= 1
+    (folder / "odd.exr").write_bytes(make_exr(7, 5, {3: float("nan")}))
+    odd = run("info", "odd.exr", folder=folder).stdout
+    assert "7 x 5, a picture" in odd and "1 not a number" in odd, odd
+    assert "must be twice as wide" in run("info", "odd.exr", "--projection", "latlong", folder=folder, code=1).stderr
+    environment = json.loads(run("info", "studio.hdr", "--json", folder=folder).stdout)
+    picture = json.loads(run("info", "studio.hdr", "--picture", "--json", folder=folder).stdout)
+    assert environment.get("kind") != "picture" and picture["kind"] == "picture"
 
 
 def png_of(file):

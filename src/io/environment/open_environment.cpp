@@ -105,6 +105,14 @@ bool has_latlong_shape(int width, int height) {
     return std::abs(std::int64_t(width) - 2 * std::int64_t(height)) <= 1;
 }
 
+}  // namespace
+
+bool has_environment_shape(int width, int height) {
+    return has_latlong_shape(width, height) || cube_layout_of_shape(width, height);
+}
+
+namespace {
+
 /// The layout to read a picture in, or none for lat-long. `projection` is one of the accepted names.
 Result<std::optional<CubeLayout>> choose_layout(const ImageFacts& facts, const std::string& projection) {
     const std::string is = fmt::format("image is {} x {}", facts.width, facts.height);

@@ -32,4 +32,8 @@ struct EnvironmentOptions {
 Result<Environment> open_environment(const std::vector<std::filesystem::path>& files,
                                      const EnvironmentOptions& options = {});
 
+/// Whether a picture of this size is taken for an environment where nothing else is said: twice as wide as high (a
+/// lat-long map), or a cross or strip of cube faces (4:3, 3:4, 6:1 or 1:6).
+bool has_environment_shape(int width, int height);
+
 }  // namespace domelight

@@ -1,0 +1,30 @@
+#include "cli/console/display_options.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <vector>
+
+namespace domelight::cli {
+
+void add_display_options(Arguments& a, DisplayWords& w) {
+    std::vector<std::string> names;
+    for (const TonemapName& t : tonemap_names()) names.emplace_back(t.name);
+    a.choice("--tonemap", w.tonemap, names, "of a .png or .jpg (agx; none for a source of 8 bits)");
+    a.number("--ev", "STOPS", w.ev,
+             "exposure of a .png or .jpg (from the log-average luminance; 0 for a source of 8 bits, or where "
+             "--exposure is given)");
+}
+
+Result<void> check_display_options(const DisplayWords& w) {
+    if (std::isnan(w.ev) || std::abs(w.ev) <= 100) return {};
+    return Error{fmt::format("{:g} is not from -100 to 100", w.ev), "--ev", ""};
+}
+
+Display display_of(const DisplayWords& w, bool for_screen, const std::function<double()>& automatic_ev) {
+    const Tonemap usual = for_screen ? Tonemap::none : Tonemap::agx;
+    const double ev = !std::isnan(w.ev) ? w.ev : for_screen ? 0 : automatic_ev();
+    return {w.tonemap.empty() ? usual : tonemap_from_name(w.tonemap).value_or(usual), float(std::exp2(ev))};
+}
+
+}  // namespace domelight::cli

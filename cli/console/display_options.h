@@ -1,0 +1,27 @@
+#pragma once
+
+#include "cli/console/arguments.h"
+#include "preview/tonemap.h"
+
+#include <functional>
+#include <limits>
+#include <string>
+
+namespace domelight::cli {
+
+/// How radiance becomes a picture for a screen, as it was asked for.
+struct DisplayWords {
+    std::string tonemap;                                   ///< empty: agx, for pictures of 8 bits none
+    double ev = std::numeric_limits<double>::quiet_NaN();  ///< NaN: automatic
+};
+
+/// --tonemap and --ev, of a .png or .jpg.
+void add_display_options(Arguments& arguments, DisplayWords& words);
+/// Errors: --ev out of range.
+Result<void> check_display_options(const DisplayWords& words);
+
+/// What was asked for, with the rest filled in. `for_screen`: the source was made for a screen already and is shown as
+/// it is. `automatic_ev` is called where the exposure is to be found.
+Display display_of(const DisplayWords& words, bool for_screen, const std::function<double()>& automatic_ev);
+
+}  // namespace domelight::cli
