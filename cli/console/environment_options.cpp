@@ -1,11 +1,11 @@
 #include "cli/console/environment_options.h"
 
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/environment/sky/sky.h"
+#include "domelight/io/environment/open_environment.h"
 
-#include <algorithm>
+#include "io/environment/cube_input.h"
+
 #include <cmath>
-#include <set>
 
 namespace domelight::cli {
 namespace {
@@ -54,32 +54,16 @@ Result<Environment> built_in_sky(const EnvironmentOptions& options) {
     return sky;
 }
 
-/// Which face a file's name ends in, 0..5, or -1: "room_posx.hdr", "px.exr", "sky-top.png".
-int face_of(const std::filesystem::path& file) {
-    static const std::vector<std::vector<std::string>> endings = {
-        {"posx", "px", "right"},          {"negx", "nx", "left"},  {"posy", "py", "top", "up"},
-        {"negy", "ny", "bottom", "down"}, {"posz", "pz", "front"}, {"negz", "nz", "back"}};
-    std::string stem = file.stem().string();
-    std::transform(stem.begin(), stem.end(), stem.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    for (int f = 0; f < 6; ++f)
-        for (const std::string& ending : endings[f])
-            if (stem.ends_with(ending) && (stem.size() == ending.size() || !std::isalnum(static_cast<unsigned char>(
-                                                                               stem[stem.size() - ending.size() - 1]))))
-                return f;
-    return -1;
-}
-
 }  // namespace
 
 void add_environment_options(Arguments& arguments, EnvironmentOptions& options) {
     arguments.group("Reading the environment");
     arguments.text(
         "--projection", "NAME", options.projection,
-        "the projection of the image: latlong, cube-cross, cube-strip, cube-faces, sphere-map, "
-        "mirror-ball/fov=DEGREES, "
-        "angular, hemisphere, paraboloid, paraboloid-opposite, dual-paraboloid, octahedral, "
-        "equal-area-octahedral, each with /centre=+Z,right=+X,up=+Y if it differs (auto: latlong or a cube, from its "
-        "shape and attributes)");
+        "the projection of the image: latlong (also latlong/usd ...), cube, cube-cross, cube-strip, cube-faces, sphere-map, "
+        "mirror-ball/fov=DEGREES, angular, hemisphere, paraboloid, paraboloid-opposite, dual-paraboloid, octahedral, "
+        "equal-area-octahedral, each with /centre=+Z,right=+X,up=+Y if it differs (auto: latlong or a "
+        "cube, from its shape and attributes)");
     arguments.text(
         "--latlong", "NAME", options.latlong,
         "lat-long convention: default, usd, mitsuba, openexr, materialx, mod, pbrt, or centre=+X,right=+Z[,up=+Y]");
@@ -91,38 +75,27 @@ void add_environment_options(Arguments& arguments, EnvironmentOptions& options) 
 }
 
 bool are_cube_faces(const std::vector<std::string>& files) {
-    std::set<int> faces;
-    for (const std::string& file : files) faces.insert(face_of(file));
-    return files.size() == 6 && faces.size() == 6 && !faces.contains(-1);
+    return files.size() == 6 && cube_faces_by_name({files.begin(), files.end()});
 }
 
 std::vector<std::filesystem::path> environment_files(const std::vector<std::string>& arguments) {
     std::vector<std::filesystem::path> files(arguments.begin(), arguments.end());
     std::error_code failure;
     if (files.size() == 1 && std::filesystem::is_directory(files[0], failure)) {
-        std::vector<std::string> faces;
-        for (const auto& entry : std::filesystem::directory_iterator(files[0], failure))
-            if (entry.is_regular_file(failure) && face_of(entry.path()) >= 0) faces.push_back(entry.path().string());
-        if (are_cube_faces(faces)) files.assign(faces.begin(), faces.end());
+        const auto faces = cube_faces_in_folder(files[0]);
+        if (faces.size() == 6) files = faces;
     }
+    if (files.size() != 6) return files;
     // In the order of the faces, so that the hash does not depend on how they were named on the command line.
-    if (files.size() == 6)
-        std::stable_sort(files.begin(), files.end(),
-                         [](const auto& a, const auto& b) { return face_of(a) < face_of(b); });
+    const auto faces = cube_faces_by_name(files);
+    if (faces) files.assign(faces->begin(), faces->end());
     return files;
 }
 
 Result<Environment> open_environment_or_sky(const std::vector<std::string>& arguments,
                                             const EnvironmentOptions& options) {
     if (arguments.empty()) return built_in_sky(options);
-    const auto files = environment_files(arguments);
-    for (const auto& file : files) {
-        std::error_code failure;
-        if (std::filesystem::is_directory(file, failure))
-            return Error{"is a folder without the six faces of a cube", file.string(),
-                         "Name an image, or six files px, nx, py, ny, pz, nz."};
-    }
-    return open_environment(files, options);
+    return open_environment(environment_files(arguments), options);
 }
 
 }  // namespace domelight::cli

@@ -22,7 +22,7 @@ Result<Environment> open_environment_or_sky(const std::vector<std::string>& file
 /// The files that make up an environment: the six in a folder of faces, else the arguments themselves.
 std::vector<std::filesystem::path> environment_files(const std::vector<std::string>& arguments);
 
-/// Whether the arguments are the six faces of one cube, by their names (px nx ..., posx negx ..., right left top ...).
+/// Whether the arguments are the six faces of one cube, by their names (cube_face_of_name).
 bool are_cube_faces(const std::vector<std::string>& files);
 
 }  // namespace domelight::cli

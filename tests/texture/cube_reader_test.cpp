@@ -124,6 +124,11 @@ TEST_CASE("cube reader: six files are recognised by name, in any order and case"
         {"px-studio", "nx-studio", "py-studio", "ny-studio", "pz-studio", "nz-studio"},
         {"studio.px", "studio.nx", "studio.py", "studio.ny", "studio.pz", "studio.nz"},
         {"box+x", "box-x", "box+y", "box-y", "box+z", "box-z"},
+        {"sky_+X", "sky_-X", "sky_+Y", "sky_-Y", "sky_+Z", "sky_-Z"},
+        {"sky_px", "sky_mx", "sky_py", "sky_my", "sky_pz", "sky_mz"},
+        {"sky_right", "sky_left", "sky_up", "sky_down", "sky_front", "sky_back"},
+        {"px_sky", "nx_sky", "py_sky", "ny_sky", "pz_sky", "nz_sky"},
+        {"front_right", "front_left", "front_top", "front_bottom", "front_front", "front_back"},
     };
     for (const auto& names : namings) {
         TemporaryFolder folder;
@@ -146,6 +151,18 @@ TEST_CASE("cube reader: six files are recognised by name, in any order and case"
     CHECK(!cube_face_of_name("expx.hdr"));
     CHECK(!cube_face_of_name("topaz.hdr"));
     CHECK(!cube_face_of_name("bright.hdr"));
+}
+
+TEST_CASE("cube reader: the faces that other tools write are recognised") {
+    DOMELIGHT_DATA_FILE(plus, "reports/faces_plus");
+    DOMELIGHT_DATA_FILE(minus, "reports/faces_mx");
+    DOMELIGHT_DATA_FILE(words, "reports/faces_updown");
+    DOMELIGHT_DATA_FILE(exrenvmap, "reports/exrenvmap_faces");
+    for (const auto& folder : {plus, minus, words, exrenvmap}) {
+        const auto environment = open_environment({folder});
+        REQUIRE_MESSAGE(environment, environment.error().format());
+        CHECK(environment->projection == "cube");
+    }
 }
 
 TEST_CASE("cube reader: faces that do not fit together are refused by name") {

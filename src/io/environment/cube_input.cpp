@@ -71,21 +71,26 @@ void move_to_texel_centres(ImageView<float> face) {
     }
 }
 
-constexpr std::string_view k_face_names[6][4] = {
-    {"px", "posx", "right", "+x"},  {"nx", "negx", "left", "-x"},  {"py", "posy", "top", "+y"},
-    {"ny", "negy", "bottom", "-y"}, {"pz", "posz", "front", "+z"}, {"nz", "negz", "back", "-z"},
+/// The names of the faces +X -X +Y -Y +Z -Z. The first is the axis.
+const std::vector<std::string_view> k_face_names[6] = {
+    {"+x", "px", "posx", "right"},     {"-x", "nx", "mx", "negx", "left"},
+    {"+y", "py", "posy", "top", "up"}, {"-y", "ny", "my", "negy", "bottom", "down"},
+    {"+z", "pz", "posz", "front"},     {"-z", "nz", "mz", "negz", "back"},
 };
 
 bool is_word(char c) {
     return std::isalnum(static_cast<unsigned char>(c));
 }
 
-/// Whether `name` stands at the start or the end of `stem`, set off from the rest.
-bool speaks_of(std::string_view stem, std::string_view name) {
-    if (stem == name) return true;
-    if (stem.size() <= name.size()) return false;
-    return (stem.ends_with(name) && (!is_word(stem[stem.size() - name.size() - 1]) || !is_word(name[0]))) ||
-           (stem.starts_with(name) && !is_word(stem[name.size()]));
+/// Whether `name` is the end of `stem`, set off from what stands before it.
+bool ends_in(std::string_view stem, std::string_view name) {
+    if (!stem.ends_with(name)) return false;
+    return stem.size() == name.size() || !is_word(name[0]) || !is_word(stem[stem.size() - name.size() - 1]);
+}
+
+/// Whether `name` is the start of `stem`, set off from what follows.
+bool begins_with(std::string_view stem, std::string_view name) {
+    return stem.starts_with(name) && (stem.size() == name.size() || !is_word(stem[name.size()]));
 }
 
 }  // namespace
@@ -121,16 +126,18 @@ Result<Cubemap> read_cube_picture(RowSource& source, CubeLayout layout) {
 std::optional<int> cube_face_of_name(const std::filesystem::path& file) {
     std::string stem = file.stem().string();
     std::transform(stem.begin(), stem.end(), stem.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    for (int f = 0; f < 6; ++f)
-        for (const std::string_view name : k_face_names[f])
-            if (speaks_of(stem, name)) return f;
+    // The end of a name says more than its start: "front_left.hdr" is a face of the cube "front".
+    for (const auto speaks_of : {ends_in, begins_with})
+        for (int f = 0; f < 6; ++f)
+            for (const std::string_view name : k_face_names[f])
+                if (speaks_of(stem, name)) return f;
     return std::nullopt;
 }
 
 Result<std::array<std::filesystem::path, 6>> cube_faces_by_name(const std::vector<std::filesystem::path>& files) {
     const std::string hint =
-        "Accepted: px nx py ny pz nz, posx negx posy negy posz negz, or right left top bottom front back, alone or "
-        "after a prefix (sky_px.hdr).";
+        "Accepted: px nx py ny pz nz, px mx ..., posx negx ..., +x -x ..., or right left top bottom (or up down) "
+        "front back, alone or after a prefix (sky_px.hdr).";
     std::array<std::filesystem::path, 6> faces;
     for (const std::filesystem::path& file : files) {
         const std::optional<int> f = cube_face_of_name(file);
@@ -141,7 +148,7 @@ Result<std::array<std::filesystem::path, 6>> cube_faces_by_name(const std::vecto
     }
     for (int f = 0; f < 6; ++f)
         if (faces[std::size_t(f)].empty())
-            return Error{"face " + std::string(k_face_names[f][3]) + " of the cube is missing",
+            return Error{"face " + std::string(k_face_names[f][0]) + " of the cube is missing",
                          files.empty() ? "" : files[0].string(), hint};
     return faces;
 }

@@ -33,9 +33,9 @@ std::optional<CubeLayout> cube_layout_of_shape(int width, int height);
 /// layout's shape.
 Result<Cubemap> read_cube_picture(RowSource& rows, CubeLayout layout);
 
-/// The face (0..5: +X -X +Y -Y +Z -Z) that a file's name speaks of: px nx py ny pz nz, posx negx ..., right left top
-/// bottom front back (right is +X, top is +Y, front is +Z), in any case, alone or set off from the rest of the name by
-/// something other than a letter or digit.
+/// The face (0..5: +X -X +Y -Y +Z -Z) that a file's name speaks of: px nx py ny pz nz, mx my mz for nx ny nz, posx negx
+/// ..., +x -x ..., right left top bottom front back (right is +X, top is +Y, front is +Z), or up down for top bottom.
+/// The name is in any case, and stands alone or is set off from the rest by something other than a letter or digit.
 std::optional<int> cube_face_of_name(const std::filesystem::path& file);
 
 /// Sorts six files into faces +X -X +Y -Y +Z -Z by their names.
