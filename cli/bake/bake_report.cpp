@@ -2,6 +2,7 @@
 
 #include "base/json.h"
 #include "cli/console/console.h"
+#include "cli/console/field_options.h"
 
 #include <fmt/core.h>
 
@@ -62,11 +63,11 @@ void print_json(const std::vector<BakeOutcome>& outcomes) {
                   {"status", o.error        ? "failed"
                              : o.up_to_date ? "up to date"
                                             : "baked"},
-                  {"error", o.error ? Json(o.error->format()) : Json(nullptr)},
+                  {"error", o.error ? Json(with_options(*o.error).format()) : Json(nullptr)},
                   {"seconds", o.seconds},
                   {"band_limit", o.report.band_limit},
                   {"negative_texels_set_to_0", o.report.clamped},
-                  {"warnings", o.report.warnings}};
+                  {"warnings", with_options(o.report.warnings)}};
         bake["stages"] = Json::array();
         for (const StageTime& s : o.report.stages)
             bake["stages"].push_back({{"stage", s.stage}, {"seconds", s.seconds}, {"cpu_seconds", s.cpu_seconds}});

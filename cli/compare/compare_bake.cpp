@@ -9,6 +9,7 @@
 
 #include "base/json.h"
 #include "cli/console/environment_options.h"
+#include "cli/console/field_options.h"
 #include "io/environment/cube_texture_reader.h"
 #include "io/file/file_reader.h"
 #include "projection/latlong_convention.h"
@@ -173,7 +174,7 @@ void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, co
                       {"next_error", o.next_error}}},
                     {"roughness_stated_by", bake.stated_by},
                     {"levels", levels},
-                    {"warnings", warnings}};
+                    {"warnings", with_options(warnings)}};
     fmt::print("{}\n", json.dump(2));
 }
 

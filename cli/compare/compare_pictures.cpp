@@ -5,6 +5,7 @@
 #include "domelight/io/write_image.h"
 
 #include "base/json.h"
+#include "cli/console/field_options.h"
 #include "cli/console/output_endings.h"
 #include "compare/compare_sheet.h"
 #include "compare/picture_reader.h"
@@ -457,7 +458,7 @@ void print_json(const Comparison& c, const std::vector<std::string>& failures) {
     }
     json["skipped_pixels"] = c.skipped;
     json["failures"] = failures;
-    json["warnings"] = c.warnings;
+    json["warnings"] = with_options(c.warnings);
     fmt::print("{}\n", json.dump(2));
 }
 

@@ -1,5 +1,7 @@
 #include "cli/console/console.h"
 
+#include "cli/console/field_options.h"
+
 #include <fmt/core.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -24,8 +26,9 @@ Result<void> check_common_options(const CommonOptions& options) {
 }
 
 int print_error(const Error& error, int otherwise) {
-    fmt::print(stderr, "error: {}\n", error.format());
-    return error.where.starts_with("--") ? exit_usage : otherwise;
+    const Error told = with_options(error);
+    fmt::print(stderr, "error: {}\n", told.format());
+    return told.where.starts_with("--") ? exit_usage : otherwise;
 }
 
 std::optional<int> begin_command(Arguments& arguments, const std::vector<std::string>& words,
@@ -42,7 +45,7 @@ std::optional<int> begin_command(Arguments& arguments, const std::vector<std::st
 void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options, const std::string& place) {
     if (options.quiet) return;
     for (const std::string& warning : warnings)
-        fmt::print(stderr, "warning: {}{}{}\n", place, place.empty() ? "" : ": ", warning);
+        fmt::print(stderr, "warning: {}{}{}\n", place, place.empty() ? "" : ": ", with_options(warning));
 }
 
 std::string clock_text(double seconds) {

@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/environment_options.h"
+#include "cli/console/field_options.h"
 #include "compare/picture_survey.h"
 
 #include <fmt/core.h>
@@ -70,7 +71,7 @@ Json environment_json(const std::string& name, const Environment& e, const Envir
               {"infinite", r.infinite},
               {"negative", r.negative},
               {"most_negative", r.negative_radiance}}},
-            {"warnings", r.warnings}};
+            {"warnings", with_options(r.warnings)}};
 }
 
 void print_environment(const std::string& name, const Environment& e, const EnvironmentSurvey& s) {
@@ -176,7 +177,7 @@ Json picture_json(const std::string& file, const PictureFacts& facts, const Pict
               {"mean", vector_json(s.mean)},
               {"ev", s.ev},
               {"bad", {{"not_a_number", s.not_a_number}, {"infinite", s.infinite}, {"negative", s.negative}}},
-              {"warnings", picture.warnings}};
+              {"warnings", with_options(picture.warnings)}};
     if (picture.opacity.empty())
         json["opacity"] = nullptr;
     else

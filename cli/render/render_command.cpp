@@ -3,11 +3,12 @@
 #include "base/json.h"
 #include "cli/commands.h"
 #include "cli/console/environment_options.h"
+#include "cli/console/field_options.h"
 #include "cli/console/interruption.h"
-#include "preview/tonemap.h"
 #include "cli/render/render_outputs.h"
 #include "cli/render/render_study_command.h"
 #include "cli/render/render_turntable.h"
+#include "preview/tonemap.h"
 
 #include <fmt/core.h>
 
@@ -102,7 +103,7 @@ void print_result(const RenderWords& w, const Scene& scene, const RenderResult& 
             {"samples", r.sample_count}, {"seconds", r.seconds}, {"ev", ev}};
         if (w.reference()) json["noise"] = r.noise, json["rays"] = r.rays;
         json["non_finite_samples"] = r.non_finite_samples;
-        json["warnings"] = scene.warnings;
+        json["warnings"] = with_options(scene.warnings);
         fmt::print("{}\n", json.dump(2));
     } else if (!w.common.quiet) {
         fmt::print("{}: {} x {}, {} triangles, {} samples a pixel at most, {:.2f} s", join(w.outputs, ", "), o.width,

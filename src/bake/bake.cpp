@@ -343,7 +343,7 @@ void add_warnings(BakeReport& report, const Environment& environment, const Bake
             report.repaired.infinite, report.repaired.negative, report.repaired.negative_radiance));
     if (options.method != BakeMethod::exact && environment.cube())
         report.warnings.push_back(
-            fmt::format("--method {} works on lat-long images: the cube was resampled to one first",
+            fmt::format("`method` {} works on lat-long images: the cube was resampled to one first",
                         bake_method_name(options.method)));
     for (const EngineReport& engine : report.engines)
         for (const BakedMap& map : engine.maps)

@@ -1,6 +1,7 @@
 #include "bake/plan.h"
 
 #include "bake/panorama.h"
+#include "base/field_place.h"
 #include "projection/latlong_convention.h"
 #include "texture/container/scaled_bytes.h"
 
@@ -46,41 +47,40 @@ LevelPlan phong_level(Lobe lobe, int size, double exponent) {
     return level;
 }
 
-Error option_error(const char* option, std::string what, std::string hint = "") {
-    return {std::move(what), option, std::move(hint)};
+Error field_error(const char* field, std::string what, std::string hint = "") {
+    return {std::move(what), field_place(field), std::move(hint)};
 }
 
 Result<void> check_values(const BakeOptions& o) {
     if (o.size && (*o.size < 1 || *o.size > k_max_size))
-        return option_error("--size", fmt::format("{} is not from 1 to {}", *o.size, k_max_size));
+        return field_error("size", fmt::format("{} is not from 1 to {}", *o.size, k_max_size));
     for (const double r : o.roughness)
-        if (!(r >= 0 && r <= 1)) return option_error("--roughness", fmt::format("{} is not from 0 to 1", r));
+        if (!(r >= 0 && r <= 1)) return field_error("roughness", fmt::format("{} is not from 0 to 1", r));
     for (const double n : o.exponents)
         if (!(n >= 0))
-            return option_error("--exponents", fmt::format("{} is not 0 or more", n),
-                                "inf stands for the environment itself.");
+            return field_error("exponents", fmt::format("{} is not 0 or more", n),
+                               "inf stands for the environment itself.");
     if (!o.exponents.empty() && !(o.lobe && is_phong(*o.lobe)))
-        return option_error("--exponents", "belongs to --lobe phong", "Roughness is given with --roughness.");
+        return field_error("exponents", "belongs to `lobe` phong", "Roughness is given with `roughness`.");
     if (o.lobe && is_phong(*o.lobe) && !o.roughness.empty())
-        return option_error("--roughness", "does not apply to --lobe phong",
-                            "Give its exponents with --exponents n0,n1,...");
+        return field_error("roughness", "does not apply to `lobe` phong",
+                           "Give its exponents with `exponents` n0,n1,...");
     if (o.encoding && encoding_channels(*o.encoding) != 3)
-        return option_error("--encoding", encoding_name(*o.encoding) + " has no room for a colour",
-                            "Accepted are rgba16f, rgba32f, rgb9e5, r11g11b10f, bc6h, uastc-hdr, astc4x4-hdr, "
-                            "astc6x6-hdr, rgbm, rgbd, rgbp.");
+        return field_error("encoding", encoding_name(*o.encoding) + " has no room for a colour",
+                           "Accepted are rgba16f, rgba32f, rgb9e5, r11g11b10f, bc6h, uastc-hdr, astc4x4-hdr, "
+                           "astc6x6-hdr, rgbm, rgbd, rgbp.");
     if (o.irradiance_size && (*o.irradiance_size < 1 || *o.irradiance_size > 4096))
-        return option_error("--irradiance-size", fmt::format("{} is not from 1 to 4096", *o.irradiance_size));
+        return field_error("irradiance_size", fmt::format("{} is not from 1 to 4096", *o.irradiance_size));
     if (o.brdf_size && (*o.brdf_size < 1 || *o.brdf_size > 4096))
-        return option_error("--brdf-size", fmt::format("{} is not from 1 to 4096", *o.brdf_size));
+        return field_error("brdf_size", fmt::format("{} is not from 1 to 4096", *o.brdf_size));
     if (o.sh_bands < 1 || o.sh_bands > 64)
-        return option_error("--sh-bands", fmt::format("{} is not from 1 to 64", o.sh_bands));
+        return field_error("sh_bands", fmt::format("{} is not from 1 to 64", o.sh_bands));
     if (o.samples < 1 || o.samples > (1 << 24))
-        return option_error("--samples", fmt::format("{} is not from 1 to 2^24", o.samples));
+        return field_error("samples", fmt::format("{} is not from 1 to 2^24", o.samples));
     for (const int steps : {o.riemann.phi_steps, o.riemann.theta_steps})
-        if (steps < 1 || steps > 65536)
-            return option_error("--riemann-steps", fmt::format("{} is not from 1 to 65536", steps));
+        if (steps < 1 || steps > 65536) return field_error("riemann", fmt::format("{} is not from 1 to 65536", steps));
     if (o.threads < 0 || o.threads > 1024)
-        return option_error("--threads", fmt::format("{} is not from 0 to 1024", o.threads));
+        return field_error("threads", fmt::format("{} is not from 0 to 1024", o.threads));
     return {};
 }
 
@@ -108,19 +108,19 @@ bool own_container(Container container) {
 /// Number of levels from the options, or from the engine's smallest size. `chain`: they go into one texture.
 Result<int> level_count(const Engine& engine, const BakeOptions& o, int size, Layout layout, bool chain) {
     const std::size_t listed = std::max(o.roughness.size(), o.exponents.size());
-    const char* list = o.exponents.empty() ? "--roughness" : "--exponents";
+    const char* list = o.exponents.empty() ? "roughness" : "exponents";
     if (listed && o.levels && std::size_t(*o.levels) != listed)
-        return option_error("--levels", fmt::format("{} levels, but {} names {}", *o.levels, list, listed));
+        return field_error("levels", fmt::format("{} levels, but `{}` names {}", *o.levels, list, listed));
     const int most = layout == Layout::latlong && chain ? most_texture_levels(size) : most_levels(size);
     const int levels = listed ? int(listed) : o.levels ? *o.levels : std::min(most, default_levels(engine, size));
     if (levels < 1 || levels > most_levels(size))
-        return option_error(listed ? list : "--levels", fmt::format("{} levels, but a map of size {} has from 1 to {}",
-                                                                    levels, size, most_levels(size)));
+        return field_error(listed ? list : "levels", fmt::format("{} levels, but a map of size {} has from 1 to {}",
+                                                                 levels, size, most_levels(size)));
     if (levels > most)
-        return option_error(
-            "--size",
+        return field_error(
+            "size",
             fmt::format("a lat-long map of height {} halves exactly {} times, not {}", size, most - 1, levels - 1),
-            fmt::format("Use a multiple of {}, or --format exr.", 1 << (levels - 1)));
+            fmt::format("Use a multiple of {}, or `format` exr.", 1 << (levels - 1)));
     return levels;
 }
 
@@ -131,27 +131,24 @@ Result<void> plan_encoding(EnginePlan& plan, const BakeOptions& o) {
     plan.encoding = o.encoding.value_or(plan.container == engine.container ? engine.encoding : Encoding::rgba16f);
     plan.zstd = o.zstd.value_or(plan.container == Container::ktx2 && engine.zstd);
     if (plan.zstd && plan.container != Container::ktx2)
-        return option_error("--zstd", container_name(plan.container) + " has no supercompression",
-                            "Use --format ktx2.");
+        return field_error("zstd", container_name(plan.container) + " has no supercompression", "Use `format` ktx2.");
     if (is_openexr(plan.container) && plan.encoding != Encoding::rgba16f && plan.encoding != Encoding::rgba32f)
-        return option_error("--encoding",
-                            encoding_name(plan.encoding) + " cannot be stored as " + container_name(plan.container),
-                            "It holds rgba16f (half) and rgba32f (float).");
+        return field_error("encoding",
+                           encoding_name(plan.encoding) + " cannot be stored as " + container_name(plan.container),
+                           "It holds rgba16f (half) and rgba32f (float).");
     if (plan.container == Container::dds9 && plan.encoding != Encoding::rgba16f && plan.encoding != Encoding::rgba32f &&
         !is_scaled_bytes(plan.encoding))
-        return option_error("--encoding",
-                            encoding_name(plan.encoding) + " does not exist in DDS headers from before DX10",
-                            "dds9 holds rgba16f, rgba32f, and as bytes rgbm, rgbd and rgbp.");
+        return field_error("encoding", encoding_name(plan.encoding) + " does not exist in DDS headers from before DX10",
+                           "dds9 holds rgba16f, rgba32f, and as bytes rgbm, rgbd and rgbp.");
     if (own_container(plan.container) && plan.encoding != engine.encoding)
-        return option_error(
-            "--encoding",
-            fmt::format("{} holds {} only", container_name(plan.container), encoding_name(engine.encoding)),
-            "Leave --encoding out, or choose a --format.");
+        return field_error(
+            "encoding", fmt::format("{} holds {} only", container_name(plan.container), encoding_name(engine.encoding)),
+            "Leave `encoding` out, or choose a `format`.");
     if (plan.container == Container::dds && is_scaled_bytes(plan.encoding))
-        return option_error("--encoding", "dds cannot say that its bytes are " + encoding_name(plan.encoding),
-                            "Use --format ktx2 or ktx1, where a key says so.");
+        return field_error("encoding", "dds cannot say that its bytes are " + encoding_name(plan.encoding),
+                           "Use `format` ktx2 or ktx1, where a key says so.");
     if (plan.container == Container::hdr && o.encoding)
-        return option_error("--encoding", "hdr has only its own encoding (RGBE)", "Leave --encoding out.");
+        return field_error("encoding", "hdr has only its own encoding (RGBE)", "Leave `encoding` out.");
     return {};
 }
 
@@ -168,14 +165,14 @@ PanoramaSpec plan_panorama(const Engine& engine, std::optional<int> height, cons
 
 Result<void> plan_environment_only(EnginePlan& plan, const BakeOptions& o, const Environment* environment) {
     const std::string& name = plan.engine->name;
-    const auto refuse = [&](const char* option) {
-        return option_error(option, "does not apply to --for " + name,
-                            name + " loads one lat-long image and filters it itself.");
+    const auto refuse = [&](const char* field, const std::string& value = "") {
+        return field_error(field, value + "does not apply to `engines` " + name,
+                           name + " loads one lat-long image and filters it itself.");
     };
-    if (o.levels && *o.levels != 1) return refuse("--levels");
-    if (!o.roughness.empty()) return refuse("--roughness");
-    if (o.lobe) return refuse("--lobe");
-    if (o.layout && *o.layout == Layout::cube) return refuse("--layout cube");
+    if (o.levels && *o.levels != 1) return refuse("levels");
+    if (!o.roughness.empty()) return refuse("roughness");
+    if (o.lobe) return refuse("lobe");
+    if (o.layout && *o.layout == Layout::cube) return refuse("layout", "cube ");
     plan.layout = Layout::latlong;
     std::optional<int> height = o.size;
     if (!height && plan.engine->size) height = 2 * plan.engine->size;
@@ -190,20 +187,19 @@ Result<void> check_own_container(const EnginePlan& plan, const BakeOptions& o) {
     if (!own_container(plan.container)) return {};
     const std::string name = container_name(plan.container);
     if (o.layout && *o.layout != plan.engine->layout)
-        return option_error("--layout", fmt::format("{} holds {} maps", name,
-                                                    plan.engine->layout == Layout::cube ? "cube" : "lat-long"));
+        return field_error(
+            "layout", fmt::format("{} holds {} maps", name, plan.engine->layout == Layout::cube ? "cube" : "lat-long"));
     const int size = plan.specular.front().spec.size;
     const bool atlas = plan.container == Container::playcanvas_atlas;
     if (atlas ? size != 512 : !std::has_single_bit(unsigned(size)))
-        return option_error("--size",
-                            atlas ? "the atlas has one size: 512 rows of level 0"
-                                  : fmt::format("{} holds cubes whose size is a power of two, not {}", name, size));
+        return field_error("size",
+                           atlas ? "the atlas has one size: 512 rows of level 0"
+                                 : fmt::format("{} holds cubes whose size is a power of two, not {}", name, size));
     const int levels = int(plan.specular.size()), all = most_levels(size);
     if (plan.container == Container::env && levels != all)
-        return option_error("--levels", fmt::format("a .env file of this size has {} levels, not {}", all, levels));
-    if (atlas && levels != 7) return option_error("--levels", fmt::format("the atlas has 7 levels, not {}", levels));
-    if (atlas && plan.irradiance_size != 64)
-        return option_error("--irradiance-size", "the atlas has one size of it, 32");
+        return field_error("levels", fmt::format("a .env file of this size has {} levels, not {}", all, levels));
+    if (atlas && levels != 7) return field_error("levels", fmt::format("the atlas has 7 levels, not {}", levels));
+    if (atlas && plan.irradiance_size != 64) return field_error("irradiance_size", "the atlas has one size of it, 32");
     return {};
 }
 
@@ -253,21 +249,21 @@ Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& o, const
     if (plan.latlong_quarters % 2 && plan.layout == Layout::latlong && !engine.environment_only)
         for (const LevelPlan& level : plan.specular)
             if (level.spec.size % 2)
-                return option_error("--size",
-                                    fmt::format("a lat-long map {} high cannot be turned by a quarter: its "
-                                                "width is not a multiple of 4",
-                                                level.spec.size),
-                                    "Use a size and a number of levels that keep every height even.");
+                return field_error("size",
+                                   fmt::format("a lat-long map {} high cannot be turned by a quarter: its "
+                                               "width is not a multiple of 4",
+                                               level.spec.size),
+                                   "Use a size and a number of levels that keep every height even.");
     return plan;
 }
 
 Result<void> check_bake_options(const BakeOptions& options) {
-    if (options.engines.empty()) return option_error("--for", "no engine");
+    if (options.engines.empty()) return field_error("engines", "no engine");
     for (const std::string& name : options.engines) {
         const auto engine = find_engine(name);
-        if (!engine) return engine.error().at("--for");
+        if (!engine) return engine.error().at(field_place("engines"));
         if (std::count(options.engines.begin(), options.engines.end(), name) > 1)
-            return option_error("--for", name + " is given twice");
+            return field_error("engines", name + " is given twice");
         if (auto plan = plan_engine(**engine, options, nullptr); !plan) return plan.error();
     }
     return {};

@@ -189,7 +189,7 @@ Result<Picture> read_picture(const std::filesystem::path& file, const PictureOpt
     reader.threads = options.threads;
     reader.decode = options.decode;
     if (!is_exr(**bytes) && !options.layer.empty())
-        return Error{"only OpenEXR files have layers", file.string(), "Leave out --layer."};
+        return Error{"only OpenEXR files have layers", file.string(), "Leave out `layer`."};
     auto picture = is_exr(**bytes) ? read_exr_picture(*bytes, options, reader) : read_plain(*bytes, reader);
     if (!picture) return picture.error().at(file.string());
     if (options.opacity && picture->format == "PNG")

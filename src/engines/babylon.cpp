@@ -20,7 +20,7 @@ Engine babylon_engine() {
     Engine e;
     e.name = "babylon";
     e.loads = "Babylon.js: .env, a cube of RGBD pictures and diffuse light as a polynomial (CubeTexture)";
-    e.note = "RGBD ends at 255: the manifest says what was clipped; --format dds keeps half floats";
+    e.note = "RGBD ends at 255: the manifest says what was clipped; the format dds keeps half floats";
     e.size = 256;
     e.smallest = 1;
     e.roughness = babylon_roughness;

@@ -11,7 +11,7 @@ Engine filament_engine() {
     Engine e;
     e.name = "filament";
     e.loads = "Filament: KTX1 R11F_G11F_B10F (*_ibl.ktx, *_skybox.ktx) and sh.txt";
-    e.note = "cmgen sees +Z in the centre of a lat-long image: --latlong usd gives its orientation";
+    e.note = "cmgen sees +Z in the centre of a lat-long image: the convention usd has its orientation";
     e.size = 256;
     e.smallest = 16;
     e.roughness = quadratic_roughness;

@@ -10,7 +10,7 @@ Engine three_engine() {
     Engine e;
     e.name = "three";
     e.loads = "three.js: prefiltered cube in UASTC HDR with zstd, .pmrem.ktx2 (KTX2Loader)";
-    e.note = "set texture.isPMREMTexture = true; versions before r187 want --for three-latlong";
+    e.note = "set texture.isPMREMTexture = true; versions before r187 want the engine three-latlong";
     e.roughness = quadratic_roughness;
     e.mirror = CubeMirror::x;
     e.encoding = Encoding::uastc_hdr;

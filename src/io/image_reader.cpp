@@ -1,5 +1,7 @@
 #include "io/image_reader.h"
 
+#include "base/field_place.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +27,7 @@ std::string printable(std::string_view text, std::size_t longest) {
 Result<std::unique_ptr<ImageReader>> open_image_reader(std::shared_ptr<const FileBytes> bytes,
                                                        const ReaderOptions& options) {
     if (options.decode.starts_with("rgb"))
-        return Error{"a picture is not decoded as " + options.decode, "--decode",
+        return Error{"a picture is not decoded as " + options.decode, field_place("decode"),
                      "That is for textures of eight bits a channel (DDS)."};
     using namespace std::string_view_literals;
     const auto all = bytes->bytes();

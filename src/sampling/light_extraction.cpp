@@ -1,8 +1,9 @@
 #include "domelight/sampling/light_extraction.h"
 
-#include "domelight/image/colour.h"
 #include "domelight/base/parallel.h"
+#include "domelight/image/colour.h"
 
+#include "base/field_place.h"
 #include "sampling/bright_regions.h"
 #include "sampling/harmonic_fill.h"
 #include "sampling/texel_sphere.h"
@@ -197,15 +198,15 @@ double unaccounted(const LightExtractionReport& r) {
 }  // namespace
 
 Result<void> check_light_extraction_options(const LightExtractionOptions& o) {
-    const auto within = [](const char* option, double value, double low, double high) -> Result<void> {
+    const auto within = [](const char* field, double value, double low, double high) -> Result<void> {
         if (value >= low && value <= high) return {};
-        return Error{fmt::format("{:g} is not from {:g} to {:g}", value, low, high), option, ""};
+        return Error{fmt::format("{:g} is not from {:g} to {:g}", value, low, high), field_place(field), ""};
     };
-    if (auto ok = within("--max-lights", o.max_lights, 0, 1024); !ok) return ok;
-    if (auto ok = within("--least-share", o.least_share, 0, 1); !ok) return ok;
-    if (auto ok = within("--least-contrast", o.least_contrast, 1.5, 1e6); !ok) return ok;
-    if (auto ok = within("--largest-diameter-deg", o.largest_diameter_deg, 1e-3, 30); !ok) return ok;
-    return within("--merge-deg", o.merge_deg, 0, 30);
+    if (auto ok = within("max_lights", o.max_lights, 0, 1024); !ok) return ok;
+    if (auto ok = within("least_share", o.least_share, 0, 1); !ok) return ok;
+    if (auto ok = within("least_contrast", o.least_contrast, 1.5, 1e6); !ok) return ok;
+    if (auto ok = within("largest_diameter_deg", o.largest_diameter_deg, 1e-3, 30); !ok) return ok;
+    return within("merge_deg", o.merge_deg, 0, 30);
 }
 
 Result<LightExtraction> extract_lights(ImageView<const float> image, const LightExtractionOptions& options,

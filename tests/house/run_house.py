@@ -67,5 +67,12 @@ claim("comments hold real mathematics", [*signs(comments, PLAIN_MATHEMATICS)])
 check = subprocess.run([sys.executable, ROOT / "scripts/code_map.py", "--check"], capture_output=True, text=True)
 claim("the layers of the code point one way, and docs/code-map.md draws them", (check.stdout + check.stderr).splitlines())
 
+spoken = re.compile(r'"(?:[^"\\\n]|\\.)*--[a-z](?:[^"\\\n]|\\.)*"')
+claim("the library names fields, not the options of the command line",
+      [f"{file.relative_to(ROOT)}:{number}: {line.strip()}" for folder in ["src", "include"]
+       for file in sorted((ROOT / folder).rglob("*")) if file.suffix in (".h", ".cpp")
+       for number, line in enumerate(file.read_text().splitlines(), 1)
+       if spoken.search(line) and not line.lstrip().startswith("//")])
+
 print(f"house: {passed} passed, {failed} failed, 0 skipped")
 sys.exit(1 if failed else 0)

@@ -1,15 +1,18 @@
-#include "domelight/image/row_source.h"
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/io/environment/convert.h"
 
-#include "domelight/io/write_image.h"
 #include "domelight/environment/sky/sky.h"
+#include "domelight/image/cube_layout.h"
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
+#include "domelight/io/write_image.h"
 
 #include "io/reader_samples.h"
 #include "test.h"
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <set>
 
 using namespace domelight;
 using namespace domelight::test;
@@ -259,4 +262,95 @@ TEST_CASE("convert: lat-long to cube and back, steps across the cube's edges are
         CHECK(std::abs(seams / true_seams - 1) < 0.01);
         CHECK(log_psnr(truth, back.image.pixels) > 55);
     }
+}
+
+namespace {
+
+/// The names in the first column of the table of docs/projections.md, with a number in place of a parameter's letter.
+std::vector<std::string> documented_projections() {
+    std::ifstream page(DOMELIGHT_DOCS "/projections.md");
+    std::vector<std::string> names;
+    for (std::string line; std::getline(page, line);) {
+        if (!line.starts_with("| `")) continue;
+        const std::string cell = line.substr(1, line.find('|', 1) - 1);
+        for (std::size_t at = 0; (at = cell.find('`', at)) != std::string::npos;) {
+            const std::size_t end = cell.find('`', at + 1);
+            std::string name = cell.substr(at + 1, end - at - 1);
+            if (name.ends_with("=F")) name.replace(name.size() - 1, 1, "30");
+            names.push_back(name);
+            at = end + 1;
+        }
+    }
+    return names;
+}
+
+/// The picture in one file: a cube as a cross or as OpenEXR's strip, the halves of a dual paraboloid side by side.
+ImageF in_one_picture(const ProjectedImage& image) {
+    const int charts = image.projection.charts(), w = image.width(), h = image.height();
+    if (charts == 1) return image.pixels;
+    if (charts == 6 && image.projection.grid() == SampleGrid::centres)
+        return cube_layout(Cubemap(image.pixels), "cross");
+    const bool strip = charts == 6;
+    ImageF out(strip ? w : charts * w, strip ? charts * h : h, 3);
+    for (int c = 0; c < charts; ++c)
+        for (int y = 0; y < h; ++y)
+            for (int x = 0; x < w; ++x) {
+                // As ImfEnvmap.h draws them: the sides are mirrored from left to right, top and bottom upside down.
+                const int sx = strip && c / 2 != 1 ? w - 1 - x : x, sy = strip && c / 2 == 1 ? h - 1 - y : y;
+                std::copy_n(image.pixels.at(sx, c * h + sy), 3, strip ? out.at(x, c * h + y) : out.at(c * w + x, y));
+            }
+    return out;
+}
+
+/// How far the light of a picture, written in a projection and read by its name, comes from other directions than it
+/// did.
+double error_read_back(const std::string& name) {
+    const TemporaryFolder folder;
+    REQUIRE(write_exr(folder / "e.exr", direction_latlong(128).view()));
+    Environment environment = open(folder / "e.exr");
+    const Conversion there = made(environment, name, 96);
+    REQUIRE(write_exr(folder / "there.exr", in_one_picture(there.image).view()));
+    Environment again = open(folder / "there.exr", {.projection = name});
+    CHECK(again.projection == there.image.projection.name());
+    const Conversion back = made(again, "latlong", 64);
+    double largest = 0;
+    for (const Vec3d d : {Vec3d{1, 0.2, 0.1}, Vec3d{-0.9, 0.3, 0.2}, Vec3d{0.1, 1, 0.2}, Vec3d{0.2, -1, 0.1},
+                          Vec3d{0.2, 0.1, 1}, Vec3d{0.3, 0.2, -0.7}}) {
+        const ProjectionPoint shown = there.image.projection.locate(normalize(d));
+        if (shown.shown) largest = std::max(largest, length(seen(back.image, normalize(d)) - normalize(d)));
+    }
+    return largest;
+}
+
+}  // namespace
+
+TEST_CASE("convert: every projection of docs/projections.md is written and read by its name") {
+    std::set<std::string> documented;
+    for (const std::string& name : documented_projections()) {
+        documented.insert(get(name).name());
+        CAPTURE(name);
+        CHECK(error_read_back(name) < 0.1);  // a texel of 64 rows is 0.05 wide; a wrong axis is off by 1 or more
+    }
+    for (const ProjectionInfo& info : projections()) CHECK_MESSAGE(documented.contains(info.name), info.name);
+}
+
+TEST_CASE("convert: conventions are read by the names that write them") {
+    for (const char* name :
+         {"latlong/usd", "latlong/openexr", "latlong/centre=+Y,right=-Z,up=+X", "equirectangular", "cube/openexr",
+          "cube/centre=+Z,right=-X", "angular/centre=+Z", "octahedral/centre=+Z,up=+Y"}) {
+        CAPTURE(name);
+        CHECK(error_read_back(name) < 0.1);
+    }
+    const TemporaryFolder folder;
+    REQUIRE(write_exr(folder / "e.exr", direction_latlong(8).view()));
+    const auto error_of = [&](const EnvironmentOptions& options) {
+        const auto environment = open_environment({folder / "e.exr"}, options);
+        REQUIRE(!environment);
+        return environment.error();
+    };
+    CHECK(error_of({.projection = "latlong/usd", .latlong = "mitsuba"}).where == "`latlong`");
+    CHECK(error_of({.projection = "latlong/sideways"}).where == "`projection`");
+    CHECK(error_of({.projection = "cube/sideways"}).where == "`projection`");
+    CHECK(error_of({.projection = "cube"}).what.find("4:3") != std::string::npos);
+    CHECK(error_of({.projection = "cube/openexr"}).what.find("1:6") != std::string::npos);
 }

@@ -172,7 +172,7 @@ TEST_CASE("environment: wrong shapes and options say what is wrong, where, and w
     };
     CHECK(error_for(1000, 600) == (folder / "e.exr").string() +
                                       ": image is 1000 x 600, but a lat-long map must be twice as wide as high\n"
-                                      "       If this is a cube cross, pass --projection cube-cross.");
+                                      "       If this is a cube cross, pass `projection` cube-cross.");
     CHECK(error_for(8, 8).find("give all six") != std::string::npos);
     CHECK(error_for(8, 4, {.projection = "cube-cross"}).find("4:3") != std::string::npos);
     CHECK(error_for(8, 4, {.projection = "cube-strip"}).find("6:1") != std::string::npos);

@@ -482,7 +482,7 @@ TEST_CASE("extract_lights: bad input is an error that names it") {
     options.least_contrast = 1;
     const auto refused = extract_lights(image.view(), options);
     REQUIRE_FALSE(refused);
-    CHECK(refused.error().where == "--least-contrast");
+    CHECK(refused.error().where == "`least_contrast`");
     options = {};
     options.largest_diameter_deg = NAN;
     CHECK_FALSE(extract_lights(image.view(), options));

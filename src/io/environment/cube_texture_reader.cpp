@@ -58,7 +58,7 @@ Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_
     }
     report.warnings.push_back("the faces are taken to be in OpenGL's orientation; some tools write them mirrored");
     if (info->eight_bits && texture->encoding == Encoding::rgba16f)
-        report.warnings.push_back("eight bits a channel are not HDR unless they are RGBM or its like: --decode rgbm");
+        report.warnings.push_back("eight bits a channel are not HDR unless they are RGBM or its like: `decode` rgbm");
     return cube;
 }
 

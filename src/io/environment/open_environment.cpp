@@ -1,20 +1,24 @@
-#include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"
 
+#include "domelight/image/row_source.h"
+
+#include "base/field_place.h"
 #include "io/environment/cube_input.h"
 #include "io/environment/cube_texture_reader.h"
-#include "scene/gltf/gltf_document.h"
-#include "scene/gltf/gltf_image_light.h"
-#include "io/image_reader.h"
 #include "io/hdr/radiance_reader.h"
+#include "io/image_reader.h"
 #include "projection/latlong_convention.h"
 #include "projection/latlong_regrid.h"
+#include "scene/gltf/gltf_document.h"
+#include "scene/gltf/gltf_image_light.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <span>
+#include <string_view>
 #include <utility>
 
 namespace domelight {
@@ -49,51 +53,76 @@ struct Request {
     Mat3 turn;  ///< world to the file's frame, apart from its lat-long convention
     float scale = 1;
     std::optional<Projection> other;  ///< neither lat-long nor a cube
+    Mat3 cube_axes;                   ///< the turned light to the frame of a cube's faces
 };
+
+/// The names of lat-long maps and cubes that a request knows; "cube" is one in any layout.
+constexpr std::string_view k_own_projections[] = {"auto",       "latlong",    "cube",      "cube/openexr",
+                                                  "cube-cross", "cube-strip", "cube-faces"};
 
 /// A projection that pictures are read in by name only.
 Result<Projection> other_projection(const std::string& text) {
-    std::string accepted = "Accepted: auto, latlong, cube-cross, cube-strip, cube-faces";
+    Result<Projection> projection = projection_from_name(text);
+    if (projection || !projection.error().what.starts_with("unknown projection")) return projection;
+    std::string accepted = "Accepted: auto, latlong, cube, cube-cross, cube-strip, cube-faces";
     for (const ProjectionInfo& info : projections())
-        if (std::string(info.name) != "latlong" && std::string(info.name) != "cube")
+        if (std::string_view(info.name) != "latlong" && std::string_view(info.name) != "cube")
             accepted += std::string(", ") + info.name;
-    const Result<Projection> projection = projection_from_name(text);
-    if (!projection && projection.error().what.starts_with("unknown projection"))
-        return Error{projection.error().what, "", accepted + "."};
-    if (!projection) return projection.error();
-    if (projection->name() == "latlong")
-        return Error{"a lat-long convention is given apart", "", "Pass --projection latlong --latlong CONVENTION."};
-    if (projection->name() == "cube") return Error{"unknown projection \"" + text + "\"", "", accepted + "."};
-    return *projection;
+    return Error{projection.error().what, "", accepted + "."};
+}
+
+/// Takes the convention of a lat-long map or a cube ("latlong/usd", "cube/openexr") out of the projection's name.
+Result<Request> read_convention(Request request) {
+    std::string& name = request.options.projection;
+    const std::size_t slash = std::min(name.find('/'), name.size());
+    const std::string kind = name.substr(0, slash), convention = name.substr(std::min(slash + 1, name.size()));
+    if (kind == "cube") {
+        const auto cube = projection_from_name(name);
+        if (!cube) return cube.error().at(field_place("projection"));
+        request.cube_axes = cube->world_to_picture();
+        name = cube->grid() == SampleGrid::both_on_edges ? "cube/openexr" : "cube";
+    } else if (kind == "latlong" || kind == "equirectangular") {
+        name = "latlong";
+        if (convention.empty()) return request;
+        if (const auto known = latlong_convention(convention); !known)
+            return known.error().at(field_place("projection"));
+        if (const std::string& other = request.options.latlong; !other.empty() && other != convention)
+            return Error{other + " contradicts `projection` latlong/" + convention, field_place("latlong"), ""};
+        request.options.latlong = convention;
+    }
+    return request;
 }
 
 Result<Request> check_options(const EnvironmentOptions& options) {
-    Request request{options, {}, 1, {}};
-    const auto one_of = [](const std::string& value, std::initializer_list<const char*> accepted) {
+    auto asked = read_convention({options, {}, 1, {}, {}});
+    if (!asked) return asked;
+    Request request = *std::move(asked);
+    const auto one_of = [](const std::string& value, std::span<const std::string_view> accepted) {
         return std::find(accepted.begin(), accepted.end(), value) != accepted.end();
     };
     if (request.options.latlong == "pbrt") {
-        if (options.projection != "auto" && options.projection != "latlong")
-            return Error{"pbrt's square is no " + options.projection, "--latlong", ""};
+        if (request.options.projection != "auto" && request.options.projection != "latlong")
+            return Error{"pbrt's square is no " + options.projection, field_place("latlong"), ""};
         request.options.latlong.clear();
         request.options.projection = "pbrt";
     }
-    if (!one_of(request.options.projection, {"auto", "latlong", "cube-cross", "cube-strip", "cube-faces"})) {
+    if (!one_of(request.options.projection, k_own_projections)) {
         auto other = other_projection(request.options.projection);
-        if (!other) return other.error().at("--projection");
+        if (!other) return other.error().at(field_place("projection"));
         request.other = *std::move(other);
     }
-    if (!one_of(options.decode, {"auto", "srgb", "gamma22", "linear", "rgbm", "rgbd", "rgbp"}))
-        return Error{"unknown decoding \"" + options.decode + "\"", "--decode",
+    constexpr std::string_view decodings[] = {"auto", "srgb", "gamma22", "linear", "rgbm", "rgbd", "rgbp"};
+    if (!one_of(options.decode, decodings))
+        return Error{"unknown decoding \"" + options.decode + "\"", field_place("decode"),
                      "Accepted: auto, srgb, gamma22, linear; for DDS also rgbm, rgbd, rgbp."};
-    if (!std::isfinite(options.rotate_y_deg)) return Error{"angle is not a number", "--rotate-y-deg", ""};
+    if (!std::isfinite(options.rotate_y_deg)) return Error{"angle is not a number", field_place("rotate_y_deg"), ""};
     if (!(std::abs(options.exposure) <= 64))
-        return Error{"exposure must lie between -64 and 64 stops", "--exposure", ""};
+        return Error{"exposure must lie between -64 and 64 stops", field_place("exposure"), ""};
     const Result<Vec3d> up = signed_axis(options.up);
-    if (!up) return up.error().at("--up");
+    if (!up) return up.error().at(field_place("up"));
     if (!request.options.latlong.empty())
         if (const auto convention = latlong_convention(request.options.latlong); !convention)
-            return convention.error().at("--latlong");
+            return convention.error().at(field_place("latlong"));
     // Light turned by R arrives from d if it came from R^T d before.
     request.turn = up_to_y(*up) * rotation_y_deg(options.rotate_y_deg).transposed();
     request.scale = float(std::exp2(options.exposure));
@@ -120,6 +149,14 @@ Result<std::optional<CubeLayout>> choose_layout(const ImageFacts& facts, const s
     const bool strip = layout == CubeLayout::horizontal_strip || layout == CubeLayout::vertical_strip;
     if (layout == CubeLayout::vertical_strip && facts.envmap == ImageFacts::Envmap::cube)
         layout = CubeLayout::openexr_strip;
+    if (projection == "cube" && !layout)
+        return Error{is + ", but a cube must be a cross (4:3 or 3:4), a strip of its faces (6:1 or 1:6) or six files",
+                     "", ""};
+    if (projection == "cube/openexr") {
+        if (layout != CubeLayout::vertical_strip && layout != CubeLayout::openexr_strip)
+            return Error{is + ", but OpenEXR's cube must be 1:6", "", ""};
+        return std::optional(CubeLayout::openexr_strip);
+    }
     if (projection == "cube-cross" && (!layout || strip))
         return Error{is + ", but a cube cross must be 4:3 (horizontal) or 3:4 (vertical)", "", ""};
     if (projection == "cube-strip" && !strip)
@@ -130,9 +167,9 @@ Result<std::optional<CubeLayout>> choose_layout(const ImageFacts& facts, const s
             return Error{is + ", but a lat-long map must be twice as wide as high", "",
                          facts.width == facts.height
                              ? "If this is one face of a cube, give all six; if it is a mirror ball or another "
-                               "round or octahedral map, say which: --projection sphere-map, "
+                               "round or octahedral map, say which: `projection` sphere-map, "
                                "mirror-ball/fov=DEGREES, angular, octahedral, ..."
-                             : "If this is a cube cross, pass --projection cube-cross."};
+                             : "If this is a cube cross, pass `projection` cube-cross."};
         return std::optional<CubeLayout>();
     }
     return layout;
@@ -250,7 +287,7 @@ Result<void> check_cube_memory(std::int64_t size, std::int64_t max_bytes) {
 Environment finish_cube(Cubemap cube, RepairReport report, const Request& request) {
     if (!request.options.latlong.empty())
         report.warnings.push_back("a lat-long convention means nothing for a cube: ignored");
-    return Environment::from_cube(std::move(cube), request.turn, std::move(report), request.options.threads);
+    return Environment::from_cube(std::move(cube), request.cube_axes * request.turn, std::move(report), request.options.threads);
 }
 
 /// A picture in any other projection.
@@ -314,8 +351,8 @@ Result<Environment> open_halves(const std::vector<std::filesystem::path>& files,
 /// KTX2, KTX and DDS hold cubes as the engines load them.
 Result<Environment> open_texture(const std::filesystem::path& file, const std::string& container,
                                  const Request& request) {
-    if (const std::string& projection = request.options.projection; projection != "auto")
-        return Error{"a texture's projection is known: leave " + projection + " out", "--projection", ""};
+    if (const std::string& projection = request.options.projection; projection != "auto" && projection != "cube")
+        return Error{"a texture's projection is known: leave " + projection + " out", field_place("projection"), ""};
     RepairReport report;
     Result<Cubemap> cube =
         read_cube_texture(file, request.options.max_bytes, request.scale, report, request.options.decode);
@@ -332,8 +369,8 @@ Mat3 turn_of(const std::array<float, 4>& q) {
 
 /// The light that a glTF file brings with it.
 Result<Environment> open_gltf_light(const std::filesystem::path& file, const Request& request) {
-    if (const std::string& projection = request.options.projection; projection != "auto")
-        return Error{"a glTF file's light is a cube: leave " + projection + " out", "--projection", ""};
+    if (const std::string& projection = request.options.projection; projection != "auto" && projection != "cube")
+        return Error{"a glTF file's light is a cube: leave " + projection + " out", field_place("projection"), ""};
     RepairReport report;
     auto light = read_gltf_environment(file, request.options.max_bytes, request.scale, report);
     if (!light) return light.error();
@@ -374,8 +411,9 @@ Result<Environment> open_picture(const std::filesystem::path& file, const Reques
 }
 
 Result<Environment> open_faces(const std::vector<std::filesystem::path>& files, const Request& request) {
-    if (const std::string& projection = request.options.projection; projection != "auto" && projection != "cube-faces")
-        return Error{"six files are the faces of a cube, not " + projection, "--projection", ""};
+    if (const std::string& projection = request.options.projection;
+        projection != "auto" && projection != "cube" && projection != "cube-faces")
+        return Error{"six files are the faces of a cube, not " + projection, field_place("projection"), ""};
     const auto faces = cube_faces_by_name(files);
     if (!faces) return faces.error();
     ImageFacts first;
@@ -421,7 +459,7 @@ Result<Environment> open_environment(const std::vector<std::filesystem::path>& f
         const auto faces = cube_faces_in_folder(files[0]);
         if (faces.size() != 6)
             return Error{fmt::format("is a folder with {} files named as faces of a cube, not 6", faces.size()),
-                         files[0].string(), ""};
+                         files[0].string(), "Name an image, or six files px, nx, py, ny, pz, nz."};
         return open_faces(faces, *request);
     }
     Result<Environment> environment = open_picture(files[0], *request);

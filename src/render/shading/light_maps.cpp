@@ -43,7 +43,7 @@ float matching_roughness(double exponent) {
 
 Result<Lobe> lobe_of(const std::string& name) {
     if (const auto lobe = lobe_from_name(name); lobe && *lobe != Lobe::charlie) return *lobe;
-    return Error{fmt::format("describes a chain of lobe \"{}\"", name), "", "Bake with --lobe ggx or --lobe phong."};
+    return Error{fmt::format("describes a chain of lobe \"{}\"", name), "", "Bake with `lobe` ggx or phong."};
 }
 
 float level_roughness(const Json& level, Lobe lobe) {

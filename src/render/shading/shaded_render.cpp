@@ -158,7 +158,7 @@ Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps,
     if (reads_chain && wants_phong != (maps.lobe() != Lobe::ggx))
         return Error{fmt::format("has a chain of lobe {}, which {} does not read", lobe_name(maps.lobe()),
                                  shading_model_name(shading.model)),
-                     "", fmt::format("Bake with --lobe {}.", lobe_name(shading_lobe(shading.model)))};
+                     "", fmt::format("Bake with `lobe` {}.", lobe_name(shading_lobe(shading.model)))};
     const auto start = std::chrono::steady_clock::now();
     const ShadedTracer tracer(scene, maps, environment, shading, o);
     Film film(o.width, o.height);

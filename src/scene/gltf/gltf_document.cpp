@@ -73,7 +73,8 @@ void DocumentParser::read_asset() {
             root_.fail("extensionsRequired", fmt::format("{} is not supported", name.substr(0, 60)));
     for (const std::string& name : root_.texts("extensionsUsed"))
         if (name == k_image_light)
-            document_.warnings.push_back("the file's own light from all around is left out: pass the file as --env");
+            document_.warnings.push_back(
+                "the file's own light from all around is left out: give the file as the environment");
         else if (!known_extension(name))
             document_.warnings.push_back(fmt::format("{} is not supported: left out", name.substr(0, 60)));
 }

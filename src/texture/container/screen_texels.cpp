@@ -1,8 +1,9 @@
 #include "texture/container/screen_texels.h"
 
+#include "base/field_place.h"
+#include "io/picture/screen_curve.h"
 #include "texture/block/bc123.h"
 #include "texture/texel/half.h"
-#include "io/picture/screen_curve.h"
 
 #include <algorithm>
 #include <cstring>
@@ -45,7 +46,7 @@ Result<Encoding> screen_encoding(const std::string& decode) {
     const auto encoding = encoding_from_name(decode);
     if (encoding && (*encoding == Encoding::rgbm || *encoding == Encoding::rgbd || *encoding == Encoding::rgbp))
         return *encoding;
-    return Error{"unknown decoding \"" + decode + "\"", "--decode",
+    return Error{"unknown decoding \"" + decode + "\"", field_place("decode"),
                  "Accepted: auto, srgb, gamma22, linear, rgbm, rgbd, rgbp."};
 }
 

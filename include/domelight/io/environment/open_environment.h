@@ -11,8 +11,8 @@ namespace domelight {
 
 /// How to interpret an environment's file where the file does not say so itself.
 struct EnvironmentOptions {
-    /// auto | latlong | cube-cross | cube-strip | cube-faces, or any other of projections.h, with its convention:
-    /// "angular/centre=+Z", "mirror-ball/fov=20".
+    /// auto | latlong | cube | cube-cross | cube-strip | cube-faces, or any other of projections.h, each with its
+    /// convention: "latlong/usd", "cube/openexr", "angular/centre=+Z", "mirror-ball/fov=20".
     std::string projection = "auto";
     /// Lat-long convention: default, usd, mitsuba, openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]", or pbrt
     /// (the equal-area octahedral square). Empty: the convention that the file states, otherwise default.
