@@ -1,9 +1,10 @@
-#include "domelight/io/file/atomic_file.h"
 #include "domelight/bake/bake.h"
+#include "domelight/io/file/atomic_file.h"
 
-#include "cli/console/arguments.h"
 #include "cli/commands.h"
+#include "cli/console/arguments.h"
 #include "cli/console/console.h"
+#include "cli/console/suggestion.h"
 
 #include <fmt/core.h>
 
@@ -43,33 +44,43 @@ std::string help() {
         "reference renders.\n\nCommands:\n";
     for (const Command& command : k_commands) text += fmt::format("  {:<28}{}\n", command.name, command.does);
     return text +
-           "\ndomelight COMMAND --help lists a command's options.\n"
+           "\ndomelight help COMMAND (or domelight COMMAND --help) lists a command's options.\n"
            "  --version                   the version\n"
            "  --help                      this text\n"
            "\nExit status: 0 done, 1 failed, 2 wrong usage.\n";
 }
 
-std::string command_names() {
-    std::vector<std::string> names;
-    for (const Command& command : k_commands) names.emplace_back(command.name);
-    return join(names, ", ");
+/// Says that a word is no command.
+int refuse(const std::string& word) {
+    std::vector<std::string> commands, names{"help", "--help", "--version"};
+    for (const Command& command : k_commands) commands.emplace_back(command.name);
+    names.insert(names.end(), commands.begin(), commands.end());
+    return print_error(
+        {fmt::format("unknown {} {}", word.starts_with("-") ? "option" : "command", word), "",
+         fmt::format("{}Commands: {}. Options: --help, --version.", did_you_mean(word, names), join(commands, ", "))},
+        exit_usage);
 }
 
 int run(const std::vector<std::string>& words) {
-    if (words.empty() || words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
-        fmt::print(words.empty() ? stderr : stdout, "{}", help());
-        return words.empty() ? exit_usage : exit_done;
+    if (words.empty()) {
+        fmt::print(stderr, "{}", help());
+        return exit_usage;
+    }
+    const bool wants_help = words[0] == "--help" || words[0] == "-h" || words[0] == "help";
+    if (wants_help && words.size() == 1) {
+        fmt::print("{}", help());
+        return exit_done;
     }
     if (words[0] == "--version") {
         fmt::print("domelight {}\n", version());
         return exit_done;
     }
+    const std::string& name = words[wants_help ? 1 : 0];
     for (const Command& command : k_commands)
-        if (words[0] == command.name) return command.run({words.begin() + 1, words.end()});
-    const bool option = words[0].starts_with("-");
-    return print_error({fmt::format("unknown {} {}", option ? "option" : "command", words[0]), "",
-                        fmt::format("Commands: {}. Options: --help, --version.", command_names())},
-                       exit_usage);
+        if (name == command.name)
+            return command.run(wants_help ? std::vector<std::string>{"--help"}
+                                          : std::vector<std::string>(words.begin() + 1, words.end()));
+    return refuse(name);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "cli/console/arguments.h"
 
+#include "cli/console/suggestion.h"
+
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -87,6 +89,7 @@ struct Arguments::Parser {
         std::vector<std::string> names;
         for (const Entry& entry : entries)
             if (entry.name.starts_with("-")) names.push_back(entry.name.substr(entry.name.find("--")));
+        names.push_back("--help");
         return names;
     }
 };
@@ -167,7 +170,8 @@ namespace {
 
 Result<void> check_choice(const std::string& word, const std::vector<std::string>& accepted) {
     if (std::find(accepted.begin(), accepted.end(), word) != accepted.end()) return {};
-    return Error{fmt::format("\"{}\" is not one of its values", word), "", "Accepted: " + join(accepted, ", ") + "."};
+    return Error{fmt::format("\"{}\" is not one of its values", word), "",
+                 did_you_mean(word, accepted) + "Accepted: " + join(accepted, ", ") + "."};
 }
 
 }  // namespace
@@ -223,7 +227,9 @@ Result<void> Arguments::parse(const std::vector<std::string>& words) {
         const auto rest = parser_->app.remaining();
         const std::string first = rest.empty() ? "" : rest.front();
         if (!first.starts_with("-")) return Error{"\"" + first + "\" is one argument too many", "", see};
-        return Error{"unknown option " + first, "", "Accepted: " + join(parser_->option_names(), ", ") + ", --help."};
+        const auto names = parser_->option_names();
+        return Error{"unknown option " + first, "",
+                     did_you_mean(split(first, '=')[0], names) + "Accepted: " + join(names, ", ") + "."};
     } catch (const CLI::ArgumentMismatch&) {
         // The one that is the last word has nothing behind it; CLI11's own text does not read well.
         return Error{"needs one value", words.empty() ? "" : words.back(), see};
@@ -257,6 +263,8 @@ std::string wrap(const std::string& text, std::size_t width, std::size_t indent)
     return out;
 }
 
+constexpr const char* k_about_defaults = "What stands in parentheses at the end of a description is the default.";
+
 }  // namespace
 
 std::string Arguments::help() const {
@@ -265,7 +273,7 @@ std::string Arguments::help() const {
     std::string usage = "domelight " + command_;
     for (const auto& entry : parser_->entries)
         if (entry.group.empty()) usage += " [" + entry.name + " ...]";
-    out += "\n" + usage + " [OPTIONS]\n" + wrap(summary_, 100, 0) + "\n";
+    out += "\n" + usage + " [OPTIONS]\n" + wrap(summary_, 100, 0) + "\n\n" + k_about_defaults + "\n";
     std::string group;
     for (const auto& entry : parser_->entries) {
         if (entry.group != group) {

@@ -82,6 +82,28 @@ def test_examples_in_every_help_run(folder):
         run(*line.split()[1:], "--quiet", folder=folder)
 
 
+def test_help_of_a_command(folder):
+    overview = run("help", folder=folder).stdout
+    assert overview == run("--help", folder=folder).stdout and "domelight help COMMAND" in overview
+    for command in ["bake", "compare", "convert", "info", "lights", "render", "sample", "sky"]:
+        text = run("help", command, folder=folder).stdout
+        assert text == run(command, "--help", folder=folder).stdout
+        assert text.count("is the default") == 1, command
+    assert "Did you mean bake?" in run("help", "bkae", folder=folder, code=2).stderr
+
+
+def test_what_was_meant_is_suggested(folder):
+    for words, meant in [
+        (["convrt"], "convert"), (["infos"], "info"), (["skey"], "sky"), (["ren"], "render"), (["--versoin"], "--version"),
+        (["bake", "--rougness", "0,1"], "--roughness"), (["bake", "-o", "o", "--out", "o"], "--output"),
+        (["bake", "--irradiance_size=8"], "--irradiance-size"), (["render", "ball", "-size", "8"], None),
+        (["convert", "a.hdr", "--form", "cube"], "--from"), (["sky", "--sun-elevation", "4"], "--sun-elevation-deg"),
+        (["bake", "-o", "o", "--encoding", "rgb9e"], "rgb9e5"), (["bake", "-o", "o", "--nonsense"], None), (["nonsense"], None),
+    ]:
+        said = run(*words, folder=folder, code=2).stderr
+        assert (f"Did you mean {meant}?" in said) if meant else ("Did you mean" not in said), (words, said)
+
+
 def test_version(folder):
     assert re.fullmatch(r"domelight \d+\.\d+\.\d+\n", run("--version", folder=folder).stdout)
 
@@ -120,7 +142,12 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["bake", "-o", "o", "--sh-bands", "0"], "1 to 64"),
         (["bake", "-o", "o", "--threads", "-1"], "0 to 1024"),
         (["bake", "-o", "o", "--exposure", "much"], "number"),
-        (["bake", "-o", "o", "--for", "three-latlong", "--levels", "5"], "filters it itself"),
+        (["bake", "-o", "o", "--for", "three-latlong", "--levels", "5"], "error: --levels: does not apply to --for three-latlong"),
+        (["bake", "-o", "o", "--for", "three-latlong", "--layout", "cube"], "error: --layout: cube does not apply to --for three-latlong"),
+        (["bake", "-o", "o", "--irradiance-size", "0"], "error: --irradiance-size: 0 is not from 1 to 4096"),
+        (["bake", "-o", "o", "--riemann-steps", "0x1"], "error: --riemann-steps: 0 is not from 1 to 65536"),
+        (["bake", "studio.hdr", "-o", "o", "--projection", "cube/sideways"], "error: --projection: "),
+        (["bake", "studio.hdr", "-o", "o", "--projection", "latlong/usd", "--latlong", "mod"], "error: --latlong: mod contradicts --projection latlong/usd"),
         (["bake", "-o", "o", "--for", "babylon", "--size", "100"], "power of two"),
         (["bake", "-o", "o", "--for", "playcanvas", "--size", "64"], "one size"),
         (["bake", "-o", "o", "--for", "gltf", "--encoding", "rgb9e5"], "rgbd only"),
@@ -809,6 +836,44 @@ def test_convert_every_projection_there_and_back(folder):
     assert halves["files"] == ["dp_front.hdr", "dp_back.hdr"]
     again = converted(folder, "dp_front.hdr", "dp_back.hdr", "again.hdr", "--from", "dual-paraboloid")
     assert abs(again["power"]["relative_change"]) < 1e-2
+
+
+def test_convert_reads_every_projection_by_the_name_that_wrote_it(folder):
+    """The names are those of docs/projections.md."""
+    table = re.findall(r"^\| (`[^|]*) \|", (ROOT / "docs/projections.md").read_text(), re.MULTILINE)
+    names = [name.replace("=F", "=30") for cell in table for name in re.findall("`([^`]*)`", cell)]
+    assert "cube" in names and len(names) == 12, names
+    for name in [*names, "latlong/usd", "cube/openexr", "cube/centre=+Z,right=-X"]:
+        converted(folder, "evening.hdr", "-o", "there.exr", "--to", name, "--size", "32")
+        back = converted(folder, "there.exr", "-o", "back.exr", "--from", name, "--to", "latlong")
+        assert back["source"]["projection"] == {"pbrt": "equal-area-octahedral"}.get(name, name.split("/")[0]), (name, back)
+    converted(folder, "evening.hdr", "-o", "face.exr", "--to", "cube", "--layout", "faces", "--size", "16")
+    converted(folder, *[f"face_{f}.exr" for f in ["px", "nx", "py", "ny", "pz", "nz"]], "-o", "back.exr", "--from", "cube")
+    converted(folder, "evening.hdr", "-o", "cube.ktx2", "--size", "16")
+    converted(folder, "cube.ktx2", "-o", "back.exr", "--from", "cube")
+    assert "a cube must be a cross" in run("convert", "evening.hdr", "-o", "x.hdr", "--from", "cube", folder=folder, code=1).stderr
+
+
+def test_cube_faces_are_known_by_every_name(folder):
+    """In the order of the command line or in a folder, the bytes of a bake are the same."""
+    converted(folder, "evening.hdr", "-o", "face.exr", "--to", "cube", "--layout", "faces", "--size", "16")
+    ours = [f"face_{f}.exr" for f in ["px", "nx", "py", "ny", "pz", "nz"]]
+    run("bake", *ours, "-o", "ours", *SMALL, folder=folder)
+    for number, names in enumerate([["sky_px", "sky_mx", "sky_py", "sky_my", "sky_pz", "sky_mz"],
+                                    ["f_+X", "f_-X", "f_+Y", "f_-Y", "f_+Z", "f_-Z"],
+                                    ["px_sky", "nx_sky", "py_sky", "ny_sky", "pz_sky", "nz_sky"],
+                                    ["sky_right", "sky_left", "sky_up", "sky_down", "sky_front", "sky_back"]]):
+        faces = folder / f"faces{number}"
+        faces.mkdir()
+        for name, own in zip(names, ours):
+            shutil.copy(folder / own, faces / f"{name}.exr")
+        run("bake", faces.name, "-o", f"a{number}", *SMALL, folder=folder)
+        run("bake", *[f"{faces.name}/{name}.exr" for name in reversed(names)], "-o", f"b{number}", *SMALL, folder=folder)
+        for other in [f"a{number}", f"b{number}"]:
+            assert files_of(folder / other)["specular.ktx2"] == files_of(folder / "ours")["specular.ktx2"], names
+            assert manifest_of(folder / other)["source"]["sha256"] == manifest_of(folder / "ours")["source"]["sha256"], names
+    (folder / "empty").mkdir()
+    assert "0 files named as faces" in run("info", "empty", folder=folder, code=1).stderr
 
 
 def test_a_mirror_ball_goes_through_every_command(folder):
