@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/console/arguments.h"
 #include "cli/console/console.h"
+#include "cli/console/print.h"
 #include "cli/console/suggestion.h"
 
 #include <fmt/core.h>
@@ -63,16 +64,16 @@ int refuse(const std::string& word) {
 
 int run(const std::vector<std::string>& words) {
     if (words.empty()) {
-        fmt::print(stderr, "{}", help());
+        print_lines(help(), stderr);
         return exit_usage;
     }
     const bool wants_help = words[0] == "--help" || words[0] == "-h" || words[0] == "help";
     if (wants_help && words.size() == 1) {
-        fmt::print("{}", help());
+        print_lines(help());
         return exit_done;
     }
     if (words[0] == "--version") {
-        fmt::print("domelight {}\n", version());
+        print("domelight {}\n", version());
         return exit_done;
     }
     const std::string& name = words[wants_help ? 1 : 0];

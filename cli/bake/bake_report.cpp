@@ -3,6 +3,7 @@
 #include "base/json.h"
 #include "cli/console/console.h"
 #include "cli/console/field_options.h"
+#include "cli/console/print.h"
 
 #include <fmt/core.h>
 
@@ -28,31 +29,31 @@ void print_map(const BakedMap& map) {
     if (map.widened) line += fmt::format(" ({})", k_why_float_channels);
     if (map.levels.size() > 1) line += fmt::format(", {} levels to {}", map.levels.size(), map.levels.back().size);
     if (map.quantity != Quantity::radiance) line += ", " + quantity_name(map.quantity);
-    fmt::print("{}\n", line);
+    print("{}\n", line);
 }
 
 }  // namespace
 
 void print_summary(const BakeOutcome& outcome) {
     if (outcome.up_to_date) {
-        fmt::print("{}: up to date\n", outcome.folder.string());
+        print("{}: up to date\n", outcome.folder.string());
         return;
     }
     for (const EngineReport& engine : outcome.report.engines) {
-        fmt::print("{}: {} for {}\n", engine.folder.string(),
-                   outcome.environment.empty() ? "the built-in sky" : outcome.environment.front(), engine.name);
+        print("{}: {} for {}\n", engine.folder.string(),
+              outcome.environment.empty() ? "the built-in sky" : outcome.environment.front(), engine.name);
         for (const BakedMap& map : engine.maps) print_map(map);
-        fmt::print("  {:<28} harmonics: {} bands; E is off by {} RMS, {} at most\n", engine.sh.files.front().file,
-                   engine.sh.bands, percent(engine.sh.rms_error), percent(engine.sh.max_error));
+        print("  {:<28} harmonics: {} bands; E is off by {} RMS, {} at most\n", engine.sh.files.front().file,
+              engine.sh.bands, percent(engine.sh.rms_error), percent(engine.sh.max_error));
         if (!engine.brdf.file.file.empty())
-            fmt::print("  {:<28} BRDF table: {}^2, {}, {}\n", engine.brdf.file.file, engine.brdf.size,
-                       engine.brdf.encoding, brdf_form_name(engine.brdf.form));
-        if (engine.preview) fmt::print("  {:<28} a picture of it all\n", engine.preview->file);
-        fmt::print("  {:<28} what everything is\n", "manifest.json");
+            print("  {:<28} BRDF table: {}^2, {}, {}\n", engine.brdf.file.file, engine.brdf.size,
+                  engine.brdf.encoding, brdf_form_name(engine.brdf.form));
+        if (engine.preview) print("  {:<28} a picture of it all\n", engine.preview->file);
+        print("  {:<28} what everything is\n", "manifest.json");
         for (const Engine& e : engines())
-            if (e.name == engine.name && !e.note.empty()) fmt::print("  note: {}\n", e.note);
+            if (e.name == engine.name && !e.note.empty()) print("  note: {}\n", e.note);
     }
-    fmt::print("{:.2f} s\n", outcome.seconds);
+    print("{:.2f} s\n", outcome.seconds);
 }
 
 void print_json(const std::vector<BakeOutcome>& outcomes) {
@@ -78,8 +79,7 @@ void print_json(const std::vector<BakeOutcome>& outcomes) {
                                        {"manifest", *Json::parse(e.manifest)}});
         bakes.push_back(bake);
     }
-    fmt::print("{}\n",
-               Json{{"version", version()}, {"bakes", bakes}}.dump(2));
+    print_document(Json{{"version", version()}, {"bakes", bakes}});
 }
 
 }  // namespace domelight::cli

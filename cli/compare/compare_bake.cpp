@@ -13,6 +13,7 @@
 #include "io/environment/cube_texture_reader.h"
 #include "io/file/file_reader.h"
 #include "projection/latlong_convention.h"
+#include "cli/console/print.h"
 
 #include <fmt/core.h>
 
@@ -175,7 +176,7 @@ void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, co
                     {"roughness_stated_by", bake.stated_by},
                     {"levels", levels},
                     {"warnings", with_options(warnings)}};
-    fmt::print("{}\n", json.dump(2));
+    print_document(json);
 }
 
 std::string percent(double v) {
@@ -207,38 +208,38 @@ const char* width_legend(Lobe lobe) {
 
 void print_text(const BakeWords& w, const Bake& bake, const BakeAudit& audit, const std::string& as_convention) {
     const CubeOrientation& o = audit.orientation;
-    fmt::print("{}: {}, {}², {} level{}\n", join(w.bake, " "), bake.format, bake.levels[0].cube.size(),
-               bake.levels.size(), bake.levels.size() == 1 ? "" : "s");
-    fmt::print("against the exact filter ({}) of {}\n\n", lobe_name(audit.lobe),
-               w.env.empty() ? "the built-in sky" : join(w.env, " "));
-    fmt::print("  verdict       {}\n", audit.verdict);
-    for (const std::string& note : audit.notes) fmt::print("                {}\n", note);
-    fmt::print("  orientation   {}\n", o.words);
-    if (!as_convention.empty()) fmt::print("                that is as ours with --latlong {}\n", as_convention);
-    fmt::print("                error {}, the next best orientation {}{}\n\n", percent(o.error), percent(o.next_error),
-               o.certain || !audit.of_source ? "" : ": the light cannot tell them apart");
+    print("{}: {}, {}², {} level{}\n", join(w.bake, " "), bake.format, bake.levels[0].cube.size(),
+          bake.levels.size(), bake.levels.size() == 1 ? "" : "s");
+    print("against the exact filter ({}) of {}\n\n", lobe_name(audit.lobe),
+          w.env.empty() ? "the built-in sky" : join(w.env, " "));
+    print("  verdict       {}\n", audit.verdict);
+    for (const std::string& note : audit.notes) print("                {}\n", note);
+    print("  orientation   {}\n", o.words);
+    if (!as_convention.empty()) print("                that is as ours with --latlong {}\n", as_convention);
+    print("                error {}, the next best orientation {}{}\n\n", percent(o.error), percent(o.next_error),
+          o.certain || !audit.of_source ? "" : ": the light cannot tell them apart");
     const bool stated = std::any_of(audit.levels.begin(), audit.levels.end(),
                                     [](const LevelAudit& l) { return l.stated_roughness.has_value(); });
-    fmt::print("  {:>5}  {:>5}  {:>16}  {:>7}  {:>7}  {:>8}  {:>8}  {:>8}", "level", "size",
-               audit.levels[0].exponent ? "exponent" : "roughness", "scale", "energy", "error", "RMSE", "largest");
-    if (stated) fmt::print("  | {:>7}  {:>8}  {:>8}", "stated", "error", "RMSE");
-    fmt::print("\n");
+    print("  {:>5}  {:>5}  {:>16}  {:>7}  {:>7}  {:>8}  {:>8}  {:>8}", "level", "size",
+          audit.levels[0].exponent ? "exponent" : "roughness", "scale", "energy", "error", "RMSE", "largest");
+    if (stated) print("  | {:>7}  {:>8}  {:>8}", "stated", "error", "RMSE");
+    print("\n");
     for (std::size_t i = 0; i < audit.levels.size(); ++i) {
         const LevelAudit& l = audit.levels[i];
-        fmt::print("  {:>5}  {:>5}  {:>16}  {:>7.4f}  {:>7.4f}  {:>8}  {:>8}  {:>8}", i, l.size, width_text(l), l.scale,
-                   l.energy, percent(l.error), percent(l.relative_rmse), percent(l.largest));
+        print("  {:>5}  {:>5}  {:>16}  {:>7.4f}  {:>7.4f}  {:>8}  {:>8}  {:>8}", i, l.size, width_text(l), l.scale,
+              l.energy, percent(l.error), percent(l.relative_rmse), percent(l.largest));
         if (l.stated_roughness)
-            fmt::print("  | {:>7.4g}  {:>8}  {:>8}", bake.levels[i].exponent.value_or(*l.stated_roughness),
-                       percent(l.stated_error), percent(l.stated_relative_rmse));
-        fmt::print("\n");
+            print("  | {:>7.4g}  {:>8}  {:>8}", bake.levels[i].exponent.value_or(*l.stated_roughness),
+                  percent(l.stated_error), percent(l.stated_relative_rmse));
+        print("\n");
     }
-    fmt::print(
+    print(
         "\n  {}\n"
         "  scale         median of theirs / exact          energy   ratio of the means over the sphere\n"
         "  error         RMS of (theirs - fit) / max(theirs, fit), every direction alike; RMSE relative, the brightest "
         "count most\n",
         width_legend(audit.lobe));
-    if (stated) fmt::print("  stated        by {}; errors there, at scale 1\n", bake.stated_by);
+    if (stated) print("  stated        by {}; errors there, at scale 1\n", bake.stated_by);
 }
 
 }  // namespace

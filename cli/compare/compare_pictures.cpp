@@ -10,6 +10,7 @@
 #include "compare/compare_sheet.h"
 #include "compare/picture_reader.h"
 #include "preview/tonemap.h"
+#include "cli/console/print.h"
 
 #include <fmt/core.h>
 
@@ -459,32 +460,32 @@ void print_json(const Comparison& c, const std::vector<std::string>& failures) {
     json["skipped_pixels"] = c.skipped;
     json["failures"] = failures;
     json["warnings"] = with_options(c.warnings);
-    fmt::print("{}\n", json.dump(2));
+    print_document(json);
 }
 
 void print_noise(const NoiseSummary& n) {
-    fmt::print("\n  noise, as the files state it ({} channel values)\n", n.values);
-    fmt::print("    mean A / mean B      {:.6g}, 95 % within [{:.6g}, {:.6g}]\n", n.mean_ratio, n.ratio_low,
-               n.ratio_high);
-    fmt::print("    z of the means       {:+.2f}       {}\n", n.total_z,
-               std::abs(n.total_z) > 3   ? "a bias"
-               : std::abs(n.total_z) > 2 ? "perhaps a bias"
-                                         : "no bias seen");
-    fmt::print("    chi2 / values        {:.4g}      {}\n", n.chi2,
-               n.chi2 < 0.7
-                   ? "below 1: the pictures share samples, or stratified ones, whose stated variance is an upper bound"
-               : n.chi2 < 1.3 ? "noise explains the difference"
-                              : "above 1: more than noise");
-    fmt::print("    share of |z| > 2     {:.2f} %     of normal noise 4.55 %\n", 100 * n.share_above_2);
-    if (n.without_noise) fmt::print("    differ without noise {}\n", n.without_noise);
+    print("\n  noise, as the files state it ({} channel values)\n", n.values);
+    print("    mean A / mean B      {:.6g}, 95 % within [{:.6g}, {:.6g}]\n", n.mean_ratio, n.ratio_low,
+          n.ratio_high);
+    print("    z of the means       {:+.2f}       {}\n", n.total_z,
+          std::abs(n.total_z) > 3   ? "a bias"
+          : std::abs(n.total_z) > 2 ? "perhaps a bias"
+                                    : "no bias seen");
+    print("    chi2 / values        {:.4g}      {}\n", n.chi2,
+          n.chi2 < 0.7
+              ? "below 1: the pictures share samples, or stratified ones, whose stated variance is an upper bound"
+          : n.chi2 < 1.3 ? "noise explains the difference"
+                         : "above 1: more than noise");
+    print("    share of |z| > 2     {:.2f} %     of normal noise 4.55 %\n", 100 * n.share_above_2);
+    if (n.without_noise) print("    differ without noise {}\n", n.without_noise);
 }
 
 void print_objects(const Comparison& c) {
     constexpr std::size_t k_most = 60;
     std::size_t width = 12;
     for (const ObjectRow& row : c.objects) width = std::max(width, std::min<std::size_t>(row.name.size(), 32));
-    fmt::print("\n  {:<{}}  {:>9}  {:>10}  {:>9}  {:>11}  {:>7}  {:>7}  {:>8}\n", "object", width, "pixels", "RMSE",
-               "relative", "tone-mapped", "SSIM", "FLIP", "A / B");
+    print("\n  {:<{}}  {:>9}  {:>10}  {:>9}  {:>11}  {:>7}  {:>7}  {:>8}\n", "object", width, "pixels", "RMSE",
+          "relative", "tone-mapped", "SSIM", "FLIP", "A / B");
     std::vector<const ObjectRow*> rows;
     for (const ObjectRow& row : c.objects) rows.push_back(&row);
     std::stable_sort(rows.begin(), rows.end(),
@@ -492,43 +493,43 @@ void print_objects(const Comparison& c) {
     for (std::size_t i = 0; i < std::min(rows.size(), k_most); ++i) {
         const ObjectRow& row = *rows[i];
         const auto flip = row.hdr_flip ? row.hdr_flip : row.flip;
-        fmt::print("  {:<{}}  {:>9}  {:>10.4g}  {:>7.3g} %  {:>11.4g}  {:>7.4f}  {:>7}  {:>8.5g}\n",
-                   row.name.substr(0, 32), width, row.errors.pixels, row.errors.rmse, 100 * row.errors.relative_rmse,
-                   row.errors.tone_mapped_rmse, row.errors.ssim, flip ? fmt::format("{:.4f}", *flip) : "-",
-                   row.errors.mean_ratio);
+        print("  {:<{}}  {:>9}  {:>10.4g}  {:>7.3g} %  {:>11.4g}  {:>7.4f}  {:>7}  {:>8.5g}\n",
+              printable(row.name, 32), width, row.errors.pixels, row.errors.rmse, 100 * row.errors.relative_rmse,
+              row.errors.tone_mapped_rmse, row.errors.ssim, flip ? fmt::format("{:.4f}", *flip) : "-",
+              row.errors.mean_ratio);
     }
-    if (rows.size() > k_most) fmt::print("  ... and {} smaller ones (--json has all)\n", rows.size() - k_most);
+    if (rows.size() > k_most) print("  ... and {} smaller ones (--json has all)\n", rows.size() - k_most);
 }
 
 void print_text(const Comparison& c, const PictureWords& w) {
     const auto picture = [](const char* letter, const std::string& name, const Picture& p, const char* role) {
-        fmt::print("{}  {}: {}, {}{}\n", letter, name, p.format, size_text(p.rgb), role);
+        print("{}  {}: {}, {}{}\n", letter, name, p.format, size_text(p.rgb), role);
     };
     picture("A", c.a, c.test, "");
     picture("B", c.b, c.reference, ", the reference");
     const Errors& e = c.errors;
-    fmt::print("\n  RMSE                   {:<12.6g}\n", e.rmse);
-    fmt::print("  relative RMSE          {:<12}\n", fmt::format("{:.4g} %", 100 * e.relative_rmse));
-    fmt::print("  tone-mapped RMSE       {:<12.6g} of L / (1 + L)\n", e.tone_mapped_rmse);
-    fmt::print("  PSNR                   {:<12} of L / (1 + L), peak 1\n", fmt::format("{:.2f} dB", e.psnr));
-    fmt::print("  SSIM                   {:<12.6g} of the luminance of L / (1 + L)\n", e.ssim);
+    print("\n  RMSE                   {:<12.6g}\n", e.rmse);
+    print("  relative RMSE          {:<12}\n", fmt::format("{:.4g} %", 100 * e.relative_rmse));
+    print("  tone-mapped RMSE       {:<12.6g} of L / (1 + L)\n", e.tone_mapped_rmse);
+    print("  PSNR                   {:<12} of L / (1 + L), peak 1\n", fmt::format("{:.2f} dB", e.psnr));
+    print("  SSIM                   {:<12.6g} of the luminance of L / (1 + L)\n", e.ssim);
     if (c.flip)
-        fmt::print("  FLIP                   {:<12.6g} {}{:.1f} pixels a degree\n", *c.flip,
-                   c.reference.high_dynamic_range ? fmt::format("at {:+.2f} EV, ", c.exposure_ev) : "",
-                   w.pixels_per_degree);
+        print("  FLIP                   {:<12.6g} {}{:.1f} pixels a degree\n", *c.flip,
+              c.reference.high_dynamic_range ? fmt::format("at {:+.2f} EV, ", c.exposure_ev) : "",
+              w.pixels_per_degree);
     if (c.hdr_flip)
-        fmt::print("  HDR-FLIP               {:<12.6g} largest of {} exposures, {:+.1f} to {:+.1f} EV\n", *c.hdr_flip,
-                   c.hdr.count, c.hdr.start, c.hdr.stop);
-    fmt::print("  mean A / mean B        {:<12.6g}\n", e.mean_ratio);
-    fmt::print("  largest difference     {:<12.6g} at ({}, {})\n", e.largest, e.largest_x, e.largest_y);
+        print("  HDR-FLIP               {:<12.6g} largest of {} exposures, {:+.1f} to {:+.1f} EV\n", *c.hdr_flip,
+              c.hdr.count, c.hdr.start, c.hdr.stop);
+    print("  mean A / mean B        {:<12.6g}\n", e.mean_ratio);
+    print("  largest difference     {:<12.6g} at ({}, {})\n", e.largest, e.largest_x, e.largest_y);
     if (!c.mask.empty())
-        fmt::print("  pixels that count      {} of {}\n", e.pixels,
-                   std::int64_t(c.test.rgb.width()) * c.test.rgb.height());
+        print("  pixels that count      {} of {}\n", e.pixels,
+              std::int64_t(c.test.rgb.width()) * c.test.rgb.height());
     if (c.noise) print_noise(*c.noise);
     if (!c.objects.empty()) print_objects(c);
     for (const auto& file : {w.heat, w.sheet})
-        if (!file.empty()) fmt::print("\n  wrote {}", file);
-    if (!w.heat.empty() || !w.sheet.empty()) fmt::print("\n");
+        if (!file.empty()) print("\n  wrote {}", file);
+    if (!w.heat.empty() || !w.sheet.empty()) print("\n");
 }
 
 Result<void> check_words(const PictureWords& w) {

@@ -1,6 +1,7 @@
 #include "cli/console/console.h"
 
 #include "cli/console/field_options.h"
+#include "cli/console/print.h"
 
 #include <fmt/core.h>
 #include <sys/ioctl.h>
@@ -27,7 +28,8 @@ Result<void> check_common_options(const CommonOptions& options) {
 
 int print_error(const Error& error, int otherwise) {
     const Error told = with_options(error);
-    fmt::print(stderr, "error: {}\n", told.format());
+    const Error shown{escaped(told.what), escaped(told.where), escaped(told.hint)};
+    fmt::print(stderr, "error: {}\n", shown.format());
     return told.where.starts_with("--") ? exit_usage : otherwise;
 }
 
@@ -35,7 +37,7 @@ std::optional<int> begin_command(Arguments& arguments, const std::vector<std::st
                                  const CommonOptions& options) {
     if (auto ok = arguments.parse(words); !ok) return print_error(ok.error(), exit_usage);
     if (arguments.help_wanted()) {
-        fmt::print("{}", arguments.help());
+        print_lines(arguments.help());
         return exit_done;
     }
     if (auto ok = check_common_options(options); !ok) return print_error(ok.error(), exit_usage);
@@ -45,7 +47,8 @@ std::optional<int> begin_command(Arguments& arguments, const std::vector<std::st
 void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options, const std::string& place) {
     if (options.quiet) return;
     for (const std::string& warning : warnings)
-        fmt::print(stderr, "warning: {}{}{}\n", place, place.empty() ? "" : ": ", with_options(warning));
+        fmt::print(stderr, "warning: {}{}{}\n", escaped(place), place.empty() ? "" : ": ",
+                   escaped(with_options(warning)));
 }
 
 std::string clock_text(double seconds) {
@@ -55,7 +58,7 @@ std::string clock_text(double seconds) {
 }
 
 ProgressBar::ProgressBar(std::string title, const CommonOptions& options)
-    : title_(std::move(title)),
+    : title_(escaped(title)),
       start_(std::chrono::steady_clock::now()),
       on_(!options.quiet && !options.json && isatty(STDERR_FILENO)) {}
 
@@ -77,7 +80,7 @@ bool ProgressBar::update(std::string_view stage, double done) {
     stage_ = stage;
     drawn_ = now;
     const int full = int(std::clamp(done, 0.0, 1.0) * 24);
-    std::string line = fmt::format("{}  {:<8} [{}{}] {:3.0f} %", title_, stage, std::string(full, '#'),
+    std::string line = fmt::format("{}  {:<8} [{}{}] {:3.0f} %", title_, escaped(stage), std::string(full, '#'),
                                    std::string(24 - full, '.'), 100 * done);
     if (!detail_.empty()) line += "  " + detail_;
     // Estimated from what has been done so far; earlier the estimate would be unstable.
@@ -85,7 +88,7 @@ bool ProgressBar::update(std::string_view stage, double done) {
     if (spent > 1 && done > 0.01 && done < 1) line += fmt::format("  {} left", clock_text(spent / done * (1 - done)));
     // A line that wraps could not be taken back.
     if (winsize window{}; ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 1)
-        line.resize(std::min(line.size(), std::size_t(window.ws_col) - 1));
+        line = printable(line, std::size_t(window.ws_col) - 1);
     if (line == shown_) return true;
     shown_ = line;
     fmt::print(stderr, "\r{}\033[K", line);

@@ -1,6 +1,7 @@
 #include "cli/console/interruption.h"
 
 #include "cli/console/console.h"
+#include "cli/console/print.h"
 
 #include <fmt/core.h>
 #include <signal.h>
@@ -53,7 +54,7 @@ bool Interruption::wanted() {
 }
 
 int Interruption::end(const std::string& what) {
-    fmt::print(stderr, "interrupted: {}\n", what);
+    fmt::print(stderr, "interrupted: {}\n", escaped(what));
     std::fflush(nullptr);
     restore();
     if (g_signal != 0) ::raise(g_signal);

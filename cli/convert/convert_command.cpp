@@ -9,6 +9,8 @@
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/display_options.h"
+#include "cli/console/print.h"
+#include "cli/convert/convert_output.h"
 #include "cli/console/environment_options.h"
 #include "cli/convert/convert_output.h"
 #include "cli/convert/convert_picture.h"
@@ -165,19 +167,19 @@ void print_json(const ConvertWords& w, const Environment& environment, const Con
           {"relative_change", relative(luminance(made.power_before), luminance(made.power_after))}}},
         {"clipped_texels", written.encoding.clipped_texels},
         {"clipped_energy", written.encoding.clipped_energy}};
-    fmt::print("{}\n", json.dump(2));
+    print_document(json);
 }
 
 void print_text(const ConvertWords& w, const Conversion& made, const WrittenPicture& written) {
-    fmt::print("{}: {} ({}), {} x {}{}\n", join(written.files, ", "), w.to, w.output.layout, made.image.width(),
-               made.image.height(), made.image.projection.charts() > 1 ? " each" : "");
+    print("{}: {} ({}), {} x {}{}\n", join(written.files, ", "), w.to, w.output.layout, made.image.width(),
+          made.image.height(), made.image.projection.charts() > 1 ? " each" : "");
     const double before = luminance(made.power_before), after = luminance(made.power_after);
-    fmt::print("radiant power {:.6g} before, {:.6g} after ({:+.2g} %), resampled: {}\n", before, after,
-               100 * relative(before, after), made.method);
-    if (written.widened) fmt::print("32-bit float channels: {}\n", k_why_float_channels);
+    print("radiant power {:.6g} before, {:.6g} after ({:+.2g} %), resampled: {}\n", before, after,
+          100 * relative(before, after), made.method);
+    if (written.widened) print("32-bit float channels: {}\n", k_why_float_channels);
     if (written.encoding.clipped_texels > 0)
-        fmt::print("{} clips {} texels and {:.3g} % of the power\n", written.encoding_name,
-                   written.encoding.clipped_texels, 100 * written.encoding.clipped_energy);
+        print("{} clips {} texels and {:.3g} % of the power\n", written.encoding_name,
+              written.encoding.clipped_texels, 100 * written.encoding.clipped_energy);
 }
 
 Result<void> check(ConvertWords& w) {

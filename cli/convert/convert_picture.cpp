@@ -5,6 +5,7 @@
 #include "domelight/io/write_image.h"
 
 #include "base/json.h"
+#include "cli/console/print.h"
 #include "cli/console/output_endings.h"
 #include "compare/picture_reader.h"
 #include "preview/screen_picture.h"
@@ -66,9 +67,9 @@ void print_result(const PictureConversion& c, const Picture& picture, const Disp
                   {"width", width},
                   {"height", height}};
         if (screen) json["tonemap"] = tonemap, json["ev"] = ev;
-        fmt::print("{}\n", json.dump(2));
+        print_document(json);
     } else if (!common.quiet) {
-        fmt::print("{}: {} x {}, every pixel as it is{}\n", c.output, width, height,
+        print("{}: {} x {}, every pixel as it is{}\n", c.output, width, height,
                    screen ? fmt::format(", tone map {}, exposure {:+.2f} stops", tonemap, ev) : "");
     }
 }

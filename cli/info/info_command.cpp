@@ -7,6 +7,7 @@
 #include "base/sha256.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
+#include "cli/console/print.h"
 #include "cli/console/environment_options.h"
 #include "cli/console/field_options.h"
 #include "compare/picture_survey.h"
@@ -37,10 +38,6 @@ Json vector_json(const Vec3d& v) {
 }
 std::string rgb(const Vec3d& v) {
     return fmt::format("{:9.4g} {:9.4g} {:9.4g}", v.x, v.y, v.z);
-}
-
-void print_document(const Json& json) {
-    fmt::print("{}\n", json.dump(2));
 }
 
 // --- an environment ---
@@ -75,24 +72,24 @@ Json environment_json(const std::string& name, const Environment& e, const Envir
 }
 
 void print_environment(const std::string& name, const Environment& e, const EnvironmentSurvey& s) {
-    fmt::print("{}: {}, {} x {}, {}\n", name, e.format, e.width, e.height, e.projection);
-    fmt::print("  range            {:.6g} to {:.6g}\n", s.least, s.largest);
-    fmt::print("  mean radiance    {}   (red, green, blue)\n", rgb(s.mean_radiance));
-    for (int f = 0; f < 6; ++f) fmt::print("  irradiance {}    {}\n", k_axes[f], rgb(s.irradiance[f]));
+    print("{}: {}, {} x {}, {}\n", name, e.format, e.width, e.height, e.projection);
+    print("  range            {:.6g} to {:.6g}\n", s.least, s.largest);
+    print("  mean radiance    {}   (red, green, blue)\n", rgb(s.mean_radiance));
+    for (int f = 0; f < 6; ++f) print("  irradiance {}    {}\n", k_axes[f], rgb(s.irradiance[f]));
     for (const BrightLight& l : s.lights)
-        fmt::print(
+        print(
             "  bright light     {:4.1f} % of the power, direction ({:.3f}, {:.3f}, {:.3f}): azimuth {:.1f}, elevation "
             "{:.1f} degrees, {:.2g} degrees wide\n",
             100 * l.share, l.direction.x, l.direction.y, l.direction.z, l.azimuth_deg, l.elevation_deg,
             2 * l.radius_deg);
-    if (s.lights.empty()) fmt::print("  bright light     none stands out\n");
+    if (s.lights.empty()) print("  bright light     none stands out\n");
     const RepairReport r = e.report();
     if (r.repaired())
-        fmt::print(
+        print(
             "  bad texels       {} not a number, {} infinite, {} negative (down to {:.4g}); repaired on reading\n",
             r.not_a_number, r.infinite, r.negative, r.negative_radiance);
     else
-        fmt::print("  bad texels       none\n");
+        print("  bad texels       none\n");
 }
 
 int info_environment(const InfoWords& w) {
@@ -117,11 +114,11 @@ int info_environment(const InfoWords& w) {
 
 // --- a picture ---
 
-/// Values of keys may be anything in other tools' files: one line, printable, not too long.
-std::string shown(const std::string& value) {
-    std::string line;
-    for (const unsigned char c : value.substr(0, 200)) line += c == '\n' ? ' ' : c < 32 || c == 127 ? '?' : char(c);
-    return value.size() > 200 ? line + "..." : line;
+/// Values of keys may be anything in other tools' files: one line, not too long.
+std::string shown(std::string value) {
+    std::replace(value.begin(), value.end(), '\n', ' ');
+    const std::string line = printable(value, 200);
+    return line.size() < escaped(value).size() ? line + "..." : line;
 }
 
 /// Whether the file is described as a picture: because that was asked for, or because its shape or its layers rule out
@@ -143,23 +140,23 @@ std::vector<std::string> named_layers(const PictureFacts& facts) {
 }
 
 void print_picture(const std::string& file, const PictureFacts& facts, const Picture& picture, const PictureSurvey& s) {
-    fmt::print("{}: {}, {} x {}, a picture\n", file, facts.format, picture.rgb.width(), picture.rgb.height());
-    if (!facts.layers.empty()) fmt::print("  layers           {}\n", join(named_layers(facts), ", "));
-    fmt::print("  range            {:.6g} to {:.6g}\n", s.least, s.largest);
-    fmt::print("  mean             {}   (red, green, blue)\n", rgb(s.mean));
-    fmt::print("  exposure         {:+.2f} stops suit a screen\n", s.ev);
+    print("{}: {}, {} x {}, a picture\n", file, facts.format, picture.rgb.width(), picture.rgb.height());
+    if (!facts.layers.empty()) print("  layers           {}\n", join(named_layers(facts), ", "));
+    print("  range            {:.6g} to {:.6g}\n", s.least, s.largest);
+    print("  mean             {}   (red, green, blue)\n", rgb(s.mean));
+    print("  exposure         {:+.2f} stops suit a screen\n", s.ev);
     if (!picture.opacity.empty())
-        fmt::print("  opacity          {:.1f} % of the picture is covered{}\n", 100 * s.coverage,
+        print("  opacity          {:.1f} % of the picture is covered{}\n", 100 * s.coverage,
                    s.coverage == 1 ? ""
                    : s.cut_out     ? ", the rest is transparent"
                                    : ", and the background shows in the rest");
     if (s.not_a_number + s.infinite + s.negative > 0)
-        fmt::print("  bad pixels       {} not a number, {} infinite, {} negative\n", s.not_a_number, s.infinite,
+        print("  bad pixels       {} not a number, {} infinite, {} negative\n", s.not_a_number, s.infinite,
                    s.negative);
     else
-        fmt::print("  bad pixels       none\n");
+        print("  bad pixels       none\n");
     if (picture.rgb.width() == picture.rgb.height())
-        fmt::print(
+        print(
             "  environment      where it is one, say which: --projection sphere-map, mirror-ball/fov=DEGREES, "
             "angular, octahedral, ...\n");
 }
@@ -228,13 +225,13 @@ int info_texture(const std::string& file, const InfoWords& w) {
                         {"decodable", info->decodable}});
         return exit_done;
     }
-    fmt::print("{}: {}, {}, {} x {}", file, info->container, info->format, info->width, info->height);
-    if (info->depth > 1) fmt::print(" x {}", info->depth);
-    if (info->faces > 1) fmt::print(", {} faces", info->faces);
-    if (info->layers > 1) fmt::print(", {} layers", info->layers);
-    fmt::print(", {} level{}{}\n", info->levels, info->levels == 1 ? "" : "s",
-               info->supercompression.empty() || info->supercompression == "none" ? "" : ", " + info->supercompression);
-    for (const auto& [key, value] : info->metadata) fmt::print("  {:<24} {}\n", shown(key), shown(value));
+    print("{}: {}, {}, {} x {}", file, info->container, info->format, info->width, info->height);
+    if (info->depth > 1) print(" x {}", info->depth);
+    if (info->faces > 1) print(", {} faces", info->faces);
+    if (info->layers > 1) print(", {} layers", info->layers);
+    print(", {} level{}{}\n", info->levels, info->levels == 1 ? "" : "s",
+          info->supercompression.empty() || info->supercompression == "none" ? "" : ", " + info->supercompression);
+    for (const auto& [key, value] : info->metadata) print("  {:<24} {}\n", shown(key), shown(value));
     return exit_done;
 }
 
@@ -268,9 +265,9 @@ void print_levels(const Json& map) {
     if (!map.contains("levels") || !map["levels"].is_array()) return;
     for (const Json& level : map["levels"].elements()) {
         const bool phong = level.is_object() && level.contains("exponent");
-        fmt::print("    level {:<3} size {:<6} {} {:<10} clipped energy {}\n", member(level, "level"),
-                   member(level, "size"), phong ? "exponent" : "roughness",
-                   member(level, phong ? "exponent" : "roughness"), member(level, "clipped_energy"));
+        print("    level {:<3} size {:<6} {} {:<10} clipped energy {}\n", member(level, "level"),
+              member(level, "size"), phong ? "exponent" : "roughness",
+              member(level, phong ? "exponent" : "roughness"), member(level, "clipped_energy"));
     }
 }
 
@@ -300,16 +297,16 @@ int info_bake(const fs::path& folder, const InfoWords& w) {
         return whole ? exit_done : exit_failed;
     }
     const Json& source = manifest["source"];
-    fmt::print("{}: baked by domelight {} from {} ({} x {}, {}) for {}\n", folder.string(), member(manifest, "version"),
-               member(source, "file"), member(source, "width"), member(source, "height"), member(source, "projection"),
-               member(manifest["options"], "for"));
+    print("{}: baked by domelight {} from {} ({} x {}, {}) for {}\n", folder.string(), member(manifest, "version"),
+          member(source, "file"), member(source, "width"), member(source, "height"), member(source, "projection"),
+          member(manifest["options"], "for"));
     for (const auto& [role, map] : manifest.items())
         if (map.is_object() && map.contains("quantity") && map.contains("encoding")) {
-            fmt::print("  {}: {}, {}, {}\n", role, member(map, "quantity"), member(map, "encoding"),
-                       member(map, "layout"));
+            print("  {}: {}, {}, {}\n", role, member(map, "quantity"), member(map, "encoding"),
+                  member(map, "layout"));
             if (member(map, "quantity") == "radiance") print_levels(map);
         }
-    for (const Json& state : states.elements()) fmt::print("  {:<28} {}\n", member(state, "file"), member(state, "state"));
+    for (const Json& state : states.elements()) print("  {:<28} {}\n", member(state, "file"), member(state, "state"));
     return whole ? exit_done : print_error({"not all files are as they were written", folder.string(), "Bake again."});
 }
 

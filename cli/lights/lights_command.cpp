@@ -10,6 +10,7 @@
 #include "bake/staging.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
+#include "cli/console/print.h"
 #include "base/sha256.h"
 #include "cli/console/environment_options.h"
 #include "io/file/file_reader.h"
@@ -224,16 +225,16 @@ void print_summary(const LightsWords& w, const Outcome& o) {
     const LightExtractionReport& r = o.found.report;
     for (std::size_t i = 0; i < o.found.lights.size(); ++i) {
         const ExtractedLight& l = o.found.lights[i];
-        fmt::print(
+        print(
             "  light {:<3} {:5.1f} % of the light, direction ({:.4f}, {:.4f}, {:.4f}), {}{:.2g} degrees across, "
             "irradiance {:.4g} {:.4g} {:.4g}\n",
             i + 1, 100 * l.share, l.direction.x, l.direction.y, l.direction.z, l.resolved ? "" : "under ",
             l.angular_diameter_deg, l.irradiance.x, l.irradiance.y, l.irradiance.z);
     }
-    if (o.found.lights.empty()) fmt::print("  no light stands out\n");
-    if (r.left_out) fmt::print("  {} weaker ones stay in the remainder\n", r.left_out);
-    fmt::print("{}: lights.json, lights.gltf, {}{}; {:.1g} of the power unaccounted for\n", w.output, o.remainder_file,
-               w.no_preview ? "" : ", preview.png", r.unaccounted);
+    if (o.found.lights.empty()) print("  no light stands out\n");
+    if (r.left_out) print("  {} weaker ones stay in the remainder\n", r.left_out);
+    print("{}: lights.json, lights.gltf, {}{}; {:.1g} of the power unaccounted for\n", w.output, o.remainder_file,
+          w.no_preview ? "" : ", preview.png", r.unaccounted);
 }
 
 int run(const LightsWords& w) {
@@ -267,7 +268,7 @@ int run(const LightsWords& w) {
                                     found->report.texel_deg)},
                        w.common, name);
     if (w.common.json)
-        fmt::print("{}\n", json->dump(2));
+        print_document(*json);
     else if (!w.common.quiet)
         print_summary(w, outcome);
     return exit_done;

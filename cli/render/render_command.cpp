@@ -8,6 +8,7 @@
 #include "cli/render/render_outputs.h"
 #include "cli/render/render_study_command.h"
 #include "cli/render/render_turntable.h"
+#include "cli/console/print.h"
 #include "preview/tonemap.h"
 
 #include <fmt/core.h>
@@ -104,14 +105,14 @@ void print_result(const RenderWords& w, const Scene& scene, const RenderResult& 
         if (w.reference()) json["noise"] = r.noise, json["rays"] = r.rays;
         json["non_finite_samples"] = r.non_finite_samples;
         json["warnings"] = with_options(scene.warnings);
-        fmt::print("{}\n", json.dump(2));
+        print_document(json);
     } else if (!w.common.quiet) {
-        fmt::print("{}: {} x {}, {} triangles, {} samples a pixel at most, {:.2f} s", join(w.outputs, ", "), o.width,
-                   o.height, scene.triangle_count(), r.sample_count, r.seconds);
+        print("{}: {} x {}, {} triangles, {} samples a pixel at most, {:.2f} s", join(w.outputs, ", "), o.width,
+              o.height, scene.triangle_count(), r.sample_count, r.seconds);
         if (w.reference())
-            fmt::print(", noise {:.4f} of L/(1+L), {:.2f} million rays a second", r.noise,
-                       double(r.rays) / r.seconds * 1e-6);
-        fmt::print("{}\n", exposure_text(w, ev));
+            print(", noise {:.4f} of L/(1+L), {:.2f} million rays a second", r.noise,
+                  double(r.rays) / r.seconds * 1e-6);
+        print("{}\n", exposure_text(w, ev));
     }
 }
 

@@ -3,7 +3,9 @@
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
+#include "base/printable.h"
 #include "preview/screen_picture.h"
+#include "preview/tonemap.h"
 
 #include <fmt/core.h>
 
@@ -55,7 +57,7 @@ Result<void> write_layers(const std::string& file, const RenderResult& r, ImageV
     // `compare` names the objects of its table by it: one a line, from object 1 on.
     ExrWriteOptions options;
     std::string& names = options.attributes["objects"];
-    for (const Instance& instance : scene.instances) names += instance.name + "\n";
+    for (const Instance& instance : scene.instances) names += escaped(instance.name) + "\n";
     return write_exr_layers(file, layers, options);
 }
 

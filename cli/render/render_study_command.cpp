@@ -7,6 +7,7 @@
 #include "base/json.h"
 #include "cli/console/interruption.h"
 #include "cli/render/render_study_pictures.h"
+#include "cli/console/print.h"
 
 #include <fmt/core.h>
 
@@ -192,9 +193,9 @@ int run_study(const RenderWords& w, std::optional<Scene> given, const Environmen
     if (w.common.json) {
         (*json)["files"] = output.files();
         (*json)["seconds"] = seconds;
-        fmt::print("{}\n", json->dump(2));
+        print_document(*json);
     } else if (!w.common.quiet) {
-        fmt::print("{}: {:.1f} s\n", join(output.files(), ", "), seconds);
+        print("{}: {:.1f} s\n", join(output.files(), ", "), seconds);
     }
     return exit_done;
 }

@@ -9,6 +9,7 @@
 #include "cli/render/render_outputs.h"
 #include "io/file/file_reader.h"
 #include "io/picture/texture_image.h"
+#include "cli/console/print.h"
 #include "preview/exposure_meter.h"
 
 #include <fmt/core.h>
@@ -152,13 +153,13 @@ void print_turntable(const RenderWords& w, const RenderOptions& o, const Turntab
         json["drawn"] = tally.drawn, json["kept"] = tally.kept;
         json["non_finite_samples"] = tally.non_finite_samples;
         json["animations"] = animations, json["fps"] = w.fps, json["seconds"] = tally.seconds;
-        fmt::print("{}\n", json.dump(2));
+        print_document(json);
     } else if (!w.common.quiet) {
-        fmt::print("{} to {}: {} x {}, {} frames ({} drawn, {} kept), {:.2f} s{}\n", turntable.files(1).front(),
-                   turntable.files(turntable.frames()).front(), o.width, o.height, turntable.frames(), tally.drawn,
-                   tally.kept, tally.seconds, exposure_text(w, ev));
+        print("{} to {}: {} x {}, {} frames ({} drawn, {} kept), {:.2f} s{}\n", turntable.files(1).front(),
+              turntable.files(turntable.frames()).front(), o.width, o.height, turntable.frames(), tally.drawn,
+              tally.kept, tally.seconds, exposure_text(w, ev));
         for (const std::string& a : animations)
-            fmt::print("{}: {:.2f} s, {:g} frames a second\n", a, turntable.frames() / w.fps, w.fps);
+            print("{}: {:.2f} s, {:g} frames a second\n", a, turntable.frames() / w.fps, w.fps);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "base/json.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
+#include "cli/console/print.h"
 #include "cli/console/environment_options.h"
 #include "preview/sample_picture.h"
 #include "cli/sample/sample_estimate.h"
@@ -77,19 +78,19 @@ Result<void> work(const SampleWords& w, const EnvironmentSampler& sampler, Json&
     }
     const bool text = !w.common.json && !w.common.quiet;
     if (text)
-        for (const Json& file : files.elements()) fmt::print("{}\n", file.get<std::string>());
+        for (const Json& file : files.elements()) print("{}\n", file.get<std::string>());
     json["files"] = std::move(files);
     if (!w.explain.empty()) {
         auto told = told_explanation(w, sampler);
         if (!told) return told.error();
-        if (!w.common.json) fmt::print("{}", told->text);
+        if (!w.common.json) print_lines(told->text);
         json["explanation"] = std::move(told->json);
     }
     if (w.estimate) {
         ProgressBar bar(w.environment_name(), w.common);
         auto study = estimate_by_all_strategies(w, sampler, bar.callback());
         if (!study) return study.error();
-        if (!w.common.json) fmt::print("{}", study->text);
+        if (!w.common.json) print_lines(study->text);
         json["estimate"] = std::move(study->json);
     }
     return {};
@@ -141,7 +142,7 @@ int run_sample(const std::vector<std::string>& words) {
     const auto done = work(w, *sampler, json);
     if (!done) return print_error(done.error());
     if (w.common.json && json.contains("files"))
-        fmt::print("{}\n", json.dump(2));
+        print_document(json);
     return exit_done;
 }
 

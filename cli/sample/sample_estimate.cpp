@@ -5,6 +5,7 @@
 #include "domelight/study/strategy_study.h"
 
 #include "base/json.h"
+#include "base/printable.h"
 #include "preview/plot.h"
 
 #include <fmt/core.h>
@@ -54,7 +55,7 @@ std::string gain_text(const StrategyStudy& study, const char* what, const char* 
 }
 
 std::string table(const SampleWords& w, const StrategyStudy& study) {
-    std::string text = fmt::format("{}: {}\n", w.environment_name(), surface_text(w));
+    std::string text = fmt::format("{}: {}\n", escaped(w.environment_name()), surface_text(w));
     text += fmt::format("reference  {:.6g} {:.6g} {:.6g}  ± {:.1e}   ({})\n\n", study.reference.x, study.reference.y,
                         study.reference.z, luminance(study.reference_error), study.reference_method);
     text += fmt::format("{} samples, {}, seed {}; errors over {} runs\n", study.samples, w.sequence, w.seed_number,
@@ -189,7 +190,7 @@ Result<Told> estimate_by_all_strategies(const SampleWords& w, const EnvironmentS
         if (auto ok = write_screen_picture(w.plot, draw_plot(convergence_plot(w, *study)).view()); !ok)
             return ok.error().at(w.plot);
         told.json["plot"] = w.plot;
-        told.text += w.plot + "\n";
+        told.text += escaped(w.plot) + "\n";
     }
     return told;
 }

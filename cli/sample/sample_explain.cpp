@@ -4,6 +4,7 @@
 #include "domelight/io/write_image.h"
 
 #include "base/json.h"
+#include "base/printable.h"
 
 #include <fmt/core.h>
 
@@ -119,7 +120,7 @@ Result<Told> told_explanation(const SampleWords& w, const EnvironmentSampler& sa
                 write_screen_picture(w.explain_picture, explanation_picture(sampler, e, title, w.threads()).view());
             !ok)
             return ok.error().at(w.explain_picture);
-        told.text += "\n" + w.explain_picture + "\n";
+        told.text += "\n" + escaped(w.explain_picture) + "\n";
         told.json["picture"] = w.explain_picture;
     }
     return told;

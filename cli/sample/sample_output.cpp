@@ -6,6 +6,7 @@
 #include "domelight/texture/texture.h"
 
 #include "base/json.h"
+#include "base/printable.h"
 #include "bake/staging.h"
 
 #include <fmt/core.h>
@@ -48,7 +49,7 @@ std::string json_head(const SampleWords& w, const EnvironmentSampler& sampler, i
                     {"sequence", w.sequence},
                     {"seed", w.seed_number},
                     {"count", count}};
-    std::string text = head.dump(2);
+    std::string text = escaped_json(head.dump(2));
     text.erase(text.rfind("\n}"));
     return text + ",\n  \"samples\": [\n";
 }

@@ -7,6 +7,8 @@
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/display_options.h"
+#include "cli/console/eight_bit.h"
+#include "cli/console/print.h"
 #include "cli/console/output_endings.h"
 #include "preview/screen_picture.h"
 
@@ -145,11 +147,11 @@ void print_result(const SkyWords& w, const std::string& channels, const WatchedR
                            {"turbidity", w.sky.turbidity},
                            {"ground_albedo", w.sky.ground_albedo},
                            {"sun_disc", w.sky.sun_disc}};
-        fmt::print("{}\n", json.dump(2));
+        print_document(json);
     } else if (!w.common.quiet) {
-        fmt::print("{}: {} x {}, values up to {:.6g}\n", w.output, 2 * height, height, rows.largest());
+        print("{}: {} x {}, values up to {:.6g}\n", w.output, 2 * height, height, rows.largest());
         if (is_exr(w) && w.encoding == "auto" && channels == "float")
-            fmt::print("32-bit float channels: {}\n", k_why_float_channels);
+            print("32-bit float channels: {}\n", k_why_float_channels);
     }
 }
 

@@ -18,12 +18,6 @@ Result<void> check_image_size(std::int64_t width, std::int64_t height) {
     return {};
 }
 
-std::string printable(std::string_view text, std::size_t longest) {
-    std::string result(text.substr(0, longest));
-    std::replace_if(result.begin(), result.end(), [](char c) { return !(c >= ' ' && c <= '~'); }, '?');
-    return result;
-}
-
 Result<std::unique_ptr<ImageReader>> open_image_reader(std::shared_ptr<const FileBytes> bytes,
                                                        const ReaderOptions& options) {
     if (options.decode.starts_with("rgb"))

@@ -10,7 +10,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace domelight {
@@ -67,8 +66,5 @@ Result<std::unique_ptr<ImageReader>> open_jpeg_reader(std::shared_ptr<const File
 
 /// An error unless 1 <= width, height <= k_max_image_side.
 Result<void> check_image_size(std::int64_t width, std::int64_t height);
-
-/// Text from a file, for use in a message: at most `longest` characters, with unprintable ones replaced.
-std::string printable(std::string_view text, std::size_t longest = 40);
 
 }  // namespace domelight

@@ -780,6 +780,45 @@ def test_sky_formats_and_axes(folder):
     assert json.loads(run("info", "axes.png", "--json", folder=folder).stdout)["width"] == 128
 
 
+def test_names_from_files_do_not_write_on_the_terminal(folder):
+    """Escape sequences, line ends and marks of direction in a file reach neither stdout nor stderr raw; JSON holds them all the same."""
+    evil = "\x1b]0;owned\x07\x1b[31mred\r\nerror: \x9b\u202egood é"
+    shown = "\\x1b]0;owned\\x07\\x1b[31mred\\r\\nerror: \\u009b\\u202egood é"
+    raw = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u202e]")
+
+    def said(*words, code=0):
+        result = run(*words, folder=folder, code=code)
+        assert not raw.search(result.stdout + result.stderr), ascii(result.stdout + result.stderr)
+        return result
+
+    triangle = base64.b64encode(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)).decode()
+    scene = {"asset": {"version": "2.0"}, "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + triangle}],
+             "bufferViews": [{"buffer": 0, "byteLength": 36}], "extensionsUsed": [evil],
+             "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+             "meshes": [{"name": evil, "primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [{"mesh": 0, "name": evil}, {"camera": 0}],
+             "cameras": [{"type": "perspective", "name": evil, "perspective": {"yfov": 1, "znear": 0.1}}]}
+    (folder / "a.gltf").write_text(json.dumps(scene))
+    small = ["--width", "8", "--height", "8", "--spp", "1"]
+    assert f"warning: a.gltf: {shown} is not supported" in said("render", "a.gltf", "-o", "a.exr", *small).stderr
+    assert shown in said("render", "a.gltf", "-o", "a.png", "--camera", "none", *small, code=2).stderr
+    warned = json.loads(said("render", "a.gltf", "-o", "a.png", "--json", "--quiet", *small).stdout)["warnings"]
+    assert any(shown in w for w in warned), warned
+    run("render", "a.gltf", "-o", "b.exr", "--seed", "2", *small, folder=folder)
+    assert [o["name"] for o in json.loads(said("compare", "a.exr", "b.exr", "--json").stdout)["objects"]][-1:] in ([shown[:60]], [])
+    scene["asset"]["version"] = evil
+    (folder / "a.gltf").write_text(json.dumps(scene))
+    assert 'asset.version: is "\\x1b]0;' in said("render", "a.gltf", "-o", "a.png", *small, code=1).stderr
+
+    run("bake", "-o", "out", "--size", "16", "--levels", "2", folder=folder)
+    manifest = manifest_of(folder / "out")
+    manifest["source"]["file"] = evil
+    (folder / "out/manifest.json").write_text(json.dumps(manifest))
+    assert f" from {shown} (" in said("info", "out").stdout
+    assert json.loads(said("info", "out", "--json").stdout)["manifest"]["source"]["file"] == evil
+    assert shown in said("info", evil.replace("/", ""), code=1).stderr
+    assert 'unknown command \\x1b[2J' in said("\x1b[2J", code=2).stderr
+
+
 def test_exr_channels_hold_the_sun(folder):
     """Half floats end at 65504: where they would clip, 32-bit floats are written, and a line says so."""
     brightest = lambda name: json.loads(run("info", name, "--json", folder=folder).stdout)["range"][1]

@@ -73,6 +73,10 @@ claim("the library names fields, not the options of the command line",
        for file in sorted((ROOT / folder).rglob("*")) if file.suffix in (".h", ".cpp")
        for number, line in enumerate(file.read_text().splitlines(), 1)
        if spoken.search(line) and not line.lstrip().startswith("//")])
+raw = re.compile(r"fmt::print\(|\b(printf|fprintf|puts|fputs)\(|std::cout|std::cerr")
+claim("commands print by way of cli/console, where texts from outside are escaped",
+      [f"{file.relative_to(ROOT)}:{number}: {line.strip()}" for file in sorted((ROOT / "cli").rglob("*.cpp")) if file.parent.name != "console"
+       for number, line in enumerate(file.read_text().splitlines(), 1) if raw.search(line)])
 
 print(f"house: {passed} passed, {failed} failed, 0 skipped")
 sys.exit(1 if failed else 0)

@@ -1,6 +1,6 @@
 #include "io/exr/exr_stream.h"
 
-#include "io/image_reader.h"
+#include "base/printable.h"
 
 #include <Iex.h>
 #include <ImfThreading.h>

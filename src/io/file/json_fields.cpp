@@ -1,7 +1,7 @@
 #include "io/file/json_fields.h"
 
 #include "base/json.h"
-#include "io/image_reader.h"
+#include "base/printable.h"
 
 #include <fmt/format.h>
 

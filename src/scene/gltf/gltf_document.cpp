@@ -1,6 +1,7 @@
 #include "scene/gltf/gltf_document.h"
 
 #include "base/json.h"
+#include "base/printable.h"
 #include "scene/gltf/gltf_materials.h"
 #include "io/image_reader.h"
 #include "io/file/json_fields.h"
@@ -67,16 +68,16 @@ class DocumentParser {
 void DocumentParser::read_asset() {
     const std::string version = root_.require("asset").object("asset").require("version").text("version");
     if (version.substr(0, 2) != "2.")
-        root_.fail("asset.version", fmt::format("is \"{}\", but only glTF 2.0 is read", version.substr(0, 20)));
+        root_.fail("asset.version", fmt::format("is \"{}\", but only glTF 2.0 is read", printable(version, 20)));
     for (const std::string& name : root_.texts("extensionsRequired"))
         if (!known_extension(name) && name != k_image_light)
-            root_.fail("extensionsRequired", fmt::format("{} is not supported", name.substr(0, 60)));
+            root_.fail("extensionsRequired", fmt::format("{} is not supported", printable(name, 60)));
     for (const std::string& name : root_.texts("extensionsUsed"))
         if (name == k_image_light)
             document_.warnings.push_back(
                 "the file's own light from all around is left out: give the file as the environment");
         else if (!known_extension(name))
-            document_.warnings.push_back(fmt::format("{} is not supported: left out", name.substr(0, 60)));
+            document_.warnings.push_back(fmt::format("{} is not supported: left out", printable(name, 60)));
 }
 
 void DocumentParser::read_buffers() {

@@ -1,6 +1,6 @@
 #include "scene/gltf/gltf_uri.h"
 
-#include "io/image_reader.h"
+#include "base/printable.h"
 
 #include <algorithm>
 #include <array>
