@@ -1,6 +1,7 @@
 #include "domelight/bake/bake.h"
 
 #include "domelight/io/environment/open_environment.h"
+#include "domelight/io/file/atomic_file.h"
 #include "domelight/io/write_image.h"
 #include "domelight/projection/projection.h"
 
@@ -148,6 +149,22 @@ TEST_CASE("staging: files appear together, and nothing stays of what was not com
     std::ifstream(folder / "new/deep/a.txt") >> text;
     CHECK(text == "a");
     CHECK(count_files(folder.path()) == 5);
+}
+
+TEST_CASE("staging: a file that is written at once or not at all has one temporary, the staged one") {
+    const test::TemporaryFolder folder;
+    auto staging = Staging::open(folder.path());
+    REQUIRE(staging);
+    const auto staged = staging->stage("a.txt");
+    REQUIRE(write_file_atomically(staged, [&](const std::filesystem::path& path) -> Result<void> {
+        CHECK(path == staged);
+        std::ofstream(path) << "a";
+        CHECK(count_files(folder.path()) == 1);
+        return {};
+    }));
+    CHECK(staging->commit("a.txt"));
+    CHECK(std::filesystem::exists(folder / "a.txt"));
+    CHECK(count_files(folder.path()) == 1);
 }
 
 TEST_CASE("sh report: three bands hold the irradiance of linear light exactly, two of light of degree two do not") {

@@ -16,6 +16,7 @@
 
 #include <csignal>
 #include <string>
+#include <thread>
 
 using namespace domelight;
 using namespace domelight::test;
@@ -127,6 +128,27 @@ TEST_CASE("write_file_atomically: no such folder, a folder, a long name, one lin
     CHECK(file_bytes(folder / "sub/real") == bytes_of("through"));
 }
 
+TEST_CASE("write_file_atomically: a link that leads nowhere gets its file, and stays a link") {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "sub");
+    std::filesystem::create_symlink("sub/next", folder / "link");
+    std::filesystem::create_symlink(folder / "file", folder / "sub/next");
+    REQUIRE(write_file_atomically(folder / "link", bytes_of("through")));
+    CHECK(std::filesystem::is_symlink(folder / "link"));
+    CHECK(std::filesystem::is_symlink(folder / "sub/next"));
+    CHECK(file_bytes(folder / "file") == bytes_of("through"));
+
+    std::filesystem::create_symlink("none/file", folder / "astray");
+    std::filesystem::create_symlink("circle", folder / "circle");
+    for (const char* name : {"astray", "circle"}) {
+        const auto written = write_file_atomically(folder / name, bytes_of("x"));
+        REQUIRE(!written);
+        CHECK(written.error().where == (folder / name).string());
+        CHECK(std::filesystem::is_symlink(folder / name));
+    }
+    CHECK(entries(folder) == 5);
+}
+
 TEST_CASE("write_file_atomically: keeps the permissions of the file it replaces") {
     const TemporaryFolder folder;
     REQUIRE(write_file_atomically(folder / "a", bytes_of("x")));
@@ -180,6 +202,32 @@ TEST_CASE("remove_temporaries_on_signals: interruption removes the temporary and
         CHECK(WTERMSIG(status) == signal);
         CHECK(entries(folder) == 1);
         CHECK(file_bytes(folder / "a") == bytes_of("old"));
+    }
+}
+
+TEST_CASE("remove_temporaries_on_signals: what other threads are writing goes too, at any moment") {
+    const TemporaryFolder folder;
+    for (int round = 0; round < 40; ++round) {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            ::signal(SIGTERM, SIG_DFL);
+            remove_temporaries_on_signals();
+            std::vector<std::thread> writers;
+            for (int t = 0; t < 4; ++t)
+                writers.emplace_back([&, t] {
+                    for (;;) (void)!write_file_atomically(folder / std::to_string(t), bytes_of("whole"));
+                });
+            for (;;) ::pause();
+        }
+        ::usleep(useconds_t(5000 + 501 * round));
+        ::kill(child, SIGTERM);
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        REQUIRE(WIFSIGNALED(status));
+        for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+            CHECK(entry.path().filename().string().size() == 1);
+            CHECK(file_bytes(entry.path()) == bytes_of("whole"));
+        }
     }
 }
 

@@ -98,6 +98,17 @@ TEST_CASE("obj: materials become metallic-roughness") {
     CHECK(contains(error_of(load_scene(folder / "a.obj")), "missing.png: no such file"));
 }
 
+TEST_CASE("obj: a missing library is missing, also where the scene is named without a folder") {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "a.obj") << "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    const auto before = std::filesystem::current_path();
+    std::filesystem::current_path(folder.path());
+    const auto scene = load_scene("a.obj");
+    std::filesystem::current_path(before);
+    REQUIRE_MESSAGE(scene, error_of(scene));
+    CHECK(warns(*scene, "none.mtl: no such file: its materials are left out"));
+}
+
 TEST_CASE("obj: what is broken is named by its line") {
     const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     CHECK(contains(error_of(load_text(three + "f 1 2 4\n", "a.obj")), "line 4: face with a corner '4'"));

@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <system_error>
 
@@ -24,9 +25,15 @@ Error system_error(const char* doing, int code) {
     return {std::string("cannot ") + doing + ": " + std::generic_category().message(code), "", ""};
 }
 
-/// Creates an empty file with a new name in the folder of `target`; returns its path, or the error. Its mode is that of
-/// an ordinary new file, or of the file that it will replace.
-Result<std::string> create_neighbour(const fs::path& target) {
+/// An empty file beside the one that it is to replace; removed with this object, or when a signal ends the program.
+struct Neighbour {
+    std::string path;
+    std::unique_ptr<TemporaryFileGuard> guard;
+};
+
+/// Creates it under a name nobody has. The mode is the one an ordinary new file gets, or that of the file which it is
+/// to replace.
+Result<Neighbour> create_neighbour(const fs::path& target) {
     static std::atomic<unsigned> counter{0};
     // The leading dot and the ending hide it from globs; the name is shortened so that it stays below NAME_MAX with
     // both.
@@ -34,41 +41,54 @@ Result<std::string> create_neighbour(const fs::path& target) {
     stem = '.' + stem + '.' + std::to_string(::getpid()) + '-';
     for (int attempt = 0; attempt < 1000; ++attempt) {
         const std::string path = (target.parent_path() / (stem + std::to_string(counter++) + ".tmp")).string();
+        const TemporaryFileCreation creation;
         const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor < 0 && errno == EEXIST) continue;
         if (descriptor < 0) return system_error("create a file there", errno);
         struct stat old = {};
         if (::stat(target.c_str(), &old) == 0) (void)!::fchmod(descriptor, old.st_mode & 0777);
         ::close(descriptor);
-        return path;
+        return Neighbour{path, std::make_unique<TemporaryFileGuard>(path)};
     }
     return system_error("create a file there", EEXIST);
+}
+
+/// Where a chain of links ends, whether there is a file or not. The last name alone may be a link that leads nowhere.
+Result<fs::path> end_of_links(fs::path file) {
+    constexpr int k_most_links = 40;  // as many as Linux follows
+    std::error_code failure;
+    for (int links = 0; fs::is_symlink(fs::symlink_status(file, failure)); ++links) {
+        if (links == k_most_links) return system_error("follow its links", ELOOP);
+        const fs::path next = fs::read_symlink(file, failure);
+        if (failure) return system_error("follow its links", failure.value());
+        file = file.parent_path() / next;  // `next` alone where that is absolute
+    }
+    return file;
+}
+
+Result<void> replace(const fs::path& file, const std::function<Result<void>(const fs::path&)>& write) {
+    const Result<fs::path> target = end_of_links(file);
+    if (!target) return target.error();
+    const Result<Neighbour> temporary = create_neighbour(*target);
+    if (!temporary) return Error{temporary.error().what, "", "does the folder exist, and may you write to it?"};
+    Result<void> written = write(temporary->path);
+    if (written && ::rename(temporary->path.c_str(), target->c_str()) != 0) written = system_error("replace it", errno);
+    if (!written) ::unlink(temporary->path.c_str());
+    return written;
 }
 
 }  // namespace
 
 Result<void> write_file_atomically(const fs::path& file, const std::function<Result<void>(const fs::path&)>& write) {
-    const std::string shown = file.string();
     std::error_code failure;
     const fs::file_status status = fs::status(file, failure);
-    if (fs::is_directory(status)) return Error{"is a folder, not a file", shown, "give the name of a file in it"};
+    if (fs::is_directory(status))
+        return Error{"is a folder, not a file", file.string(), "give the name of a file in it"};
     // A device or pipe (/dev/stdout, a named pipe) cannot be replaced, only written to.
-    if (fs::exists(status) && !fs::is_regular_file(status)) {
-        Result<void> written = write(file);
-        return written ? written : Error{written.error().what, shown, written.error().hint};
-    }
-    // A link stays a link: the file that it points to is replaced.
-    fs::path target = fs::is_symlink(file, failure) ? fs::canonical(file, failure) : fs::absolute(file, failure);
-    if (failure || target.empty()) target = file;
-
-    Result<std::string> temporary = create_neighbour(target);
-    if (!temporary) return Error{temporary.error().what, shown, "does the folder exist, and may you write to it?"};
-    const TemporaryFileGuard guard(*temporary);
-    Result<void> written = write(*temporary);
-    if (written && ::rename(temporary->c_str(), target.c_str()) != 0) written = system_error("replace it", errno);
-    if (written) return written;
-    ::unlink(temporary->c_str());
-    return Error{written.error().what, shown, written.error().hint};
+    const bool direct =
+        (fs::exists(status) && !fs::is_regular_file(status)) || TemporaryFileGuard::guards(file.string());
+    const Result<void> written = direct ? write(file) : replace(file, write);
+    return written ? written : Error{written.error().what, file.string(), written.error().hint};
 }
 
 Result<void> write_file_atomically(const fs::path& file, std::span<const std::uint8_t> bytes) {

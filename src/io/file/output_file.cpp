@@ -1,14 +1,20 @@
 #include "io/file/output_file.h"
 
+#include "io/file/temporary_files.h"
+
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <optional>
 #include <system_error>
 
 namespace domelight {
 
 OutputFile::OutputFile(const std::filesystem::path& path) {
+    // Opening a pipe waits for its reader and must stay open to signals.
+    std::optional<TemporaryFileCreation> creation;
+    if (TemporaryFileGuard::guards(path.string())) creation.emplace();
     descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (descriptor_ < 0) error_ = errno;
 }
