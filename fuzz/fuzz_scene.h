@@ -16,13 +16,14 @@ inline void check_scene(const Scene& scene) {
     };
     for (const Instance& instance : scene.instances)
         require(instance.mesh >= 0 && std::size_t(instance.mesh) < scene.meshes.size());
+    const auto [low, high] = scene.bounds();
+    require(is_sound(low) && is_sound(high));
     for (const Mesh& mesh : scene.meshes) {
         const std::size_t vertices = mesh.positions.size();
         require(mesh.material >= 0 && std::size_t(mesh.material) < scene.materials.size());
         require(mesh.indices.size() % 3 == 0);
         for (const std::uint32_t index : mesh.indices) require(index < vertices);
-        for (const Vec3f& p : mesh.positions)
-            require(std::abs(p.x) < k_largest_coordinate && std::abs(p.y) < k_largest_coordinate);
+        for (const Vec3f& p : mesh.positions) require(is_sound(p));
         require(mesh.normals.empty() || mesh.normals.size() == vertices);
         for (const Vec3f& n : mesh.normals) require(std::abs(dot(n, n) - 1) < 1e-4f);
         require(mesh.tangents.empty() || mesh.tangents.size() == vertices);

@@ -1,5 +1,7 @@
 #include "render/ray_scene.h"
 
+#include "scene/sound_places.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -75,8 +77,9 @@ Result<RayScene> RayScene::build(Scene scene) {
         const Mesh& mesh = s.meshes[instance.mesh];
         if (mesh.indices.empty()) continue;
         RTCGeometry geometry;
-        if (uses[instance.mesh] == 1) {
-            // A mesh with one instance is added to the world directly, which saves a level of traversal.
+        if (uses[instance.mesh] == 1 || !has_sound_inverse(instance.to_world)) {
+            // A mesh that stands once goes into the world itself: one level less to walk. So does one that is flattened
+            // there: no ray can be turned into its frame.
             geometry = make_triangles(impl.device, mesh, [&](const Vec3f& p) { return instance.to_world.point(p); });
         } else {
             RTCScene& object = impl.objects[instance.mesh];
@@ -125,7 +128,21 @@ Hit RayScene::Impl::hit_of(unsigned geometry, unsigned instance_id, unsigned tri
     return {distance, instance, int(triangle), u, v, normal};
 }
 
+namespace {
+
+/// Embree ends the program at a ray that is not finite. Such a ray meets nothing.
+bool traceable(const Ray& ray) {
+    constexpr float k_most = 1e18f;
+    const auto finite = [](const Vec3f& v) {
+        return std::abs(v.x) < k_most && std::abs(v.y) < k_most && std::abs(v.z) < k_most;
+    };
+    return finite(ray.origin) && finite(ray.direction) && ray.near >= 0;
+}
+
+}  // namespace
+
 Hit RayScene::Impl::intersect(const Ray& ray, bool coherent) const {
+    if (!traceable(ray)) return {};
     RTCRayHit r;
     r.ray.org_x = ray.origin.x, r.ray.org_y = ray.origin.y, r.ray.org_z = ray.origin.z;
     r.ray.dir_x = ray.direction.x, r.ray.dir_y = ray.direction.y, r.ray.dir_z = ray.direction.z;
@@ -144,6 +161,7 @@ Hit RayScene::Impl::intersect(const Ray& ray, bool coherent) const {
 }
 
 bool RayScene::Impl::occluded(const Ray& ray) const {
+    if (!traceable(ray)) return false;
     RTCRay r;
     r.org_x = ray.origin.x, r.org_y = ray.origin.y, r.org_z = ray.origin.z;
     r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z;
@@ -160,11 +178,11 @@ bool RayScene::Impl::occluded(const Ray& ray) const {
 
 namespace {
 
-/// Embree's layout of a packet; lanes past the last ray are switched off.
+/// Embree's layout of a packet; lanes past the last ray, and of rays that cannot be traced, are switched off.
 void fill(RTCRay16& r, int (&valid)[16], std::span<const Ray* const> rays) {
     for (int i = 0; i < 16; ++i) {
-        valid[i] = i < int(rays.size()) ? -1 : 0;
         const Ray& ray = *rays[std::min<std::size_t>(std::size_t(i), rays.size() - 1)];
+        valid[i] = i < int(rays.size()) && traceable(ray) ? -1 : 0;
         r.org_x[i] = ray.origin.x, r.org_y[i] = ray.origin.y, r.org_z[i] = ray.origin.z;
         r.dir_x[i] = ray.direction.x, r.dir_y[i] = ray.direction.y, r.dir_z[i] = ray.direction.z;
         r.tnear[i] = ray.near;

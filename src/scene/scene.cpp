@@ -1,21 +1,27 @@
 #include "domelight/scene/scene.h"
 
+#include "scene/sound_places.h"
+
 #include <algorithm>
+#include <optional>
 
 namespace domelight {
 
 Scene::Box Scene::bounds() const {
-    Box box;
-    bool first = true;
-    for (const Instance& instance : instances)
-        for (const Vec3f& local : meshes[std::size_t(instance.mesh)].positions) {
-            const Vec3f p = instance.to_world.point(local);
-            box.low = first ? p : Vec3f{std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-            box.high =
-                first ? p : Vec3f{std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-            first = false;
-        }
-    return box;
+    std::vector<std::optional<Box>> local(meshes.size());
+    std::optional<Box> all;
+    for (const Instance& instance : instances) {
+        const Mesh& mesh = meshes[std::size_t(instance.mesh)];
+        if (mesh.positions.empty()) continue;
+        std::optional<Box>& box = local[std::size_t(instance.mesh)];
+        if (!box) box = box_of(mesh, {});
+        // The vertices need a look only where the box of their box sticks out: a mesh may stand here very often.
+        const Box outer = placed(*box, instance.to_world);
+        if (all && all->low == united(*all, outer).low && all->high == united(*all, outer).high) continue;
+        const Box own = box_of(mesh, instance.to_world);
+        all = all ? united(*all, own) : own;
+    }
+    return all.value_or(Box{});
 }
 
 std::int64_t Scene::triangle_count() const {

@@ -24,7 +24,7 @@ def run_length_row(width, byte=128):
     return row
 
 
-def exr(x_max, y_max, x_min=0, y_min=0, data=b"", version=2, channels=b"BGR", compression=0):
+def exr(x_max, y_max, x_min=0, y_min=0, data=b"", version=2, channels=b"BGR", compression=0, display=None):
     def attribute(name, kind, value):
         return name + b"\0" + kind + b"\0" + struct.pack("<i", len(value)) + value
 
@@ -34,7 +34,7 @@ def exr(x_max, y_max, x_min=0, y_min=0, data=b"", version=2, channels=b"BGR", co
             + attribute(b"channels", b"chlist", channel_list)
             + attribute(b"compression", b"compression", bytes([compression]))
             + attribute(b"dataWindow", b"box2i", box)
-            + attribute(b"displayWindow", b"box2i", box)
+            + attribute(b"displayWindow", b"box2i", struct.pack("<4i", *display) if display else box)
             + attribute(b"lineOrder", b"lineOrder", b"\0")
             + attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1))
             + attribute(b"screenWindowCenter", b"v2f", struct.pack("<2f", 0, 0))
@@ -116,6 +116,8 @@ def gltf_files():
                                 meshes=[{"primitives": [{"attributes": {"POSITION": 0}, "extensions": compressed}]}]),
         "texture-huge.gltf": gltf(images=[{"uri": image}], textures=[{"source": 0}], materials=[material]),
         "nodes-cyclic.gltf": gltf(nodes=[{"mesh": 0}, {"children": [2]}, {"children": [1]}]),
+        "camera-huge.gltf": gltf(cameras=[{"type": "orthographic", "orthographic": {"xmag": 1e19, "ymag": 1e19, "znear": 0, "zfar": 1}}],
+                                 nodes=[{"mesh": 0}, {"camera": 0}]),
         "nested.gltf": b"[" * 200_000,
         "leaves-folder.gltf": gltf(buffers=[{"byteLength": 36, "uri": "../../../../../../etc/passwd"}]),
         "faces-huge.ply": b"ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n"

@@ -6,7 +6,9 @@
 #include "test.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
 
 using namespace domelight;
 using namespace domelight::test;
@@ -324,6 +326,32 @@ TEST_CASE("render: an instanced, turned and mirrored mesh is lit as if it stood 
     const double alone = picture(1);
     CHECK(picture(2) == doctest::Approx(alone).epsilon(2e-3));
     CHECK(alone > 0);
+}
+
+TEST_CASE("render: rays that leave the range of float meet nothing, and flattened instances are met") {
+    // Twice the same mesh: Embree turns rays into its frame, where it can.
+    Scene scene;
+    add(scene, sphere_mesh(16), lambert_material(1), {{1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {-1.5f, 0, 0}});
+    for (const Affine& place : {Affine{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1.5f, 0, 0}},
+                                Affine{{1e-20f, 0, 0}, {0, 1e-20f, 0}, {0, 0, 1e-20f}, {0, 0, 0}}})
+        scene.instances.push_back({0, place, "again"});
+    const RayScene traced = trace(scene);
+    RenderOptions o = view(32, 4);
+    o.camera.fov_y = 1.2f;
+    const RenderResult r = render(traced, ImageF(32, 16, 3, 1.f), o);
+    CHECK(*r.opacity.at(8, 16) == 1);
+    CHECK(*r.opacity.at(24, 16) == 1);
+    CHECK(*r.opacity.at(16, 2) == 0);
+
+    const float infinity = std::numeric_limits<float>::infinity();
+    for (const float far : {1e19f, infinity, std::nanf("")}) {
+        o.camera.to_world.translation = {far, 0, 4};
+        for (const bool orthographic : {false, true}) {
+            o.camera.orthographic = orthographic;
+            const RenderResult nothing = render(traced, ImageF(32, 16, 3, 1.f), o);
+            CHECK(*nothing.opacity.at(16, 16) == 0);
+        }
+    }
 }
 
 TEST_CASE("render: wrong sizes, empty scenes and a cancelled one are errors") {

@@ -111,6 +111,51 @@ TEST_CASE("gltf malformed: nodes in a circle, with two parents, and very deep on
     CHECK(error_of(flat.load()) == "loaded");
 }
 
+TEST_CASE("gltf malformed: cameras, vertices and places that rays would leave the range of float for") {
+    const auto camera = [](Json lens) {
+        GltfSample sample = indexed();
+        sample.add("cameras", {{"type", "orthographic"}, {"orthographic", std::move(lens)}});
+        sample.add("nodes", {{"camera", 0}});
+        return sample.load();
+    };
+    CHECK(contains(error_of(camera({{"xmag", 1}, {"ymag", 1e19}})),
+                   "cameras[0].orthographic.ymag: is 1e+19, but must be below 1e+09 metres"));
+    CHECK(contains(error_of(camera({{"xmag", 1e19}, {"ymag", 1}})), "cameras[0].orthographic.xmag: is 1e+19"));
+    CHECK(contains(error_of(camera({{"xmag", 1}, {"ymag", 0}})), "cameras[0].orthographic.ymag: is 0"));
+    const auto flat = camera({{"xmag", 1e8}, {"ymag", 1e-30}});
+    REQUIRE_MESSAGE(flat, error_of(flat));
+    CHECK(flat->cameras[0].aspect == 1e6f);
+
+    // In range by themselves, but not together.
+    GltfSample far;
+    far.show({{"attributes", {{"POSITION", far.accessor(std::vector<float>{0, 0, 0, 1e6f, 0, 0, 0, 1, 0}, "VEC3")}}}},
+             {{"scale", {1e6, 1, 1}}});
+    far.add("nodes", {{"mesh", 0}});
+    const auto mended = far.load();
+    REQUIRE_MESSAGE(mended, error_of(mended));
+    CHECK(mended->instances.size() == 1);
+    CHECK(warns(*mended, "1 nodes left out: their place"));
+}
+
+TEST_CASE("gltf malformed: instances are counted, and the same place is taken once") {
+    GltfSample sample = indexed();
+    for (int i = 0; i < 9; ++i) sample.add("nodes", {{"mesh", 0}, {"translation", {i / 3, 0, 0}}});
+    const auto scene = sample.load();
+    REQUIRE_MESSAGE(scene, error_of(scene));
+    CHECK(scene->instances.size() == 3);
+    CHECK(warns(*scene, "7 instances left out: the same mesh stands in exactly the same place"));
+    // A flattened mesh gets triangles of its own, which count.
+    for (Json& node : sample.json["nodes"]) node["scale"] = {1, 1, 0};
+    CHECK(contains(error_of(sample.load({.max_bytes = 4000})), "instances would take the scene over the limit"));
+
+    GltfSample many = indexed();
+    std::vector<float> places(3 * ((1 << 20) + 1));
+    for (std::size_t i = 0; i < places.size(); i += 3) places[i] = float(i);
+    many.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
+        many.accessor(places, "VEC3");
+    CHECK(contains(error_of(many.load()), "meshes stand more than 1048576 times in the scene"));
+}
+
 TEST_CASE("gltf malformed: broken JSON and broken containers") {
     CHECK(contains(error_of(load_text("{\"asset\":", "a.gltf")), "a.gltf: broken JSON: parse error at line 1"));
     CHECK(contains(error_of(load_text("[]", "a.gltf")), "not an object"));

@@ -21,6 +21,10 @@ TEST_CASE("scene: bounds and triangles count every instance") {
     CHECK(scene.triangle_count() == 2);
     CHECK(scene.bounds().low == Vec3f{0, 0, 0});
     CHECK(scene.bounds().high == Vec3f{10, 2, 3});
+    // A turned triangle whose box sticks out of the others, but not the triangle itself.
+    scene.instances.push_back({0, {{7, 7, 0}, {-7, 7, 0}, {0, 0, 1}, {7, -5.5f, 0}}, "c"});
+    CHECK(scene.bounds().low == Vec3f{0, -5.5f, 0});
+    CHECK(scene.bounds().high == Vec3f{14, 2, 3});
 }
 
 TEST_CASE("scene: an affine map turns normals as planes, and products apply the right factor first") {

@@ -3,6 +3,7 @@
 #include "base/json.h"
 #include "base/printable.h"
 #include "scene/gltf/gltf_materials.h"
+#include "scene/sound_places.h"
 #include "io/image_reader.h"
 #include "io/file/json_fields.h"
 
@@ -20,6 +21,8 @@ constexpr const char* k_known_extensions[] = {
     "KHR_lights_punctual",     "KHR_materials_anisotropy", "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
     "KHR_materials_ior",       "KHR_materials_sheen",      "KHR_materials_specular",  "KHR_materials_transmission",
     "KHR_materials_unlit",     "KHR_materials_volume",     "KHR_mesh_quantization",   "KHR_texture_transform"};
+
+constexpr float k_largest_aspect = 1e6f;  // of a camera's picture, width / height
 
 /// Read by itself, as an environment (gltf_image_light.h).
 constexpr const char* k_image_light = "EXT_lights_image_based";
@@ -53,6 +56,7 @@ class DocumentParser {
     void read_meshes();
     GltfNode read_node(JsonFields& fields, std::size_t nodes, std::size_t lights);
     void read_skins(std::size_t nodes);
+    void read_orthographic(JsonFields& fields, Camera& camera);
     void read_cameras();
     void read_lights();
     void read_images_and_materials();
@@ -200,24 +204,31 @@ void DocumentParser::read_skins(std::size_t nodes) {
                                    fields.require("joints").indices("joints", nodes)});
 }
 
+void DocumentParser::read_orthographic(JsonFields& fields, Camera& camera) {
+    JsonFields lens = fields.require("orthographic").object("orthographic");
+    camera.orthographic = true;
+    camera.half_height = std::abs(lens.require("ymag").number("ymag", 1));
+    const float half_width = std::abs(lens.number("xmag", 0));
+    for (const auto& [key, size] : {std::pair{"ymag", camera.half_height}, {"xmag", half_width}})
+        if (!(size < k_largest_coordinate))
+            lens.fail(key, fmt::format("is {:g}, but must be below {:g} metres", size, k_largest_coordinate));
+    if (camera.half_height == 0)
+        lens.fail("ymag", "is 0");
+    else
+        camera.aspect = std::clamp(half_width / camera.half_height, 0.0f, k_largest_aspect);
+}
+
 void DocumentParser::read_cameras() {
     for (JsonFields& fields : root_.array("cameras")) {
         Camera camera;
         camera.name = fields.text("name");
         const std::string type = fields.require("type").text("type");
         if (type == "orthographic") {
-            camera.orthographic = true;
-            camera.half_height =
-                std::abs(fields.require("orthographic").object("orthographic").require("ymag").number("ymag", 1));
-            const float half_width = std::abs(fields.object("orthographic").number("xmag", 0));
-            if (camera.half_height == 0)
-                fields.fail("orthographic.ymag", "is 0");
-            else
-                camera.aspect = half_width / camera.half_height;
+            read_orthographic(fields, camera);
         } else if (type == "perspective") {
             camera.fov_y =
                 fields.require("perspective").object("perspective").require("yfov").number("yfov", camera.fov_y);
-            camera.aspect = fields.object("perspective").number("aspectRatio", 0, 0, 1e6f);
+            camera.aspect = fields.object("perspective").number("aspectRatio", 0, 0, k_largest_aspect);
             if (!(camera.fov_y > 0 && camera.fov_y < float(k_pi)))
                 fields.fail("perspective.yfov", "is not between 0 and pi");
         } else {

@@ -3,30 +3,28 @@
 #include "scene/gltf/gltf_meshes.h"
 #include "scene/scene_images.h"
 #include "scene/scene_readers.h"
+#include "scene/sound_places.h"
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <array>
 #include <map>
 #include <optional>
+#include <set>
+#include <utility>
 
 namespace domelight {
 
 namespace {
 
-bool finite(const Affine& a) {
-    for (const Vec3f& v : {a.x, a.y, a.z, a.translation})
-        if (!(std::abs(v.x) < k_largest_coordinate && std::abs(v.y) < k_largest_coordinate &&
-              std::abs(v.z) < k_largest_coordinate))
-            return false;
-    return true;
-}
+/// Times that meshes may stand in a scene.
+constexpr std::size_t k_most_instances = std::size_t(1) << 20;
 
 /// A frame without scale or shear that has the same orientation, for cameras and lights. Empty if the axes have
 /// collapsed.
 std::optional<Affine> rigid(const Affine& a) {
     const float depth = length(a.z);
-    if (!finite(a) || !(depth > 0)) return std::nullopt;
+    if (!is_sound(a) || !(depth > 0)) return std::nullopt;
     const Vec3f z = a.z / depth, side = cross(a.y, z);
     if (!(length(side) > 0)) return std::nullopt;
     const Vec3f x = normalize(side);
@@ -45,6 +43,8 @@ class SceneBuilder {
     Result<GltfPose> pose_of(const GltfSkin& skin);
     Result<std::vector<int>> meshes_of(const GltfNode& node);
     Result<std::vector<Affine>> places_of(const GltfNode& node, const Affine& place);
+    bool fits_world(int mesh, const Affine& to_world);
+    Result<void> add_instance(int mesh, const Affine& to_world, const std::string& name);
     Result<void> add_node(int index);
     Result<void> add_instances(const GltfNode& node, const Affine& place);
     Result<void> add_images();
@@ -63,7 +63,9 @@ class SceneBuilder {
     MeshRepairs repairs_;
     GltfLeftOut left_out_;
     int default_material_ = -1;
-    std::int64_t broken_places_ = 0;
+    std::vector<Scene::Box> mesh_boxes_;                     // by mesh of the scene, as far as they were needed
+    std::set<std::pair<int, std::array<float, 12>>> taken_;  // where a mesh stands already
+    std::int64_t broken_places_ = 0, repeated_ = 0;
 };
 
 /// Where each node is; also of nodes outside the scene, which may be joints.
@@ -177,24 +179,49 @@ Result<std::vector<Affine>> SceneBuilder::places_of(const GltfNode& node, const 
     return places;
 }
 
+/// Whether a mesh that is put there stays within the coordinates that rays can be traced in.
+bool SceneBuilder::fits_world(int mesh, const Affine& to_world) {
+    if (!is_sound(to_world)) return false;
+    for (std::size_t m = mesh_boxes_.size(); m < scene_.meshes.size(); ++m)
+        mesh_boxes_.push_back(box_of(scene_.meshes[m], {}));
+    const Scene::Box box = placed(mesh_boxes_[std::size_t(mesh)], to_world);
+    return is_sound(box.low) && is_sound(box.high);
+}
+
+Result<void> SceneBuilder::add_instance(int mesh, const Affine& to_world, const std::string& name) {
+    const auto& [x, y, z, t] = to_world;
+    // Surfaces in exactly one place cannot be told apart, and a ray would have to meet all of them.
+    if (!taken_.insert({mesh, {x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z, t.x, t.y, t.z}}).second) {
+        ++repeated_;
+        return {};
+    }
+    const Mesh& triangles = scene_.meshes[std::size_t(mesh)];
+    // What the renderer makes of it: an entry, or triangles of its own where it cannot trace rays in the mesh's frame.
+    constexpr std::size_t k_bytes_each = 1024, k_bytes_per_triangle = 160;
+    const std::size_t copied = has_sound_inverse(to_world) ? 0 : std::size_t(triangles.triangle_count());
+    if (const auto room =
+            budget_.take(1, sizeof(Instance) + name.size() + k_bytes_each + copied * k_bytes_per_triangle, "instances");
+        !room)
+        return room.error();
+    if (scene_.instances.size() >= k_most_instances)
+        return Error{fmt::format("meshes stand more than {} times in the scene", k_most_instances), "",
+                     "Put meshes that belong together into one."};
+    scene_.instances.push_back({mesh, to_world, name.empty() ? triangles.name : name});
+    return {};
+}
+
 Result<void> SceneBuilder::add_instances(const GltfNode& node, const Affine& place) {
     const auto meshes = meshes_of(node);
     if (!meshes) return meshes.error();
     const auto places = places_of(node, place);
     if (!places) return places.error();
-    if (const auto room =
-            budget_.take(meshes->size() * places->size(), sizeof(Instance) + node.name.size(), "instances");
-        !room)
-        return room.error();
-    for (const Affine& to_world : *places) {
-        if (!finite(to_world)) {
-            ++broken_places_;
-            continue;
+    for (const Affine& to_world : *places)
+        for (const int mesh : *meshes) {
+            if (!fits_world(mesh, to_world))
+                ++broken_places_;
+            else if (const auto added = add_instance(mesh, to_world, node.name); !added)
+                return added;
         }
-        for (const int mesh : *meshes)
-            scene_.instances.push_back(
-                {mesh, to_world, node.name.empty() ? scene_.meshes[std::size_t(mesh)].name : node.name});
-    }
     return {};
 }
 
@@ -257,7 +284,8 @@ void SceneBuilder::add_warnings() {
     };
     say(left_out_.points_and_lines, "primitives of points or lines left out: only triangles are drawn");
     say(left_out_.broken_joints, "weights of joints that the skin does not have left out");
-    say(broken_places_, "nodes left out: their place is not finite, or has no direction");
+    say(broken_places_, "nodes left out: their place is not finite, beyond 1e9 metres, or has no direction");
+    say(repeated_, "instances left out: the same mesh stands in exactly the same place already");
 }
 
 Result<Scene> SceneBuilder::build() {

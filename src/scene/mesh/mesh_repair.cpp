@@ -11,14 +11,8 @@ namespace domelight {
 
 namespace {
 
-/// False for NaN too.
-bool sound(const Vec3f& p) {
-    return std::abs(p.x) < k_largest_coordinate && std::abs(p.y) < k_largest_coordinate &&
-           std::abs(p.z) < k_largest_coordinate;
-}
-
-/// Twice the area times the direction. In double: neither tiny nor huge triangles exceed its range, and corners that
-/// are collinear in float give 0.
+/// Twice the area times the direction. In double: neither tiny nor huge triangles leave its range, and what is
+/// collinear in float comes out as 0.
 Vec3d area_normal(const Mesh& mesh, std::size_t triangle) {
     const Vec3d a(mesh.positions[mesh.indices[triangle]]), b(mesh.positions[mesh.indices[triangle + 1]]),
         c(mesh.positions[mesh.indices[triangle + 2]]);
@@ -56,7 +50,7 @@ void MeshRepairs::drop_triangles(Mesh& mesh) {
     std::int64_t broken = 0, flat = 0;
     std::vector<bool> bad;
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-        if (sound(mesh.positions[v])) continue;
+        if (is_sound(mesh.positions[v])) continue;
         if (bad.empty()) bad.resize(mesh.positions.size());
         bad[v] = true;
     }

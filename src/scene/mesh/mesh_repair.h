@@ -2,16 +2,15 @@
 
 #include "domelight/scene/scene.h"
 
+#include "scene/sound_places.h"
+
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace domelight {
 
-/// Coordinates of this size or more (metres) count as broken: cross products of such edges exceed the range of float.
-inline constexpr float k_largest_coordinate = 1e15f;
-
-/// The repairs in the meshes of a scene, for its warnings: one line for each kind, however many meshes had it.
+/// What was mended in the meshes of a scene, for its warnings: one line a kind, however many meshes had it.
 class MeshRepairs {
   public:
     /// Leaves out triangles that touch a vertex which is not finite (or beyond k_largest_coordinate) and those without
