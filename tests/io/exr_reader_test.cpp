@@ -257,6 +257,27 @@ TEST_CASE("exr reader: the picture is the display window; texels outside the dat
     CHECK(same_pixels(*read_all(**environment), sample_image(16, 8)));
 }
 
+TEST_CASE("exr reader: a header alone does not ask for gigabytes of black round its texels") {
+    TemporaryFolder folder;
+    const auto opened = [&](int width, int height, const Imath::Box2i& data, std::int64_t max_bytes) {
+        write_scanlines(folder / "w.exr", Imf::Header(Imath::Box2i({0, 0}, {width - 1, height - 1}), data),
+                        Channels(Imf::FLOAT, k_rgb, data.max.x - data.min.x + 1, data.max.y - data.min.y + 1));
+        ReaderOptions options;
+        options.max_bytes = max_bytes;
+        return open_exr_reader(FileBytes::from_memory(load(folder / "w.exr")), options);
+    };
+    const Imath::Box2i small({0, 0}, {3, 1});
+    const auto huge = opened(65536, 32768, small, std::int64_t(1) << 30);
+    REQUIRE_FALSE(huge);
+    CHECK(huge.error().what.find("the display window has 2147483648 texels, but the data window only 8") == 0);
+    CHECK(!huge.error().hint.empty());
+    CHECK(opened(8192, 4096, small, std::int64_t(1) << 30));
+    // What the file holds a good part of is read at any size.
+    CHECK_FALSE(opened(40, 20, small, 1 << 13));
+    CHECK(opened(40, 20, Imath::Box2i({0, 0}, {39, 9}), 1 << 13));
+    CHECK_FALSE(opened(40, 20, Imath::Box2i({-39, 0}, {0, 9}), 1 << 13));
+}
+
 TEST_CASE("exr reader: luminance and chroma become colour") {
     TemporaryFolder folder;
     const int width = 64, height = 32;

@@ -166,6 +166,7 @@ def hostile_files():
         "exr-offsets-zero.exr": exr(15, 7, data=bytes(64)),
         "exr-no-colours.exr": exr(15, 7, channels=b"Q", data=bytes(64)),
         "exr-version-255.exr": exr(15, 7, version=255),
+        "exr-display-huge.exr": exr(0, 0, data=struct.pack("<QiI3f", 331, 0, 12, 1, 1, 1), display=(0, 0, 65535, 32767)),
         "exr-cut-in-header.exr": exr(15, 7)[:60],
         "exr-attribute-of-gigabytes.exr": struct.pack("<II", 20000630, 2) + b"channels\0chlist\0" + struct.pack("<i", 0x7FFFFFF0),
 

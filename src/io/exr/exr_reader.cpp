@@ -64,7 +64,7 @@ class ExrReader : public ImageReader {
         : threads_(resolve_threads(threads)), stream_(bytes, std::move(preflight.headers)) {}
 
     /// Throws OpenEXR's exceptions.
-    Result<void> open();
+    Result<void> open(std::int64_t max_bytes);
     Result<bool> read(ImageView<float> rows) override;
 
   private:
@@ -103,7 +103,24 @@ Result<int> choose_part(const Imf::MultiPartInputFile& file) {
     return Error{fmt::format("no colour channels (R, G, B or Y) among: {}", names.empty() ? "none" : names), "", ""};
 }
 
-Result<void> ExrReader::open() {
+/// A header of some hundred bytes may promise two gigapixels of display window round a data window of one texel. The
+/// black round the data window is made row by row, but whoever reads the picture works on all of it.
+Result<void> check_black(const Imath::Box2i& display, const Imath::Box2i& data, std::int64_t max_bytes) {
+    const auto texels = [](const Imath::Box2i& b) {
+        return (std::int64_t(b.max.x) - b.min.x + 1) * (std::int64_t(b.max.y) - b.min.y + 1);
+    };
+    const Imath::Box2i seen({std::max(display.min.x, data.min.x), std::max(display.min.y, data.min.y)},
+                            {std::min(display.max.x, data.max.x), std::min(display.max.y, data.max.y)});
+    const std::int64_t black = texels(display) - texels(seen);
+    if (black <= 4 * texels(seen) || black <= max_bytes / std::int64_t(3 * sizeof(float))) return {};
+    return Error{
+        fmt::format("the display window has {} texels, but the data window only {} of them: the black round it "
+                    "would need more memory than the limit of {} bytes",
+                    texels(display), texels(seen), max_bytes),
+        "", "Crop the picture to its data window, or enlarge the data window to what is to be read."};
+}
+
+Result<void> ExrReader::open(std::int64_t max_bytes) {
     provide_exr_threads(threads_);
     const int line_threads = threads_ > 1 ? threads_ : 0;
     file_ = std::make_unique<Imf::MultiPartInputFile>(stream_, line_threads, false);
@@ -122,6 +139,7 @@ Result<void> ExrReader::open() {
     if (const auto sized = check_image_size(width, height); !sized) return sized.error();
     if (!window_.intersects(data_))
         return Error{"the data window lies outside the display window: no texel would be seen", "", ""};
+    if (const auto checked = check_black(window_, data_, max_bytes); !checked) return checked.error();
     facts_.width = int(width);
     facts_.height = int(height);
 
@@ -240,7 +258,7 @@ Result<std::unique_ptr<ImageReader>> open_exr_reader(std::shared_ptr<const FileB
     if (!preflight) return preflight.error();
     auto reader = std::make_unique<ExrReader>(std::move(bytes), std::move(*preflight), options.threads);
     try {
-        if (const auto opened = reader->open(); !opened) return opened.error();
+        if (const auto opened = reader->open(options.max_bytes); !opened) return opened.error();
     } catch (const std::exception& e) {
         return Error{fmt::format("not a readable OpenEXR file: {}", exr_message(e)), "",
                      "The file is truncated or damaged."};
