@@ -7,7 +7,6 @@
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/display_options.h"
-#include "cli/console/eight_bit.h"
 #include "cli/console/print.h"
 #include "cli/console/output_endings.h"
 #include "preview/screen_picture.h"
