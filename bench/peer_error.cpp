@@ -52,7 +52,8 @@ std::vector<Cubemap> read_chain(const std::filesystem::path& place, int levels) 
         for (const char* name : {"px", "nx", "py", "ny", "pz", "nz"}) {
             faces.push_back(place / fmt::format("m{}_{}.exr", l, name));
         }
-        chain.push_back(take(open_environment(faces)).cube);
+        const Environment level = take(open_environment(faces));
+        chain.push_back(*level.cube());
     }
     return chain;
 }

@@ -59,15 +59,31 @@ build_failed() {
     die "$2 failed; the lines above are $1"
 }
 
-# follow LOG PRESET NOTE: keeps ninja's output in LOG. Says a line at the first thing that is compiled and, on a terminal, counts along.
+# progress_text BRACKET SECONDS: "[12/340] " as "12 of 340, about 3 min left", from how long the steps so far have taken.
+progress_text() {
+    local done=${1#[} all left
+    all=${done#*/} done=${done%%/*} all=${all%%]*}
+    printf '%s of %s' "$done" "$all"
+    [ "$done" -gt 9 ] && [ "$2" -gt 4 ] || return 0
+    left=$(($2 * (all - done) / done))
+    if [ "$left" -ge 90 ]; then printf ', about %s min left' $(((left + 30) / 60)); else printf ', about %s s left' "$left"; fi
+}
+
+# follow LOG PRESET NOTE: keeps ninja's output in LOG. Says a line at the first thing that is compiled, then how far it is and how long it
+# may still take: on a terminal in place, elsewhere a line every half minute.
 follow() {
-    local line said=
+    local line start=$SECONDS told=$SECONDS said=
     while IFS= read -r line; do
         printf '%s\n' "$line"
-        case $line in "["*"] Building "*) ;; *) continue ;; esac
+        case $line in "["*] Building "*) ;; *) continue ;; esac
         [ -n "$said" ] || say "building ($2$3)"
         said=1
-        [ ! -t 2 ] || printf '\r%s ' "${line%%]*}]" >&2
+        if [ -t 2 ]; then
+            printf '\r\033[K%s ' "$(progress_text "$line" $((SECONDS - start)))" >&2
+        elif [ $((SECONDS - told)) -ge 30 ]; then
+            say "$(progress_text "$line" $((SECONDS - start)))"
+            told=$SECONDS
+        fi
     done >"$1"
     [ ! -t 2 ] || [ -z "$said" ] || printf '\r\033[K' >&2
 }
