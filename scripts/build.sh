@@ -75,7 +75,7 @@ follow() {
     local line start=$SECONDS told=$SECONDS said=
     while IFS= read -r line; do
         printf '%s\n' "$line"
-        case $line in "["*] Building "*) ;; *) continue ;; esac
+        case $line in "["*"] Building "*) ;; *) continue ;; esac
         [ -n "$said" ] || say "building ($2$3)"
         said=1
         if [ -t 2 ]; then
