@@ -37,7 +37,7 @@ BENCHMARK(quadrature)->Unit(benchmark::kMillisecond);
 
 void montecarlo(benchmark::State& state) {
     ImageF table;
-    for (auto _ : state) table = brdf_table_montecarlo({k_size, BrdfG::smith, 1}, int(state.range(0)));
+    for (auto _ : state) table = brdf_table_montecarlo({k_size, BrdfG::smith, 1}, {.count = int(state.range(0))});
     state.counters["max_error"] = worst_error(table);
 }
 BENCHMARK(montecarlo)->Arg(64)->Arg(1024)->Unit(benchmark::kMillisecond);

@@ -21,6 +21,7 @@ struct BakeWords {
     std::vector<std::string> environments, engines;
     std::string output, lobe, method = "exact", riemann_steps, riemann_sum = "normalised", layout, encoding,
                               encoding_quality, format, cube_picture = "cross";
+    std::string sequence, seed;
     std::string sh_window = "none", brdf_g = "correlated", brdf_form;
     std::optional<int> size, levels, samples, irradiance_size, sh_bands, brdf_size;
     std::vector<double> roughness, exponents;
@@ -57,6 +58,9 @@ void declare(Arguments& a, BakeWords& w) {
     a.choice("--method", w.method, {"exact", "bruteforce", "riemann", "montecarlo"},
              "exact, or one of the plain, slow methods (exact)");
     a.integer("--samples", "N", w.samples, "montecarlo: samples for each texel (1024)");
+    a.choice("--sequence", w.sequence, sequence_names(),
+             "montecarlo: the points of the unit square, the same ones for each texel (hammersley)");
+    a.text("--seed", "N", w.seed, "montecarlo: selects the randomisation; 0: the textbook's plain points (0)");
     a.text("--riemann-steps", "KxJ", w.riemann_steps,
            "riemann: K steps of phi (azimuth, to 2 pi) by J of theta (polar angle, to pi/2), as in the lectures "
            "(256x64)");
@@ -103,6 +107,21 @@ Result<void> parse_riemann_steps(const std::string& words, BakeOptions& options)
     return {};
 }
 
+/// The points of --method montecarlo.
+Result<void> take_points(const BakeWords& w, BakeOptions& o) {
+    for (const auto& [option, given] : {std::pair{"--sequence", !w.sequence.empty()}, {"--seed", !w.seed.empty()}})
+        if (given && w.method != "montecarlo")
+            return Error{fmt::format("has no meaning with --method {}", w.method), option,
+                         "It belongs to --method montecarlo."};
+    o.points.count = w.samples.value_or(o.points.count);
+    if (!w.sequence.empty()) o.points.sequence = *sequence_from_name(w.sequence);
+    if (w.seed.empty()) return {};
+    const auto seed = parse_seed(w.seed);
+    if (!seed) return seed.error().at("--seed");
+    o.points.seed = *seed;
+    return {};
+}
+
 Result<BakeOptions> bake_options(const BakeWords& w) {
     static const std::map<std::string, BakeMethod> methods{{"exact", BakeMethod::exact},
                                                            {"bruteforce", BakeMethod::bruteforce},
@@ -123,7 +142,7 @@ Result<BakeOptions> bake_options(const BakeWords& w) {
     o.exponents = w.exponents;
     if (!w.lobe.empty()) o.lobe = *lobe_from_name(w.lobe);
     o.method = methods.at(w.method);
-    o.samples = w.samples.value_or(o.samples);
+    if (auto ok = take_points(w, o); !ok) return ok.error();
     if (!w.riemann_steps.empty())
         if (auto ok = parse_riemann_steps(w.riemann_steps, o); !ok) return ok.error();
     o.riemann.normalised = w.riemann_sum == "normalised";

@@ -37,6 +37,9 @@ Result<double> parse_number(const std::string& text) {
 Result<int> parse_integer(const std::string& text) {
     return parse_whole<int>(text, "a whole number");
 }
+Result<std::uint64_t> parse_seed(const std::string& text) {
+    return parse_whole<std::uint64_t>(text, "a whole number from 0 to 18446744073709551615");
+}
 
 std::vector<std::string> split(const std::string& text, char separator) {
     std::vector<std::string> words;

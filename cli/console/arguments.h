@@ -2,6 +2,7 @@
 
 #include "domelight/base/result.h"
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -60,6 +61,8 @@ class Arguments {
 /// A decimal number without anything after it; "inf" is one.
 Result<double> parse_number(const std::string& text);
 Result<int> parse_integer(const std::string& text);
+/// Any 64-bit number.
+Result<std::uint64_t> parse_seed(const std::string& text);
 std::vector<std::string> split(const std::string& text, char separator);
 std::string join(const std::vector<std::string>& words, const std::string& separator);
 

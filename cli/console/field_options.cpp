@@ -12,6 +12,7 @@ struct OtherName {
 };
 constexpr OtherName k_other_names[] = {
     {"engines", "--for"},
+    {"points", "--samples"},
     {"riemann", "--riemann-steps"},
 };
 

@@ -9,7 +9,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace domelight::cli {
@@ -118,7 +117,7 @@ void declare_sample_options(Arguments& a, SampleWords& w) {
                                          "sampling");
     a.number("--uniform-share", "SHARE", w.uniform_share,
              "draw this part of the samples uniformly over the sphere, 0 to 1 (0)");
-    a.choice("--sequence", w.sequence, {"random", "stratified", "hammersley", "halton", "sobol", "r2"},
+    a.choice("--sequence", w.sequence, sequence_names(),
              "the points of the unit square (sobol; with --estimate random, for which its standard errors hold)");
     a.text("--seed", "N", w.seed, "selects the randomisation; 0: the textbook's plain points (1)");
     a.group("Pictures and tables");
@@ -170,10 +169,9 @@ Result<void> check_sample_options(const Arguments& arguments, SampleWords& w) {
         return Error{"has no meaning without --tables", "--tables-format", ""};
     if (!w.picture.empty() && w.count.value_or(1024) > 1'000'000 && !w.estimate)
         return Error{"a picture can show at most a million samples", "--picture", "Ask for fewer with -n."};
-    const char* const end = w.seed.data() + w.seed.size();
-    if (const auto [stop, code] = std::from_chars(w.seed.data(), end, w.seed_number);
-        code != std::errc() || stop != end || w.seed.empty())
-        return Error{fmt::format("\"{}\" is not a whole number from 0 to 18446744073709551615", w.seed), "--seed", ""};
+    const auto seed = parse_seed(w.seed);
+    if (!seed) return seed.error().at("--seed");
+    w.seed_number = *seed;
     if (auto ok = check_explain(arguments, w); !ok) return ok;
     if (auto ok = check_surface(arguments, w); !ok) return ok;
 

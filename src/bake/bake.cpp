@@ -280,7 +280,7 @@ class EngineBake {
         table.size = plan_.brdf_size;
         table.g = options_.brdf_g;
         table.threads = options_.threads;
-        if (options_.method == BakeMethod::montecarlo) return brdf_table_montecarlo(table, options_.samples);
+        if (options_.method == BakeMethod::montecarlo) return brdf_table_montecarlo(table, options_.points);
         const ImageF& embedded = brdf_table_default();
         return table.size == embedded.width() && table.g == BrdfG::correlated ? embedded : brdf_table(table);
     }

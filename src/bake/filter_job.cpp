@@ -48,7 +48,7 @@ ReferenceOptions reference_options(const BakeOptions& o) {
                : o.method == BakeMethod::montecarlo ? ReferenceMethod::montecarlo
                                                     : ReferenceMethod::bruteforce;
     r.riemann = o.riemann;
-    r.samples = o.samples;
+    r.points = o.points;
     return r;
 }
 

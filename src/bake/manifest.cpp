@@ -74,7 +74,11 @@ Json options_json(const EnginePlan& plan, const BakeOptions& o) {
         widths.push_back(phong ? exponent_json(level.exponent) : Json(level.roughness));
     json[phong ? "exponents" : "roughness"] = widths;
     json["method"] = bake_method_name(o.method);
-    if (o.method == BakeMethod::montecarlo) json["samples"] = o.samples;
+    if (o.method == BakeMethod::montecarlo) {
+        json["samples"] = o.points.count;
+        json["sequence"] = sequence_name(o.points.sequence);
+        json["seed"] = o.points.seed;
+    }
     if (o.method == BakeMethod::riemann) {
         json["riemann_steps"] = {{"phi", o.riemann.phi_steps}, {"theta", o.riemann.theta_steps}};
         json["riemann_sum"] = o.riemann.normalised ? "normalised" : "plain";

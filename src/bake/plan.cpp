@@ -75,8 +75,8 @@ Result<void> check_values(const BakeOptions& o) {
         return field_error("brdf_size", fmt::format("{} is not from 1 to 4096", *o.brdf_size));
     if (o.sh_bands < 1 || o.sh_bands > 64)
         return field_error("sh_bands", fmt::format("{} is not from 1 to 64", o.sh_bands));
-    if (o.samples < 1 || o.samples > (1 << 24))
-        return field_error("samples", fmt::format("{} is not from 1 to 2^24", o.samples));
+    if (o.points.count < 1 || o.points.count > (1 << 24))
+        return field_error("points", fmt::format("{} is not from 1 to 2^24", o.points.count));
     for (const int steps : {o.riemann.phi_steps, o.riemann.theta_steps})
         if (steps < 1 || steps > 65536) return field_error("riemann", fmt::format("{} is not from 1 to 65536", steps));
     if (o.threads < 0 || o.threads > 1024)

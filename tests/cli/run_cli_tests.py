@@ -453,6 +453,31 @@ def test_plain_methods_agree_with_the_exact_one(folder):
         assert all(abs(a - b) <= 2e-2 * abs(b) for a, b in zip(mean, expected)), (method, mean, expected)
 
 
+def test_montecarlo_takes_every_sequence(folder):
+    run("sky", "-o", "dull.exr", "--exr", "float", "--height", "16", "--no-sun-disc", folder=folder)
+    words = ["bake", "dull.exr", *SMALL, "--levels", "2", "--encoding", "rgba32f"]
+
+    def texels(name, *more):
+        run(*words, "-o", name, *more, folder=folder)
+        data = (folder / name / "specular.ktx2").read_bytes()
+        return struct.unpack(f"<{6 * 8 * 8 * 4}f", data[-6 * 16 * 16 * 16 - 6 * 8 * 8 * 16:-6 * 16 * 16 * 16])  # KTX2 keeps the smallest level first
+
+    exact = texels("exact")
+    found = {}
+    for sequence in ["random", "stratified", "hammersley", "halton", "sobol", "r2"]:
+        for seed in ["0", "7"]:
+            found[sequence, seed] = texels("out", "--method", "montecarlo", "--samples", "1024", "--sequence", sequence, "--seed", seed)
+            options = manifest_of(folder / "out")["options"]
+            assert (options["samples"], options["sequence"], options["seed"]) == (1024, sequence, int(seed))
+            worst = max(abs(a - b) / b for i, (a, b) in enumerate(zip(found[sequence, seed], exact)) if i % 4 < 3)
+            assert worst < (0.2 if sequence == "random" else 0.05), (sequence, seed, worst)
+    assert len({values for values in found.values()}) == 12
+    assert texels("out", "--method", "montecarlo") == found["hammersley", "0"]
+    assert "--method montecarlo" in run(*words, "-o", "no", "--sequence", "sobol", folder=folder, code=2).stderr
+    assert "--method montecarlo" in run(*words, "-o", "no", "--seed", "1", folder=folder, code=2).stderr
+    assert "whole number" in run(*words, "-o", "no", "--method", "montecarlo", "--seed", "-1", folder=folder, code=2).stderr
+
+
 def test_riemann_sum_of_the_lecture(folder):
     """Constant light of radiance 1: K steps of phi by J of theta give (pi^2 / 2J) / sin(pi / 2J), 3.224 for J = 4, whatever K is."""
     (folder / "half.exr").write_bytes(make_exr(16, 8, {}))  # 0.5 everywhere

@@ -129,7 +129,7 @@ TEST_CASE("brdf_table: other sizes and G, the multiple-scattering form, any numb
 
 TEST_CASE("brdf_table: the courses' Monte Carlo comes within its noise") {
     const ImageF exact = brdf_table({16, BrdfG::karis, 0}),
-                 estimate = brdf_table_montecarlo({16, BrdfG::karis, 0}, 4096);
+                 estimate = brdf_table_montecarlo({16, BrdfG::karis, 0}, {.count = 4096});
     double worst = 0, sum = 0;
     for (int y = 2; y < 16; ++y)
         for (int x = 0; x < 16; ++x)

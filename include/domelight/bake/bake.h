@@ -41,7 +41,7 @@ struct BakeOptions {
     std::optional<Lobe> lobe;
     std::vector<double> exponents;  ///< Phong: of each level; infinity is the environment itself
     BakeMethod method = BakeMethod::exact;
-    int samples = 1024;  ///< montecarlo: per texel
+    PointSet points;  ///< montecarlo: the same for each texel
     RiemannOptions riemann;
 
     std::optional<Encoding> encoding;

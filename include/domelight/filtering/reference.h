@@ -1,6 +1,7 @@
 #pragma once
 
 #include "domelight/filtering/prefilter.h"
+#include "domelight/sampling/sequences.h"
 
 namespace domelight {
 
@@ -8,7 +9,7 @@ namespace domelight {
 enum class ReferenceMethod {
     bruteforce,  ///< the kernel summed over all of the source, patch by patch, in double: the truth
     riemann,     ///< the textbook Riemann sum over the hemisphere about each direction
-    montecarlo,  ///< Hammersley points, GGX half vectors, weighted by n.l: Karis 2013
+    montecarlo,  ///< half vectors drawn from the lobe, weighted by n.l: Karis 2013
 };
 
 /// The Riemann sum's steps, in the letters of the lectures: K counts phi, J counts theta.
@@ -23,8 +24,8 @@ struct RiemannOptions {
 
 struct ReferenceOptions {
     ReferenceMethod method = ReferenceMethod::bruteforce;
-    RiemannOptions riemann;
-    int samples = 1024;  ///< montecarlo: per texel
+    RiemannOptions riemann = {};
+    PointSet points = {};  ///< montecarlo: the same for each texel
 };
 
 /// The same result as `prefilter`, by a plain method, from a lat-long image in memory.

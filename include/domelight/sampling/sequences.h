@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace domelight {
 
@@ -91,8 +92,18 @@ inline UnitPoint unit_point(Sequence sequence, std::uint64_t seed, std::uint32_t
     return random_point(seed, index, pair);
 }
 
+/// The points of a Monte Carlo sum: `count` of one sequence.
+struct PointSet {
+    Sequence sequence = Sequence::hammersley;
+    std::uint64_t seed = 0;  ///< as unit_point() has it; 0: the plain points where a sequence has a textbook form
+    int count = 1024;        ///< 1 or more
+    /// Point i, 0 <= i < count.
+    UnitPoint operator[](int i) const { return unit_point(sequence, seed, std::uint32_t(i), std::uint32_t(count)); }
+};
+
 /// "random", "stratified", "hammersley", "halton", "sobol", "r2".
 std::string sequence_name(Sequence sequence);
+std::vector<std::string> sequence_names();  ///< of all of them
 
 /// The sequence of this name, if there is one.
 std::optional<Sequence> sequence_from_name(std::string_view name);

@@ -1,8 +1,7 @@
 #include "domelight/filtering/brdf/brdf_table.h"
 
-#include "domelight/sampling/low_discrepancy.h"
-#include "domelight/sampling/microfacet.h"
 #include "domelight/base/parallel.h"
+#include "domelight/sampling/microfacet.h"
 
 #include "filtering/brdf/brdf_embedded.h"
 #include "filtering/brdf/brdf_quadrature.h"
@@ -32,12 +31,13 @@ ImageF fill(int size, int threads, const Terms& terms) {
 
 /// Karis 2013, IntegrateBRDF: half vectors are drawn from D NdotH, so the weight of each sample is G VdotH / (NdotH
 /// NdotV).
-BrdfTerms montecarlo_terms(double NdotV, double alpha, BrdfG g, int samples) {
+BrdfTerms montecarlo_terms(double NdotV, double alpha, BrdfG g, const PointSet& points) {
     const double s_v = std::sqrt((1 - NdotV) * (1 + NdotV)), a2 = alpha * alpha;
     BrdfTerms sum;
-    for (int i = 0; i < samples; ++i) {
-        const double xi = radical_inverse(std::uint32_t(i)), phi = 2 * k_pi * i / samples;
-        const PolarSquares h = ggx_half_angle(xi, a2);
+    for (int i = 0; i < points.count; ++i) {
+        const UnitPoint point = points[i];
+        const double phi = 2 * k_pi * unit_double(point.x);
+        const PolarSquares h = ggx_half_angle(unit_double(point.y), a2);
         const double c_h = std::sqrt(h.cos2), s_h = std::sqrt(h.sin2);
         const double VdotH = NdotV * c_h + s_v * s_h * std::cos(phi), NdotL = 2 * VdotH * c_h - NdotV;
         if (NdotL <= 0) continue;
@@ -46,22 +46,23 @@ BrdfTerms montecarlo_terms(double NdotV, double alpha, BrdfG g, int samples) {
         sum.scale += (1 - fresnel) * f;
         sum.bias += fresnel * f;
     }
-    return {sum.scale / samples, sum.bias / samples};
+    return {sum.scale / points.count, sum.bias / points.count};
 }
 
 /// The sheen's albedo from half vectors uniform over the hemisphere, as in the Khronos tool.
-double montecarlo_sheen(double NdotV, double alpha, int samples) {
+double montecarlo_sheen(double NdotV, double alpha, const PointSet& points) {
     const double s_v = std::sqrt((1 - NdotV) * (1 + NdotV));
     double sum = 0;
-    for (int i = 0; i < samples; ++i) {
-        const double c_h = 1 - radical_inverse(std::uint32_t(i)), s2_h = (1 - c_h) * (1 + c_h),
-                     phi = 2 * k_pi * i / samples;
+    for (int i = 0; i < points.count; ++i) {
+        const UnitPoint point = points[i];
+        const double c_h = 1 - unit_double(point.y), s2_h = (1 - c_h) * (1 + c_h),
+                     phi = 2 * k_pi * unit_double(point.x);
         const double VdotH = NdotV * c_h + s_v * std::sqrt(s2_h) * std::cos(phi), NdotL = 2 * VdotH * c_h - NdotV;
         if (NdotL <= 0) continue;
         sum +=
             charlie_d(s2_h, alpha) * NdotL * VdotH / (NdotL + NdotV - NdotL * NdotV);  // 4 VdotH dh = dl, V's own 1/4
     }
-    return sum * 2 * k_pi / samples;
+    return sum * 2 * k_pi / points.count;
 }
 
 }  // namespace
@@ -91,11 +92,11 @@ ImageF brdf_table_multiscatter(ImageView<const float> table) {
     return out;
 }
 
-ImageF brdf_table_montecarlo(const BrdfTableOptions& options, int samples) {
-    assert(samples >= 1);
+ImageF brdf_table_montecarlo(const BrdfTableOptions& options, const PointSet& points) {
+    assert(points.count >= 1);
     return fill(options.size, options.threads, [&](double NdotV, double alpha) {
-        const BrdfTerms terms = montecarlo_terms(NdotV, alpha, options.g, samples);
-        return Vec3d{terms.scale, terms.bias, montecarlo_sheen(NdotV, alpha, samples)};
+        const BrdfTerms terms = montecarlo_terms(NdotV, alpha, options.g, points);
+        return Vec3d{terms.scale, terms.bias, montecarlo_sheen(NdotV, alpha, points)};
     });
 }
 

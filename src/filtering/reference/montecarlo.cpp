@@ -36,16 +36,18 @@ Drawn draw(const KernelDensity& density, const ZonalKernel& kernel, double xi) {
 
 }  // namespace
 
-Vec3d montecarlo_sum(const ReferenceSource& source, const ZonalKernel& kernel, const Vec3d& axis, int samples) {
+Vec3d montecarlo_sum(const ReferenceSource& source, const ZonalKernel& kernel, const Vec3d& axis,
+                     const PointSet& points) {
     const ReferenceFrame frame(axis);
     const KernelDensity density(kernel);
     Vec3d sum;
     double weights = 0;
-    for (int i = 0; i < samples; ++i) {
-        const Drawn l = draw(density, kernel, radical_inverse(std::uint32_t(i)));
+    for (int i = 0; i < points.count; ++i) {
+        const UnitPoint point = points[i];
+        const Drawn l = draw(density, kernel, unit_double(point.y));
         if (l.cosine <= 0) continue;
         const double weight = kernel.lobe == Lobe::phong_plain ? 1 : l.cosine;  // NdotL
-        sum = sum + source.lookup(frame.direction(l.cosine, l.sine, 2 * k_pi * i / samples)) * weight;
+        sum = sum + source.lookup(frame.direction(l.cosine, l.sine, 2 * k_pi * unit_double(point.x))) * weight;
         weights += weight;
     }
     // No sample is above the horizon (charlie with very few samples): the lobe is replaced by its axis.

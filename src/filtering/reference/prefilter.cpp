@@ -100,7 +100,7 @@ bool fill(Grid& grid, ImageView<const float> latlong, const ReferenceSource& sou
                 for (int i = begin; i < end; ++i)
                     values[i] = reference.method == ReferenceMethod::riemann
                                     ? riemann_sum(source, kernel, axes[i], reference.riemann)
-                                    : montecarlo_sum(source, kernel, axes[i], reference.samples);
+                                    : montecarlo_sum(source, kernel, axes[i], reference.points);
             });
         }
         for (int i = 0; i < count; ++i) grid.set(first + i, values[i]);
@@ -119,7 +119,7 @@ Result<void> check(ImageView<const float> latlong, const FilterOptions& options,
         return Error{"the environment must be an RGB image of at least 1 x 1", "", ""};
     if (reference.riemann.phi_steps < 1 || reference.riemann.theta_steps < 1)
         return Error{"a Riemann sum needs at least one step each way", "", ""};
-    if (reference.samples < 1) return Error{"Monte Carlo needs at least one sample", "", ""};
+    if (reference.points.count < 1) return Error{"Monte Carlo needs at least one sample", "", ""};
     for (const LevelSpec& level : options.specular) {
         if (level.size < 1) return Error{"a level must be at least one texel wide", "", ""};
         if (!level.mirror && !valid(level.kernel))

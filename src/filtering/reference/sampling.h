@@ -30,9 +30,10 @@ struct ReferenceFrame {
 Vec3d riemann_sum(const ReferenceSource& source, const ZonalKernel& kernel, const Vec3d& axis,
                   const RiemannOptions& options);
 
-/// The courses' Monte Carlo prefilter (Karis 2013, PrefilterEnvMap): n = v = r = axis, Hammersley points, half vectors
-/// drawn from the lobe (ggx: D n.h; charlie: D n.h, as the Khronos tools draw it; phong: the light direction itself
-/// from cos^n), each sample of the light weighted by n.l and the sum divided by the weights.
-Vec3d montecarlo_sum(const ReferenceSource& source, const ZonalKernel& kernel, const Vec3d& axis, int samples);
+/// The courses' Monte Carlo prefilter (Karis 2013, PrefilterEnvMap): n = v = r = axis, half vectors drawn from the lobe
+/// (ggx: D n.h; charlie: D n.h, as the Khronos tools draw it; phong: the light direction itself from cos^n), each
+/// sample of the light weighted by n.l and the sum divided by the weights. A point's x gives phi, its y theta.
+Vec3d montecarlo_sum(const ReferenceSource& source, const ZonalKernel& kernel, const Vec3d& axis,
+                     const PointSet& points);
 
 }  // namespace domelight

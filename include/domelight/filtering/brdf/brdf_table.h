@@ -1,6 +1,7 @@
 #pragma once
 
 #include "domelight/image/image.h"
+#include "domelight/sampling/sequences.h"
 
 namespace domelight {
 
@@ -31,8 +32,9 @@ ImageF brdf_table(const BrdfTableOptions& options = {});
 /// The third channel is the same.
 ImageF brdf_table_multiscatter(ImageView<const float> table);
 
-/// The courses' integrateBRDF for split-sum, for comparison: Hammersley points and GGX half vectors (Karis 2013).
-ImageF brdf_table_montecarlo(const BrdfTableOptions& options, int samples);
+/// The courses' integrateBRDF for split-sum, for comparison: GGX half vectors (Karis 2013) from the same points for each
+/// texel.
+ImageF brdf_table_montecarlo(const BrdfTableOptions& options, const PointSet& points);
 
 /// The default table (128^2, correlated), computed when the library was built.
 const ImageF& brdf_table_default();
