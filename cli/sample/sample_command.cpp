@@ -72,9 +72,11 @@ Result<void> work(const SampleWords& w, const EnvironmentSampler& sampler, Json&
     for (const std::string& file : {w.output, w.picture, w.heat})
         if (!file.empty()) files.push_back(file);
     if (!w.tables.empty()) {
-        auto names = write_tables(w, sampler);
-        if (!names) return names.error();
-        for (const std::string& name : *names) files.push_back((std::filesystem::path(w.tables) / name).string());
+        auto tables = write_tables(w, sampler);
+        if (!tables) return tables.error();
+        for (const std::string& name : tables->files)
+            files.push_back((std::filesystem::path(w.tables) / name).string());
+        json["tables"] = Json{{"total_average", tables->total_average}};
     }
     const bool text = !w.common.json && !w.common.quiet;
     if (text)

@@ -129,7 +129,8 @@ void declare_sample_options(Arguments& a, SampleWords& w) {
     a.integer("--picture-width", "PIXELS", w.picture_width, "width of the environment in these pictures, 256 to 8192 "
                                                             "(1024)");
     a.text("--tables", "DIR", w.tables,
-           "the cumulative functions as textures for shaders: rows.* and columns.*, RG float");
+           "textures for shaders: the cumulative functions rows.* and columns.*, RG float, and for the lectures' loop "
+           "row_averages.*, R float");
     a.choice("--tables-format", w.tables_format, {"ktx2", "exr"}, "their format (ktx2)");
     a.group("How good each strategy is");
     a.flag("--estimate", w.estimate, "estimate the light that a surface reflects by every strategy, and compare them");

@@ -76,6 +76,23 @@ bool put_samples(const SampleWords& w, const EnvironmentSampler& sampler, bool j
     return true;
 }
 
+using Metadata = std::map<std::string, std::string>;
+
+Result<void> write_table_exr(const std::filesystem::path& file, const ImageF& table, Metadata metadata, int threads) {
+    ExrWriteOptions options;
+    options.half = false;
+    options.attributes = std::move(metadata);
+    options.threads = threads;
+    return write_exr(file, table.view(), options);
+}
+
+Result<void> write_table_ktx2(const std::filesystem::path& file, const ImageF& table, Encoding encoding,
+                              Metadata metadata) {
+    Texture texture = encode_table(table, encoding);
+    texture.metadata = std::move(metadata);
+    return write_ktx2(file, texture);
+}
+
 }  // namespace
 
 Result<void> write_samples(const SampleWords& w, const EnvironmentSampler& sampler, const Progress& progress) {
@@ -108,32 +125,35 @@ Result<void> write_samples(const SampleWords& w, const EnvironmentSampler& sampl
     });
 }
 
-Result<std::vector<std::string>> write_tables(const SampleWords& w, const EnvironmentSampler& sampler) {
+Result<SamplingTables> write_tables(const SampleWords& w, const EnvironmentSampler& sampler) {
     const SamplingTextures textures = sampling_textures(sampler);
     auto staging = Staging::open(w.tables);
     if (!staging) return staging.error();
     const std::map<std::string, std::string> notes{
-        {"domelight.quantity", "cumulative_share, pdf_uv"},
         {"domelight.weight", w.weight},
         {"domelight.compensation", fmt::format("{:.9g}", sampler.compensation())},
+        {"domelight.total_average", fmt::format("{:.9g}", textures.total_average)},
         {"domelight.source", w.environment_name()}};
-    const auto write = [&](const std::string& name, ImageView<const float> table) -> Result<void> {
-        if (w.tables_format == "exr") {
-            ExrWriteOptions options;
-            options.half = false;
-            options.attributes = notes;
-            options.threads = w.threads();
-            return write_exr(staging->stage(name), table, options);
-        }
-        Texture texture = encode_table(table, Encoding::rg32f);
-        texture.metadata.insert(notes.begin(), notes.end());
-        return write_ktx2(staging->stage(name), texture);
-    };
-    const std::vector<std::string> names{"rows." + w.tables_format, "columns." + w.tables_format};
-    if (auto ok = write(names[0], textures.rows.view()); !ok) return ok.error().at(w.tables);
-    if (auto ok = write(names[1], textures.columns.view()); !ok) return ok.error().at(w.tables);
-    if (auto ok = staging->commit(names[1]); !ok) return ok.error();
-    return names;
+    const struct {
+        std::string name;
+        const char* quantity;
+        const ImageF& table;
+        Encoding encoding;
+    } tables[] = {{"rows", "cumulative_share, pdf_uv", textures.rows, Encoding::rg32f},
+                  {"columns", "cumulative_share, pdf_uv", textures.columns, Encoding::rg32f},
+                  {"row_averages", "average_weight", textures.row_averages, Encoding::r32f}};
+    SamplingTables written{.total_average = textures.total_average};
+    for (const auto& [name, quantity, table, encoding] : tables) {
+        auto metadata = notes;
+        metadata["domelight.quantity"] = quantity;
+        written.files.push_back(name + "." + w.tables_format);
+        const auto path = staging->stage(written.files.back());
+        const auto ok = w.tables_format == "exr" ? write_table_exr(path, table, std::move(metadata), w.threads())
+                                                 : write_table_ktx2(path, table, encoding, std::move(metadata));
+        if (!ok) return ok.error().at(w.tables);
+    }
+    if (auto ok = staging->commit(written.files.back()); !ok) return ok.error();
+    return written;
 }
 
 }  // namespace domelight::cli

@@ -264,7 +264,7 @@ std::optional<UnitPoint> EnvironmentSampler::invert(const Vec3f& direction) cons
 SamplingTextures sampling_textures(const EnvironmentSampler& sampler) {
     const auto image = sampler.image();
     const Weights weights = weights_of(image, sampler.options().weight, sampler.compensation());
-    SamplingTextures out{ImageF(1, image.height, 2), ImageF(image.width, image.height, 2)};
+    SamplingTextures out{ImageF(1, image.height, 2), ImageF(image.width, image.height, 2), ImageF(1, image.height, 1)};
     std::vector<double> sums(image.height);
     // A cumulative row and the density beside it; all zero: uniform.
     const auto fill = [](int n, double total, const auto& weight, const auto& texel) {
@@ -281,6 +281,7 @@ SamplingTextures sampling_textures(const EnvironmentSampler& sampler) {
         for (int y = begin; y < end; ++y) {
             const auto row = weights.row(y, room);
             for (const float w : row) sums[y] += w;
+            out.row_averages.at(0, y)[0] = float(sums[y] / image.width);
             fill(
                 image.width, sums[y], [&](int x) { return double(row[x]); },
                 [&](int x) { return out.columns.at(x, y); });
@@ -288,6 +289,7 @@ SamplingTextures sampling_textures(const EnvironmentSampler& sampler) {
     });
     double total = 0;
     for (const double s : sums) total += s;
+    out.total_average = total / (double(image.width) * image.height);
     fill(image.height, total, [&](int y) { return sums[y]; }, [&](int y) { return out.rows.at(0, y); });
     return out;
 }

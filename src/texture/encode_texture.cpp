@@ -75,7 +75,8 @@ ImageF decode_texture(const Texture& texture, int level, int face) {
 
 Result<std::vector<Cubemap>> decode_cubes(const Texture& texture) {
     if (texture.faces != 6) return Error{"texture is not a cube", "", "Wanted is a specular cube, as a bake has it."};
-    if (encoding_channels(texture.encoding) != 3) return Error{"texture has two channels, not a colour", "", ""};
+    if (encoding_channels(texture.encoding) != 3)
+        return Error{"texture has fewer than three channels: no colour", "", ""};
     std::vector<Cubemap> levels;
     for (int l = 0; l < int(texture.levels.size()); ++l) {
         Cubemap cube(texture.level_width(l));

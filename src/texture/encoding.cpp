@@ -28,6 +28,7 @@ constexpr EncodingFacts k_facts[] = {
     {"r11g11b10f", 1, 4, 3, k_float10_max},
     {"rg16f", 1, 4, 2, k_half_max},
     {"rg32f", 1, 8, 2, std::numeric_limits<float>::max()},
+    {"r32f", 1, 4, 1, std::numeric_limits<float>::max()},
     {"bc6h", 4, 16, 3, k_half_max},
     {"rgbm", 1, 4, 3, k_rgbm_max},
     {"rgbd", 1, 4, 3, k_rgbd_max},

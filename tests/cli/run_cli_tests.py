@@ -695,11 +695,11 @@ def test_sample_draws_directions_with_their_density(folder):
 
 def test_sample_writes_pictures_and_tables(folder):
     result = run("sample", "studio.hdr", "--picture", "a.png", "--heat", "b.png", "--tables", "shader", "--picture-width", "300", folder=folder)
-    assert result.stdout.splitlines() == ["a.png", "b.png", "shader/rows.ktx2", "shader/columns.ktx2"]
+    assert result.stdout.splitlines() == ["a.png", "b.png", "shader/rows.ktx2", "shader/columns.ktx2", "shader/row_averages.ktx2"]
     for name in ["a.png", "b.png"]:
         assert (folder / name).read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
     document = json.loads(run("sample", "studio.hdr", "--heat", "c.png", "--heat-measure", "uv", "--tables", "t", "--tables-format", "exr", "--json", folder=folder).stdout)
-    assert document["files"] == ["c.png", "t/rows.exr", "t/columns.exr"] and document["width"] == 64
+    assert document["files"] == ["c.png", "t/rows.exr", "t/columns.exr", "t/row_averages.exr"] and document["width"] == 64
 
     # A shader's reading of the tables, as docs/math/importance.md has it, draws what the program draws.
     def table(name, width, height):
@@ -721,6 +721,59 @@ def test_sample_writes_pictures_and_tables(folder):
         u = (k + 1 - (columns[64 * j + k] - x) * 64 / column_pdf[64 * j + k]) / 64
         assert abs(u - sample["u"]) < 1e-5 and abs(v - sample["v"]) < 1e-5, (u, v, sample)
         assert abs(row_pdf[j] * column_pdf[64 * j + k] / (2 * math.pi**2 * math.sin(math.pi * v)) / sample["pdf_solid_angle"] - 1) < 1e-4
+
+
+def test_row_averages_draw_as_the_lecture_does(folder):
+    """The lecture's loop over running row averages, then along the row of the image itself, has the density of the distribution."""
+    width, height = 16, 8
+    red = [20 * abs(math.sin(7 * i)) ** 4 for i in range(width * height)]
+    red[37] = 900.0
+    (folder / "known.exr").write_bytes(make_exr(width, height, dict(enumerate(red))))
+    document = json.loads(run("sample", "known.exr", "--tables", "t", "--json", folder=folder).stdout)
+    total = document["tables"]["total_average"]
+
+    def table(name, columns, channels):
+        info = json.loads(run("info", f"t/{name}.ktx2", "--json", folder=folder).stdout)
+        assert (info["width"], info["height"], info["levels"]) == (columns, height, 1), info
+        assert abs(float(info["metadata"]["domelight.total_average"]) / total - 1) < 1e-8
+        values = struct.unpack(f"<{channels * columns * height}f", (folder / f"t/{name}.ktx2").read_bytes()[-4 * channels * columns * height:])
+        return info["format"], values
+
+    name, averages = table("row_averages", 1, 1)
+    assert "R32_SFLOAT" in name, name
+    light = [[(0.2126 * red[width * j + i] + 0.7874 * 0.5) * math.sin(math.pi * (j + 0.5) / height) for i in range(width)] for j in range(height)]
+    for j in range(height):
+        assert abs(averages[j] - sum(light[j]) / width) <= 1e-6 * total, j
+    assert abs(sum(averages) / height / total - 1) < 1e-6
+
+    def first_beyond(goal, values):
+        running = 0
+        for i, value in enumerate(values):
+            running += value
+            if running > goal:
+                return i
+        return len(values) - 1  # rounding at the very end
+
+    rows, columns = table("rows", 1, 2)[1], table("columns", width, 2)[1]
+    found = [[0] * width for _ in range(height)]
+    n = 256
+    for a in range(n):
+        j = first_beyond((a + 0.5) / n * total * height, averages)
+        assert j == next(j for j in range(height) if rows[2 * j] > (a + 0.5) / n)
+        for b in range(n):
+            i = first_beyond((b + 0.5) / n * averages[j] * width, light[j])
+            assert i == next(i for i in range(width) if columns[2 * (width * j + i)] > (b + 0.5) / n)
+            found[j][i] += 1
+            assert b or abs(light[j][i] / total / (rows[2 * j + 1] * columns[2 * (width * j + i) + 1]) - 1) < 1e-5
+    # How often a texel is found, against its share of the light: the points of a grid miss a strip by one at most.
+    for j in range(height):
+        row = sum(light[j]) / (total * width * height)
+        for i in range(width):
+            share = light[j][i] / (total * width * height)
+            assert abs(found[j][i] / n**2 - share) <= (row + light[j][i] / sum(light[j])) / n + 1 / n**2, (j, i)
+    # The EXR holds the same.
+    run("sample", "known.exr", "--tables", "e", "--tables-format", "exr", folder=folder)
+    assert b"average_weight" in (folder / "e/row_averages.exr").read_bytes()
 
 
 def test_sample_explains_what_it_does(folder):

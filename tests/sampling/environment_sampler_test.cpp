@@ -1,4 +1,5 @@
 #include "domelight/sampling/environment_sampler.h"
+#include "domelight/image/colour.h"
 
 #include "domelight/projection/projection.h"
 #include "domelight/sampling/sequences.h"
@@ -361,6 +362,14 @@ TEST_CASE("environment_sampler: the textures give a shader the same texels") {
     options.method = DistributionMethod::guided;
     const EnvironmentSampler sampler = make(image, options);
     const SamplingTextures t = sampling_textures(sampler);
+    double sum = 0;
+    for (int y = 0; y < 8; ++y) {
+        double row = 0;
+        for (int x = 0; x < 16; ++x) row += luminance(image.at(x, y)) * std::sin(k_pi * (y + 0.5) / 8);
+        CHECK(t.row_averages.at(0, y)[0] == doctest::Approx(row / 16).epsilon(1e-5));
+        sum += row / 16;
+    }
+    CHECK(t.total_average == doctest::Approx(sum / 8).epsilon(1e-5));
     for (int i = 0; i < 500; ++i) {
         const UnitPoint p = random_point(8, i);
         const double xi_u = unit_double(p.x), xi_v = unit_double(p.y);

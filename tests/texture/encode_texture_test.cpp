@@ -241,6 +241,9 @@ TEST_CASE("encode_table: two and three channels, and missing ones are zero") {
     ImageF two(4, 2, 2), three(4, 2, 3);
     for (std::size_t i = 0; i < two.pixels().size(); ++i) two.pixels()[i] = float(i) / 8;
     for (std::size_t i = 0; i < three.pixels().size(); ++i) three.pixels()[i] = float(i) / 8;
+    const ImageF one = decode_texture(encode_table(two, Encoding::r32f), 0, 0);
+    CHECK(one.channels() == 1);
+    for (int x = 0; x < two.width(); ++x) CHECK(one.at(x, 0)[0] == two.at(x, 0)[0]);
     const ImageF a = decode_texture(encode_table(two, Encoding::rg32f), 0, 0);
     REQUIRE(a.channels() == 2);
     CHECK(std::equal(a.pixels().begin(), a.pixels().end(), two.pixels().begin()));

@@ -113,6 +113,11 @@ class EnvironmentSampler {
 struct SamplingTextures {
     ImageF rows;     ///< 1 wide, height rows: the marginal
     ImageF columns;  ///< width x height: each row's conditional
+    /// For the loop that adds up the row averages until they reach xi times their sum, then the row's texels, one
+    /// channel, 1 wide, height rows: the average over the row of the weights (luminance times sin theta, as
+    /// EnvironmentSamplerOptions has it). All 0 in an environment without light.
+    ImageF row_averages;
+    double total_average = 0;  ///< the average of the row averages
 };
 SamplingTextures sampling_textures(const EnvironmentSampler& sampler);
 

@@ -23,6 +23,7 @@ enum class Encoding {
     r11g11b10f,
     rg16f,
     rg32f,
+    r32f,
     bc6h,
     rgbm,
     rgbd,
@@ -32,13 +33,13 @@ enum class Encoding {
     astc6x6_hdr
 };
 
-/// "rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "rg16f", "rg32f", "bc6h", "rgbm", "rgbd", "rgbp", "uastc-hdr",
-/// "astc4x4-hdr", "astc6x6-hdr".
+/// "rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "rg16f", "rg32f", "r32f", "bc6h", "rgbm", "rgbd", "rgbp",
+/// "uastc-hdr", "astc4x4-hdr", "astc6x6-hdr".
 std::string encoding_name(Encoding encoding);
 Result<Encoding> encoding_from_name(const std::string& name);  ///< the error lists the accepted names
 int encoding_block(Encoding encoding);                         ///< texels along a side of a block; 1: single texels
 int encoding_bytes(Encoding encoding);                         ///< of a block
-int encoding_channels(Encoding encoding);                      ///< that carry data: 3, or 2 (red and green)
+int encoding_channels(Encoding encoding);                      ///< that carry data: 3, 2 (red and green) or 1
 double encoding_max(Encoding encoding);                        ///< largest value a channel can hold
 
 /// How thoroughly the encodings that search for the best block (bc6h, astc) search; the others ignore it. fast: a few
@@ -88,9 +89,9 @@ struct Texture {
 Texture encode_texture(std::span<const FilteredMap> levels, Encoding encoding, int threads,
                        std::vector<EncodingReport>* reports = nullptr,
                        EncodingQuality quality = EncodingQuality::standard);
-/// An RG or RGB float image (a BRDF table) as a texture of one level, in an encoding of single texels.
+/// A float image of one to three channels (a BRDF table) as a texture of one level, in an encoding of single texels.
 Texture encode_table(ImageView<const float> table, Encoding encoding);
-/// Float texels of one face of a level: RGB, or RG for two-channel encodings.
+/// Float texels of one face of a level, in as many channels as the encoding has.
 ImageF decode_texture(const Texture& texture, int level, int face);
 
 /// All levels of a cube of colours. Errors: not six faces; two channels.

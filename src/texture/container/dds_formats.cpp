@@ -274,6 +274,8 @@ std::uint32_t d3d_number(Encoding encoding) {
             return 112;
         case Encoding::rgba16f:
             return 113;
+        case Encoding::r32f:
+            return 114;
         case Encoding::rg32f:
             return 115;
         case Encoding::rgba32f:
@@ -295,6 +297,8 @@ std::uint32_t dxgi_number(Encoding encoding) {
             return 26;
         case Encoding::rg16f:
             return 34;
+        case Encoding::r32f:
+            return 41;
         case Encoding::bc6h:
             return 95;
         case Encoding::rgbm:

@@ -19,7 +19,8 @@ struct GlFormat {
 };
 
 GlFormat gl_format(Encoding encoding) {
-    constexpr std::uint32_t k_half = 0x140b, k_float = 0x1406, k_rgba = 0x1908, k_rgb = 0x1907, k_rg = 0x8227;
+    constexpr std::uint32_t k_half = 0x140b, k_float = 0x1406, k_rgba = 0x1908, k_rgb = 0x1907, k_rg = 0x8227,
+                            k_red = 0x1903;
     switch (encoding) {
         case Encoding::rgba16f:
             return {k_gl_rgba16f, k_half, 2, k_rgba, k_rgba};
@@ -29,6 +30,8 @@ GlFormat gl_format(Encoding encoding) {
             return {k_gl_rg16f, k_half, 2, k_rg, k_rg};
         case Encoding::rg32f:
             return {k_gl_rg32f, k_float, 4, k_rg, k_rg};
+        case Encoding::r32f:
+            return {k_gl_r32f, k_float, 4, k_red, k_red};
         case Encoding::rgb9e5:
             return {k_gl_rgb9_e5, 0x8c3e, 4, k_rgb, k_rgb};  // UNSIGNED_INT_5_9_9_9_REV
         case Encoding::rgbm:

@@ -31,6 +31,8 @@ constexpr std::uint32_t vulkan_format(Encoding encoding) {
             return 122;  // VK_FORMAT_B10G11R11_UFLOAT_PACK32
         case Encoding::rg16f:
             return 83;  // VK_FORMAT_R16G16_SFLOAT
+        case Encoding::r32f:
+            return 100;  // VK_FORMAT_R32_SFLOAT
         case Encoding::bc6h:
             return 143;  // VK_FORMAT_BC6H_UFLOAT_BLOCK
         case Encoding::rgbm:

@@ -50,6 +50,8 @@ std::vector<Sample> samples_of(Encoding encoding) {
             return signed_floats(16, {k_red, k_green});
         case Encoding::rg32f:
             return signed_floats(32, {k_red, k_green});
+        case Encoding::r32f:
+            return signed_floats(32, {k_red});
         case Encoding::r11g11b10f:
             return {{0, 11, k_red | k_float, 0, k_one},
                     {11, 11, k_green | k_float, 0, k_one},

@@ -78,6 +78,11 @@ struct Rg32f : FloatCoder {
         return {f[0], f[1], 0};
     }
 };
+struct R32f : FloatCoder {
+    static constexpr int k_bytes = 4, k_channels = 1;
+    static void encode(const Vec3f& v, std::uint8_t* out) { store(out, v.x); }
+    static Vec3f decode(const std::uint8_t* in) { return {load<float>(in), 0, 0}; }
+};
 struct Rgb9e5 {
     static constexpr bool k_exact = false;
     static constexpr int k_bytes = 4, k_channels = 3;
@@ -124,6 +129,8 @@ auto with_coder(Encoding encoding, Use use) {
             return use(R11g11b10f{});
         case Encoding::rg16f:
             return use(Rg16f{});
+        case Encoding::r32f:
+            return use(R32f{});
         case Encoding::rgbm:
             return use(Rgbm{});
         case Encoding::rgbd:
@@ -150,7 +157,7 @@ template <typename Coder>
 EncodeSums encode_row_with(const float* rgb, int count, const float* weight, float log_floor, std::uint8_t* out) {
     EncodeSums sums;
     for (int i = 0; i < count; ++i, rgb += 3, out += Coder::k_bytes) {
-        const Vec3f read{rgb[0], rgb[1], Coder::k_channels == 3 ? rgb[2] : 0.0f};
+        const Vec3f read{rgb[0], Coder::k_channels >= 2 ? rgb[1] : 0.0f, Coder::k_channels == 3 ? rgb[2] : 0.0f};
         const Vec3f inside = clamp_to_range<Coder>(read);
         Coder::encode(inside, out);
         sums.add(read, inside, Coder::decode(out), weight[i], log_floor);
@@ -228,7 +235,7 @@ void decode_texels(Encoding encoding, const std::uint8_t* texels, int count, flo
         for (int i = 0; i < count; ++i, texels += Coder::k_bytes) {
             const Vec3f v = Coder::decode(texels);
             *out++ = v.x;
-            *out++ = v.y;
+            if constexpr (Coder::k_channels >= 2) *out++ = v.y;
             if constexpr (Coder::k_channels == 3) *out++ = v.z;
         }
     });
