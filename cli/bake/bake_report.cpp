@@ -7,6 +7,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 namespace domelight::cli {
 namespace {
 
@@ -32,6 +34,15 @@ void print_map(const BakedMap& map) {
     print("{}\n", line);
 }
 
+/// The error of reading exponents between two levels: the largest median of a gap, and the largest error anywhere.
+void print_gaps(const BakedMap& map) {
+    if (map.gaps.empty()) return;
+    const auto median = std::ranges::max_element(map.gaps, {}, &PhongGap::median_error),
+               worst = std::ranges::max_element(map.gaps, {}, &PhongGap::worst_error);
+    print("  {:<28} exponents between levels: error {} median (at {:.3g}), {} worst (at {:.3g})\n", "",
+          percent(median->median_error), median->exponent, percent(worst->worst_error), worst->exponent);
+}
+
 }  // namespace
 
 void print_summary(const BakeOutcome& outcome) {
@@ -42,7 +53,10 @@ void print_summary(const BakeOutcome& outcome) {
     for (const EngineReport& engine : outcome.report.engines) {
         print("{}: {} for {}\n", engine.folder.string(),
               outcome.environment.empty() ? "the built-in sky" : outcome.environment.front(), engine.name);
-        for (const BakedMap& map : engine.maps) print_map(map);
+        for (const BakedMap& map : engine.maps) {
+            print_map(map);
+            print_gaps(map);
+        }
         print("  {:<28} harmonics: {} bands; E is off by {} RMS, {} at most\n", engine.sh.files.front().file,
               engine.sh.bands, percent(engine.sh.rms_error), percent(engine.sh.max_error));
         if (!engine.brdf.file.file.empty())

@@ -8,6 +8,7 @@
 #include "bake/manifest.h"
 #include "bake/outputs.h"
 #include "bake/panorama.h"
+#include "bake/phong_gaps.h"
 #include "bake/plan.h"
 #include "bake/preview_sheet.h"
 #include "bake/sh_report.h"
@@ -162,6 +163,7 @@ class EngineBake {
         } else {
             write("specular", engine_.specular_file, plan_.lobe, Quantity::radiance, plan_.specular, maps.specular,
                   plan_.encoding, &maps.irradiance_over_pi);
+            report_.maps.front().gaps = phong_gaps(plan_.gap_probes, maps.gap_probes);
         }
         if (!plan_.sheen.empty())
             write("sheen", engine_.sheen_file, Lobe::charlie, Quantity::radiance, plan_.sheen, maps.sheen,

@@ -33,6 +33,7 @@ FilterOptions filter_options(const EnginePlan& plan, const Environment& environm
         filter.layout = plan.layout;
         for (const LevelPlan& level : plan.specular) filter.specular.push_back(level.spec);
         for (const LevelPlan& level : plan.sheen) filter.specular.push_back(level.spec);
+        filter.specular.insert(filter.specular.end(), plan.gap_probes.begin(), plan.gap_probes.end());
     }
     filter.irradiance_size = plan.irradiance_size;  // the harmonics' error is measured against it in any case
     filter.sh_bands = options.sh_bands;
@@ -85,6 +86,7 @@ FilterJob::FilterJob(const std::vector<EnginePlan>& plans, const Environment& en
         Indices& indices = engines_.emplace_back();
         indices.run = index_of(runs_, filter_options(plan, environment, options), same_run);
         if (!plan.engine->environment_only) indices.specular_count = plan.specular.size();
+        indices.sheen_count = plan.sheen.size();
         if (plan.panorama) indices.panorama = index_of(panorama_specs_, *plan.panorama, std::equal_to());
     }
 }
@@ -172,11 +174,14 @@ int FilterJob::band_limit() const {
 FilterJob::Maps FilterJob::take(std::size_t engine) {
     const Indices& indices = engines_[engine];
     FilterResult& result = results_[indices.run];
-    const auto begin = std::make_move_iterator(result.specular.begin()),
+    const auto specular = std::make_move_iterator(result.specular.begin()),
+               sheen = specular + std::ptrdiff_t(indices.specular_count),
+               probes = sheen + std::ptrdiff_t(indices.sheen_count),
                end = std::make_move_iterator(result.specular.end());
     Maps maps;
-    maps.specular.assign(begin, begin + std::ptrdiff_t(indices.specular_count));
-    maps.sheen.assign(begin + std::ptrdiff_t(indices.specular_count), end);
+    maps.specular.assign(specular, sheen);
+    maps.sheen.assign(sheen, probes);
+    maps.gap_probes.assign(probes, end);
     maps.irradiance_over_pi = std::move(result.irradiance_over_pi);
     if (indices.panorama) maps.panorama = std::move(panoramas_[*indices.panorama]);
     return maps;
@@ -186,7 +191,8 @@ void FilterJob::give_back(std::size_t engine, Maps maps) {
     const Indices& indices = engines_[engine];
     FilterResult& result = results_[indices.run];
     const auto sheen = std::move(maps.specular.begin(), maps.specular.end(), result.specular.begin());
-    std::move(maps.sheen.begin(), maps.sheen.end(), sheen);
+    const auto probes = std::move(maps.sheen.begin(), maps.sheen.end(), sheen);
+    std::move(maps.gap_probes.begin(), maps.gap_probes.end(), probes);
     result.irradiance_over_pi = std::move(maps.irradiance_over_pi);
     if (indices.panorama) panoramas_[*indices.panorama] = std::move(maps.panorama);
 }

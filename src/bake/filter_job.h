@@ -22,6 +22,7 @@ class FilterJob {
     /// An engine's maps. They are lent to one engine and returned for the next.
     struct Maps {
         std::vector<FilteredMap> specular, sheen;
+        std::vector<FilteredMap> gap_probes;  ///< of EnginePlan::gap_probes
         FilteredMap irradiance_over_pi;
         ImageF panorama;  ///< the environment as one image, in the engine's projection
     };
@@ -38,7 +39,8 @@ class FilterJob {
   private:
     struct Indices {
         std::size_t run = 0;
-        std::size_t specular_count = 0;  ///< the run's levels are the specular ones, then those of the sheen
+        /// The run's levels are the specular ones, then those of the sheen, then the probes of the gaps.
+        std::size_t specular_count = 0, sheen_count = 0;
         std::optional<std::size_t> panorama;
     };
     Result<void> read_rows(const Environment& environment, const BakeOptions& options);

@@ -141,6 +141,9 @@ Json map_json(const BakedMap& map) {
     json["encoding"] = map.encoding;
     json["zstd"] = map.zstd;
     for (const BakedLevel& level : map.levels) json["levels"].push_back(level_json(map, level));
+    for (const PhongGap& gap : map.gaps)
+        json["between_levels"].push_back(
+            {{"exponent", gap.exponent}, {"median_error", gap.median_error}, {"worst_error", gap.worst_error}});
     return json;
 }
 

@@ -1,6 +1,7 @@
 #include "bake/plan.h"
 
 #include "bake/panorama.h"
+#include "bake/phong_gaps.h"
 #include "base/field_place.h"
 #include "projection/latlong_convention.h"
 #include "texture/container/scaled_bytes.h"
@@ -238,6 +239,7 @@ Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& o, const
                 plan.sheen.push_back(glossy_level(Lobe::charlie, level_size, roughness));
         }
     }
+    if (is_phong(plan.lobe) && o.method == BakeMethod::exact) plan.gap_probes = phong_gap_probes(plan.specular);
     plan.irradiance_size =
         o.irradiance_size.value_or(engine.irradiance_size) * (plan.layout == Layout::latlong ? 2 : 1);
     if (!engine.panorama_file.empty()) {

@@ -21,6 +21,7 @@ struct EnginePlan {
     Lobe lobe = Lobe::ggx;
     std::vector<LevelPlan> specular;
     std::vector<LevelPlan> sheen;
+    std::vector<LevelSpec> gap_probes;  ///< of a Phong chain: phong_gaps.h
     Encoding encoding = Encoding::rgba16f;
     Container container = Container::ktx2;
     bool zstd = false;

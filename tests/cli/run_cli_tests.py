@@ -373,6 +373,26 @@ def test_phong_records_exponents(folder):
     assert info["metadata"]["domelight.exponent"] == "inf 64 8"
 
 
+def test_phong_tells_how_exponents_between_levels_are_read(folder):
+    said = run("bake", "studio.hdr", "-o", "out", *SMALL[2:], "--size", "64", "--lobe", "phong", folder=folder).stdout
+    assert re.search(r"exponents between levels: error [0-9.e-]+ % median \(at [0-9.]+\), [0-9.e-]+ % worst", said), said
+    gaps = manifest_of(folder / "out")["specular"]["between_levels"]
+    exponents = [l["exponent"] for l in manifest_of(folder / "out")["specular"]["levels"][1:]]
+    assert exponents[:2] == [2048, 512] and len(gaps) == len(exponents) - 1
+    for gap, above, below in zip(gaps, exponents, exponents[1:]):
+        assert below < gap["exponent"] < above and 0 <= gap["median_error"] <= gap["worst_error"]
+    assert max(g["worst_error"] for g in gaps) > 0.05  # under a sun
+    # Closer exponents are read better, and the levels themselves do not depend on the question.
+    run("bake", "studio.hdr", "-o", "two", *SMALL[2:], "--size", "64", "--lobe", "phong", "--exponents", "inf,64,32,16", folder=folder)
+    run("bake", "studio.hdr", "-o", "four", *SMALL[2:], "--size", "64", "--lobe", "phong", "--exponents", "inf,64,16", folder=folder)
+    two, four = (manifest_of(folder / f)["specular"]["between_levels"] for f in ("two", "four"))
+    assert max(g["worst_error"] for g in two) < max(g["worst_error"] for g in four)
+    assert max(g["median_error"] for g in two) < max(g["median_error"] for g in four)
+    assert "between_levels" not in manifest_of(folder / "out")["irradiance"]
+    run("bake", "studio.hdr", "-o", "ggx", *SMALL, folder=folder)
+    assert "between_levels" not in manifest_of(folder / "ggx")["specular"]
+
+
 def test_charlie_states_its_least_roughness(folder):
     run("bake", "studio.hdr", "-o", "out", *SMALL, "--lobe", "charlie", "--levels", "2", folder=folder)
     specular = manifest_of(folder / "out")["specular"]

@@ -85,6 +85,13 @@ struct BakedLevel {
     EncodingReport encoding;
 };
 
+/// The error of a shader that reads a Phong chain half way between two neighbouring levels: their mean against the own
+/// map of the exponent that belongs there. Relative, of the luminance, over all directions.
+struct PhongGap {
+    double exponent = 0;  ///< the geometric mean of the two levels'
+    double median_error = 0, worst_error = 0;
+};
+
 /// A map with its levels: specular, sheen, skybox or irradiance.
 struct BakedMap {
     std::string role;
@@ -98,6 +105,7 @@ struct BakedMap {
     bool zstd = false;
     BakedFile file;  ///< for containers that hold the whole chain
     std::vector<BakedLevel> levels;
+    std::vector<PhongGap> gaps;  ///< phong, by the exact method: one for each pair of levels but the environment itself
 };
 
 struct ShReport {
