@@ -5,8 +5,9 @@
 //   u_row_averages     1 wide, as high as the map: R, the average over each row of luminance times sin(theta)
 //   u_total_average    the average of that over all rows
 //
-// luminance is 0.2126 R + 0.7152 G + 0.0722 B, theta the angle between +Y and the row's centre. A sample reads up to
-// width + height texels, so the map should be small:
+// `domelight sample small.exr --tables tables --json` writes tables/row_averages.ktx2 (with the weight that --weight has
+// by default) and tells tables.total_average, which is also the file's key domelight.total_average. A sample reads up
+// to width + height texels, so the map should be small:
 // `domelight convert studio.hdr small.exr --to latlong --size 64 --encoding float`.
 
 uniform sampler2D u_envmap;

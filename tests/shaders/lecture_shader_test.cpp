@@ -192,20 +192,11 @@ TEST_CASE("shaders: sampleEnvmap draws what the sampler's walk draws, and its me
     REQUIRE(sampler);
 
     namespace s = sl::sample_envmap;
-    ImageF averages(1, 16, 1);
-    double total = 0;
-    for (int y = 0; y < 16; ++y) {
-        for (int x = 0; x < 32; ++x) {
-            const float* p = image.at(x, y);
-            const double luminance = 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2];
-            averages.at(0, y)[0] += float(luminance * std::sin(k_pi * (y + 0.5) / 16) / 32);
-        }
-        total += averages.at(0, y)[0] / 16;
-    }
+    const SamplingTextures tables = sampling_textures(*sampler);
     s::u_environment = to_shader(k_default * turn);
     s::u_envmap = plane({image}, true);
-    s::u_row_averages = plane({averages}, false);
-    s::u_total_average = float(total);
+    s::u_row_averages = plane({tables.row_averages}, false);
+    s::u_total_average = float(tables.total_average);
 
     int drawn = 0;
     for (int i = 0; i < 1000; ++i) {
