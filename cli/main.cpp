@@ -24,6 +24,7 @@ struct Command {
 
 constexpr Command k_commands[] = {
     {"bake", "bakes an environment for an engine: specular levels, irradiance, harmonics and BRDF table", run_bake},
+    {"brdf", "writes the BRDF table of the split sum alone, which is the same for every environment", run_brdf},
     {"compare", "compares two pictures, or a bake by any tool with the exact filter", run_compare},
     {"convert", "converts an environment to another projection, convention, orientation, size or format", run_convert},
     {"info", "describes an environment, a texture or a bake", run_info},

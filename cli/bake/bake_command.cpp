@@ -1,4 +1,5 @@
 #include "domelight/bake/bake.h"
+#include "domelight/bake/brdf_file.h"
 #include "domelight/filtering/kernel/lobe_names.h"
 #include "domelight/io/environment/open_environment.h"
 
@@ -6,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/environment_options.h"
+#include "cli/console/point_options.h"
 
 #include <fmt/core.h>
 
@@ -21,10 +23,11 @@ struct BakeWords {
     std::vector<std::string> environments, engines;
     std::string output, lobe, method = "exact", riemann_steps, riemann_sum = "normalised", layout, encoding,
                               encoding_quality, format, cube_picture = "cross";
-    std::string sequence, seed;
+    std::string irradiance;
     std::string sh_window = "none", brdf_g = "correlated", brdf_form;
-    std::optional<int> size, levels, samples, irradiance_size, sh_bands, brdf_size;
+    std::optional<int> size, levels, irradiance_size, sh_bands, brdf_size;
     std::vector<double> roughness, exponents;
+    PointWords points;
     bool zstd = false, no_zstd = false, brdf_float = false, no_preview = false, no_hashes = false, force = false;
     EnvironmentOptions environment;
 };
@@ -57,16 +60,16 @@ void declare(Arguments& a, BakeWords& w) {
               "Phong exponent of each level; inf is the environment itself (inf, 2048, 512, ...)");
     a.choice("--method", w.method, {"exact", "bruteforce", "riemann", "montecarlo"},
              "exact, or one of the plain, slow methods (exact)");
-    a.integer("--samples", "N", w.samples, "montecarlo: samples for each texel (1024)");
-    a.choice("--sequence", w.sequence, sequence_names(),
-             "montecarlo: the points of the unit square, the same ones for each texel (hammersley)");
-    a.text("--seed", "N", w.seed, "montecarlo: selects the randomisation; 0: the textbook's plain points (0)");
+    add_point_options(a, w.points);
     a.text("--riemann-steps", "KxJ", w.riemann_steps,
            "riemann: K steps of phi (azimuth, to 2 pi) by J of theta (polar angle, to pi/2), as in the lectures "
            "(256x64)");
     a.choice("--riemann-sum", w.riemann_sum, {"normalised", "plain"},
              "riemann: normalised, divided by the sum of its weights; plain, the lectures' sum as it stands, which "
              "gives E = 3.224 and not pi for L = 1 and J = 4 (normalised)");
+    a.choice(
+        "--irradiance", w.irradiance, {"e", "over-pi"},
+        "values of the irradiance map: E, or E / pi, which a shader multiplies by the albedo alone (the engine's)");
     a.integer("--irradiance-size", "N", w.irradiance_size, "face size of the irradiance cube (the engine's)");
     a.integer("--sh-bands", "N", w.sh_bands, "bands of spherical harmonics, 1 to 64 (3)");
     a.choice("--sh-window", w.sh_window, {"none", "hann", "lanczos"}, "window against ringing of the harmonics (none)");
@@ -107,21 +110,6 @@ Result<void> parse_riemann_steps(const std::string& words, BakeOptions& options)
     return {};
 }
 
-/// The points of --method montecarlo.
-Result<void> take_points(const BakeWords& w, BakeOptions& o) {
-    for (const auto& [option, given] : {std::pair{"--sequence", !w.sequence.empty()}, {"--seed", !w.seed.empty()}})
-        if (given && w.method != "montecarlo")
-            return Error{fmt::format("has no meaning with --method {}", w.method), option,
-                         "It belongs to --method montecarlo."};
-    o.points.count = w.samples.value_or(o.points.count);
-    if (!w.sequence.empty()) o.points.sequence = *sequence_from_name(w.sequence);
-    if (w.seed.empty()) return {};
-    const auto seed = parse_seed(w.seed);
-    if (!seed) return seed.error().at("--seed");
-    o.points.seed = *seed;
-    return {};
-}
-
 Result<BakeOptions> bake_options(const BakeWords& w) {
     static const std::map<std::string, BakeMethod> methods{{"exact", BakeMethod::exact},
                                                            {"bruteforce", BakeMethod::bruteforce},
@@ -131,8 +119,6 @@ Result<BakeOptions> bake_options(const BakeWords& w) {
         {"cross", CubePicture::cross}, {"strip", CubePicture::strip}, {"faces", CubePicture::faces}};
     static const std::map<std::string, ShWindow> windows{
         {"none", ShWindow::none}, {"hann", ShWindow::hann}, {"lanczos", ShWindow::lanczos}};
-    static const std::map<std::string, BrdfG> maskings{
-        {"correlated", BrdfG::correlated}, {"smith", BrdfG::smith}, {"karis", BrdfG::karis}};
     BakeOptions o;
     if (!w.engines.empty()) o.engines = w.engines;
     if (!w.layout.empty()) o.layout = w.layout == "cube" ? Layout::cube : Layout::latlong;
@@ -142,7 +128,9 @@ Result<BakeOptions> bake_options(const BakeWords& w) {
     o.exponents = w.exponents;
     if (!w.lobe.empty()) o.lobe = *lobe_from_name(w.lobe);
     o.method = methods.at(w.method);
-    if (auto ok = take_points(w, o); !ok) return ok.error();
+    const auto points = montecarlo_points(w.points, w.method);
+    if (!points) return points.error();
+    o.points = *points;
     if (!w.riemann_steps.empty())
         if (auto ok = parse_riemann_steps(w.riemann_steps, o); !ok) return ok.error();
     o.riemann.normalised = w.riemann_sum == "normalised";
@@ -152,10 +140,12 @@ Result<BakeOptions> bake_options(const BakeWords& w) {
     if (w.zstd && w.no_zstd) return Error{"contradicts --no-zstd", "--zstd", "Give one of them."};
     if (w.zstd || w.no_zstd) o.zstd = w.zstd;
     o.cube_picture = pictures.at(w.cube_picture);
+    if (!w.irradiance.empty())
+        o.irradiance_quantity = w.irradiance == "e" ? Quantity::irradiance : Quantity::irradiance_over_pi;
     o.irradiance_size = w.irradiance_size;
     o.sh_bands = w.sh_bands.value_or(o.sh_bands);
     o.sh_window = windows.at(w.sh_window);
-    o.brdf_g = maskings.at(w.brdf_g);
+    o.brdf_g = *brdf_g_from_name(w.brdf_g);
     if (!w.brdf_form.empty()) o.brdf_form = *brdf_form_from_name(w.brdf_form);
     o.brdf_size = w.brdf_size;
     o.brdf_float = w.brdf_float;

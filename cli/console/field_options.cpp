@@ -12,6 +12,7 @@ struct OtherName {
 };
 constexpr OtherName k_other_names[] = {
     {"engines", "--for"},
+    {"irradiance_quantity", "--irradiance"},
     {"points", "--samples"},
     {"riemann", "--riemann-steps"},
 };

@@ -1,5 +1,6 @@
 #include "domelight/bake/bake.h"
 
+#include "domelight/bake/brdf_file.h"
 #include "domelight/base/parallel.h"
 #include "domelight/io/file/atomic_file.h"
 #include "domelight/io/write_image.h"
@@ -177,12 +178,12 @@ class EngineBake {
 
     void write_irradiance(const FilteredMap& over_pi) {
         FilteredMap map = over_pi;
-        if (engine_.irradiance_quantity == Quantity::irradiance)
+        if (plan_.irradiance_quantity == Quantity::irradiance)
             for (float& value : map.pixels()) value = float(value * k_pi);
         LevelPlan level;
         level.spec.size = plan_.irradiance_size;
         const bool own_encoding = !options_.encoding && plan_.container == engine_.container;
-        write("irradiance", engine_.irradiance_file, Lobe::ggx, engine_.irradiance_quantity, {level}, {&map, 1},
+        write("irradiance", engine_.irradiance_file, Lobe::ggx, plan_.irradiance_quantity, {level}, {&map, 1},
               own_encoding ? engine_.irradiance_encoding : plan_.encoding);
     }
 
@@ -253,23 +254,17 @@ class EngineBake {
     }
 
     void write_brdf() {
-        brdf_ = brdf_image();
-        if (plan_.brdf_form == BrdfForm::multiscatter) brdf_ = brdf_table_multiscatter(brdf_);
+        const BrdfFileOptions options = brdf_options();
+        const ImageF table = brdf_table(options);
+        brdf_ = options.form == BrdfForm::multiscatter ? brdf_table_multiscatter(table) : table;
         if (plan_.brdf_form == BrdfForm::none) return;
         BrdfReport& brdf = report_.brdf;
         brdf.form = plan_.brdf_form;
         brdf.g = options_.brdf_g;
         brdf.size = plan_.brdf_size;
-        const bool three = plan_.brdf_form == BrdfForm::scale_bias_charlie;
-        const Encoding encoding = options_.brdf_float ? (three ? Encoding::rgba32f : Encoding::rg32f)
-                                                      : (three ? Encoding::rgba16f : Encoding::rg16f);
-        brdf.encoding = encoding_name(encoding);
+        const Texture texture = brdf_texture(table, options);
+        brdf.encoding = encoding_name(texture.encoding);
         brdf.file.file = fmt::format("{}.ktx2", engine_.brdf_file.empty() ? "brdf" : engine_.brdf_file);
-        Texture texture = encode_table(brdf_, encoding);
-        texture.metadata = {
-            {"domelight.version", version()},
-            {"domelight.quantity", fmt::format("brdf {}", brdf_form_name(plan_.brdf_form))},
-            {"domelight.convention", "u = NdotV, v = roughness, texel centres, row 0 is the smoothest"}};
         const auto path = staging_.stage(brdf.file.file);
         background_.done([&]() -> Result<void> {
             if (auto ok = write_ktx2(path, texture); !ok) return ok;
@@ -277,14 +272,15 @@ class EngineBake {
         }());
     }
 
-    ImageF brdf_image() const {
-        BrdfTableOptions table;
-        table.size = plan_.brdf_size;
-        table.g = options_.brdf_g;
-        table.threads = options_.threads;
-        if (options_.method == BakeMethod::montecarlo) return brdf_table_montecarlo(table, options_.points);
-        const ImageF& embedded = brdf_table_default();
-        return table.size == embedded.width() && table.g == BrdfG::correlated ? embedded : brdf_table(table);
+    BrdfFileOptions brdf_options() const {
+        BrdfFileOptions o;
+        o.form = plan_.brdf_form;
+        o.size = plan_.brdf_size;
+        o.g = options_.brdf_g;
+        o.single_precision = options_.brdf_float;
+        if (options_.method == BakeMethod::montecarlo) o.points = options_.points;
+        o.threads = options_.threads;
+        return o;
     }
 
     EngineReport& report_;

@@ -1,5 +1,6 @@
 #include "bake/manifest.h"
 
+#include "domelight/bake/brdf_file.h"
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/projection/projections.h"
 
@@ -30,9 +31,6 @@ std::string latlong_text(const std::string& projection) {
 
 const char* window_name(ShWindow window) {
     return window == ShWindow::hann ? "hann" : window == ShWindow::lanczos ? "lanczos" : "none";
-}
-const char* g_name(BrdfG g) {
-    return g == BrdfG::smith ? "smith" : g == BrdfG::karis ? "karis" : "correlated";
 }
 
 /// File names may hold bytes that are not UTF-8: those become replacement characters.
@@ -90,11 +88,12 @@ Json options_json(const EnginePlan& plan, const BakeOptions& o) {
     json["zstd"] = plan.zstd;
     if (plan.container == Container::exr || plan.container == Container::hdr)
         json["cube_picture"] = cube_picture_name(o.cube_picture);
+    if (o.irradiance_quantity) json["irradiance"] = quantity_name(*o.irradiance_quantity);
     json["irradiance_size"] = plan.irradiance_size;
     json["sh_bands"] = o.sh_bands;
     json["sh_window"] = window_name(o.sh_window);
     json["brdf_form"] = brdf_form_name(plan.brdf_form);
-    json["brdf_g"] = g_name(o.brdf_g);
+    json["brdf_g"] = brdf_g_name(o.brdf_g);
     json["brdf_size"] = plan.brdf_size;
     json["brdf_float"] = o.brdf_float;
     json["preview"] = o.preview;
@@ -168,10 +167,10 @@ Json brdf_json(const BrdfReport& brdf) {
     Json json = Json::object();
     add_file(json, brdf.file);
     json["form"] = brdf_form_name(brdf.form);
-    json["masking"] = g_name(brdf.g);
+    json["masking"] = brdf_g_name(brdf.g);
     json["size"] = brdf.size;
     json["encoding"] = brdf.encoding;
-    json["axes"] = "u = NdotV, v = roughness, texel centres, row 0 is the smoothest";
+    json["axes"] = k_brdf_axes;
     return json;
 }
 

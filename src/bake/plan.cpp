@@ -204,6 +204,19 @@ Result<void> check_own_container(const EnginePlan& plan, const BakeOptions& o) {
     return {};
 }
 
+/// E or E / pi: the engine's, or the one that the options ask for.
+Result<void> plan_irradiance(EnginePlan& plan, const BakeOptions& o) {
+    const Engine& engine = *plan.engine;
+    plan.irradiance_quantity = o.irradiance_quantity.value_or(engine.irradiance_quantity);
+    if (!o.irradiance_quantity) return {};
+    if (*o.irradiance_quantity == Quantity::radiance)
+        return field_error("irradiance_quantity", "radiance is not irradiance or irradiance_over_pi");
+    if (engine.irradiance_file.empty())
+        return field_error("irradiance_quantity", "does not apply to `engines` " + engine.name,
+                           "No map of irradiance is written for " + engine.name + ".");
+    return {};
+}
+
 /// Quarter turns from the default convention to the engine's.
 int quarters_of(const std::string& convention) {
     const Vec3d centre = latlong_convention(convention)->centre;
@@ -220,6 +233,7 @@ Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& o, const
     plan.brdf_form = o.brdf_form.value_or(engine.brdf_form);
     plan.brdf_size = o.brdf_size.value_or(engine.brdf_size);
     if (auto ok = plan_encoding(plan, o); !ok) return ok.error();
+    if (auto ok = plan_irradiance(plan, o); !ok) return ok.error();
     if (engine.environment_only) {
         if (auto ok = plan_environment_only(plan, o, environment); !ok) return ok.error();
     } else {

@@ -26,6 +26,7 @@ struct EnginePlan {
     Container container = Container::ktx2;
     bool zstd = false;
     int irradiance_size = 0;  ///< of the map that is computed: cube face, or height
+    Quantity irradiance_quantity = Quantity::irradiance;
     int brdf_size = 0;
     BrdfForm brdf_form = BrdfForm::none;
     std::optional<PanoramaSpec> panorama;  ///< the environment as one image, where the engine takes it

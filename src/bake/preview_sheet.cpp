@@ -37,7 +37,7 @@ std::string irradiance_detail(const EnginePlan& plan, const FilteredMap& over_pi
     const std::string size = over_pi.cube.empty()
                                  ? fmt::format("{} × {}", over_pi.latlong.width(), over_pi.latlong.height())
                                  : fmt::format("{}²", over_pi.cube.size());
-    return size + (plan.engine->irradiance_quantity == Quantity::irradiance ? ", stored as E" : ", stored as E / π");
+    return size + (plan.irradiance_quantity == Quantity::irradiance ? ", stored as E" : ", stored as E / π");
 }
 
 std::string subtitle(const EnginePlan& plan, const EngineReport& report) {

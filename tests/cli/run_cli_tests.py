@@ -68,7 +68,7 @@ def test_examples_in_every_help_run(folder):
     shutil.copy(folder / "evening.hdr", folder / "sunset.hdr")
     (folder / "helmet.glb").write_bytes(make_glb())
     smaller = {"render": ["--width", "8", "--height", "8", "--spp", "1", "--quiet"]}  # the last of an option counts
-    for command in ["bake", "compare", "convert", "info", "lights", "render", "sample", "sky"]:
+    for command in ["bake", "brdf", "compare", "convert", "info", "lights", "render", "sample", "sky"]:
         text = run(command, "--help", folder=folder).stdout
         assert text.startswith("Examples:\n"), f"{command} --help does not open with examples"
         examples = [line.strip() for line in text.split("\n\n")[0].splitlines()[1:]]
@@ -85,7 +85,7 @@ def test_examples_in_every_help_run(folder):
 def test_help_of_a_command(folder):
     overview = run("help", folder=folder).stdout
     assert overview == run("--help", folder=folder).stdout and "domelight help COMMAND" in overview
-    for command in ["bake", "compare", "convert", "info", "lights", "render", "sample", "sky"]:
+    for command in ["bake", "brdf", "compare", "convert", "info", "lights", "render", "sample", "sky"]:
         text = run("help", command, folder=folder).stdout
         assert text == run(command, "--help", folder=folder).stdout
         assert text.count("is the default") == 1, command
@@ -110,8 +110,8 @@ def test_version(folder):
 
 def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
     cases = [
-        (["nonsense"], "bake, compare, convert, info, render, lights, sample, sky"),
-        (["--nonsense"], "bake, compare, convert, info, render, lights, sample, sky"),
+        (["nonsense"], "bake, brdf, compare, convert, info, render, lights, sample, sky"),
+        (["--nonsense"], "bake, brdf, compare, convert, info, render, lights, sample, sky"),
         (["bake", "-o", "o", "--nonsense"], "--lobe"),
         (["bake"], "-o DIR"),
         (["bake", "-o", "o", "--lobe", "blinn"], "ggx, charlie, phong, phong-plain"),
@@ -180,6 +180,17 @@ def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
         (["compare", "studio.hdr", "evening.hdr", "--fail-above", "rmse"], "METRIC=VALUE"),
         (["compare", "studio.hdr", "evening.hdr", "--fail-above", "colour=1"], "rmse, relative, tone-mapped"),
         (["compare", "studio.hdr", "evening.hdr", "--fail-above", "chi2=1"], "variance"),
+        (["bake", "-o", "o", "--irradiance", "pi"], "e, over-pi"),
+        (["bake", "-o", "o", "--for", "babylon", "--irradiance", "e"], "No map of irradiance"),
+        (["bake", "-o", "o", "--for", "babylon", "--irradiance", "e"], "--irradiance: does not apply to --for babylon"),
+        (["brdf"], "-o brdf.ktx2"),
+        (["brdf", "-o", "o.jpg"], ".ktx2, .ktx, .dds, .exr, .hdr, .png"),
+        (["brdf", "-o", "o.png", "--size", "0"], "from 1 to 4096"),
+        (["brdf", "-o", "o.png", "--form", "none"], "scale-bias, multiscatter, scale-bias-charlie"),
+        (["brdf", "-o", "o.png", "--for", "three"], "--form scale-bias"),
+        (["brdf", "-o", "o.png", "--g", "ashikhmin"], "correlated, smith, karis"),
+        (["brdf", "-o", "o.png", "--samples", "9"], "--method montecarlo"),
+        (["brdf", "-o", "o.png", "--method", "montecarlo", "--samples", "0"], "from 1 to"),
         (["compare", "studio.hdr", "evening.hdr", "--heat-of", "warmth"], "hdr-flip, flip, difference"),
         (["compare", "studio.hdr", "evening.hdr", "--heat", "h.gif"], ".png, .jpg"),
         (["compare", "studio.hdr", "evening.hdr", "--view-exposure", "bright"], "auto"),
@@ -471,6 +482,53 @@ def test_plain_methods_agree_with_the_exact_one(folder):
         if method == "exact":
             expected = mean
         assert all(abs(a - b) <= 2e-2 * abs(b) for a, b in zip(mean, expected)), (method, mean, expected)
+
+
+def test_irradiance_as_e_or_over_pi(folder):
+    def texels(name, *more):
+        run("bake", "studio.hdr", "-o", name, *SMALL, "--levels", "1", "--encoding", "rgba32f", *more, folder=folder)
+        return struct.unpack(f"<{6 * 4 * 4 * 4}f", (folder / name / "irradiance.ktx2").read_bytes()[-6 * 4 * 4 * 16:])
+
+    e, over_pi = texels("e"), texels("over", "--irradiance", "over-pi")
+    assert all(abs(a / math.pi - b) < 1e-6 * a for i, (a, b) in enumerate(zip(e, over_pi)) if i % 4 < 3)
+    assert texels("again", "--irradiance", "e") == e
+    assert manifest_of(folder / "e")["irradiance"]["quantity"] == "irradiance" and "irradiance" not in manifest_of(folder / "e")["options"]
+    over = manifest_of(folder / "over")
+    assert over["irradiance"]["quantity"] == "irradiance_over_pi" and over["options"]["irradiance"] == "irradiance_over_pi"
+    metadata = json.loads(run("info", "over/irradiance.ktx2", "--json", folder=folder).stdout)["metadata"]
+    assert metadata["domelight.quantity"] == "irradiance_over_pi"
+    # An engine that wants the one gets the other.
+    run("bake", "studio.hdr", "-o", "k", *SMALL, "--for", "khronos", "--irradiance", "e", folder=folder)
+    assert manifest_of(folder / "k")["irradiance"]["quantity"] == "irradiance"
+
+
+def test_brdf_alone(folder):
+    # The file of a bake, whatever the environment.
+    for engine, words in [("generic", []), ("filament", ["--for", "filament"]), ("khronos", ["--for", "khronos"])]:
+        run("bake", "studio.hdr", "-o", engine, *SMALL, *words, folder=folder)
+        document = json.loads(run("brdf", "-o", f"{engine}.ktx2", "--size", "16", *words, "--json", folder=folder).stdout)
+        brdf = manifest_of(folder / engine)["brdf"]
+        assert (folder / f"{engine}.ktx2").read_bytes() == (folder / engine / brdf["file"]).read_bytes(), engine
+        assert (document["form"], document["masking"], document["axes"]) == (brdf["form"], brdf["masking"], brdf["axes"])
+    # 8 bits without a curve: 255 times the value. At normal incidence a mirror reflects F0 = 1 as it is.
+    run("brdf", "-o", "a.ktx2", "--size", "32", "--float", "--form", "scale-bias-charlie", folder=folder)
+    values = struct.unpack(f"<{32 * 32 * 4}f", (folder / "a.ktx2").read_bytes()[-32 * 32 * 16:])
+    run("brdf", "-o", "a.png", "--size", "32", "--form", "scale-bias-charlie", folder=folder)
+    width, height, channels, pixels = png_of(folder / "a.png")
+    assert (width, height, channels) == (32, 32, 3)
+    for i in range(32 * 32):
+        for c in range(3):
+            assert abs(pixels[3 * i + c] - 255 * min(values[4 * i + c], 1)) <= 0.501, (i, c)
+    assert abs(values[4 * 31] + values[4 * 31 + 1] - 1) < 2e-3
+    for name in ["a.exr", "a.hdr", "a.dds", "a.ktx"]:
+        run("brdf", "-o", name, "--size", "8", folder=folder)
+        assert (folder / name).stat().st_size > 100, name
+    assert b"brdf scale-bias" in (folder / "a.exr").read_bytes()
+    # The courses' sum of samples comes near.
+    run("brdf", "-o", "m.ktx2", "--size", "32", "--float", "--form", "scale-bias-charlie", "--method", "montecarlo", "--sequence", "sobol", "--samples", "4096", folder=folder)
+    other = struct.unpack(f"<{32 * 32 * 4}f", (folder / "m.ktx2").read_bytes()[-32 * 32 * 16:])
+    assert 0 < max(abs(a - b) for i, (a, b) in enumerate(zip(values, other)) if i % 4 < 2) < 0.02
+    assert json.loads(run("brdf", "-o", "m.ktx2", "--size", "4", "--method", "montecarlo", "--json", folder=folder).stdout)["sequence"] == "hammersley"
 
 
 def test_montecarlo_takes_every_sequence(folder):

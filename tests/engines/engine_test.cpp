@@ -239,6 +239,10 @@ TEST_CASE("plan: contradictions are errors that name the field") {
     CHECK(where([](BakeOptions& o) { o.format = Container::exr_mip, o.encoding = Encoding::rgb9e5; }) == "`encoding`");
     CHECK(where([](BakeOptions& o) { o.format = Container::dds9, o.encoding = Encoding::rgb9e5; }) == "`encoding`");
     CHECK(where([](BakeOptions& o) { o.sh_bands = 65; }) == "`sh_bands`");
+    CHECK(where([](BakeOptions& o) { o.engines = {"three"}, o.irradiance_quantity = Quantity::irradiance; }) ==
+          "`irradiance_quantity`");
+    CHECK(where([](BakeOptions& o) { o.irradiance_quantity = Quantity::radiance; }) == "`irradiance_quantity`");
+    CHECK(where([](BakeOptions& o) { o.irradiance_quantity = Quantity::irradiance_over_pi; }).empty());
     CHECK(where([](BakeOptions& o) { o.layout = Layout::latlong, o.size = 100, o.levels = 4; }) == "`size`");
 }
 

@@ -49,7 +49,8 @@ struct BakeOptions {
     std::optional<Container> format;
     std::optional<bool> zstd;
     CubePicture cube_picture = CubePicture::cross;
-    std::optional<int> irradiance_size;  ///< face size, or half the height of a lat-long map
+    std::optional<Quantity> irradiance_quantity;  ///< irradiance or irradiance_over_pi
+    std::optional<int> irradiance_size;           ///< face size, or half the height of a lat-long map
     int sh_bands = 3;
     ShWindow sh_window = ShWindow::none;
     BrdfG brdf_g = BrdfG::correlated;

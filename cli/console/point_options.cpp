@@ -1,0 +1,35 @@
+#include "cli/console/point_options.h"
+
+#include <fmt/core.h>
+
+#include <utility>
+
+namespace domelight::cli {
+
+void add_point_options(Arguments& a, PointWords& w) {
+    a.integer("--samples", "N", w.samples, "montecarlo: samples for each texel (1024)");
+    a.choice("--sequence", w.sequence, sequence_names(),
+             "montecarlo: the points of the unit square, the same ones for each texel (hammersley)");
+    a.text("--seed", "N", w.seed, "montecarlo: selects the randomisation; 0: the textbook's plain points (0)");
+}
+
+Result<PointSet> montecarlo_points(const PointWords& w, const std::string& method) {
+    const std::pair<const char*, bool> options[] = {
+        {"--samples", w.samples.has_value()}, {"--sequence", !w.sequence.empty()}, {"--seed", !w.seed.empty()}};
+    for (const auto& [option, given] : options)
+        if (given && method != "montecarlo")
+            return Error{fmt::format("has no meaning with --method {}", method), option,
+                         "It belongs to --method montecarlo."};
+    PointSet points;
+    points.count = w.samples.value_or(points.count);
+    if (points.count < 1 || points.count > (1 << 24))
+        return Error{fmt::format("{} is not from 1 to 2^24", points.count), "--samples", ""};
+    if (!w.sequence.empty()) points.sequence = *sequence_from_name(w.sequence);
+    if (w.seed.empty()) return points;
+    const auto seed = parse_seed(w.seed);
+    if (!seed) return seed.error().at("--seed");
+    points.seed = *seed;
+    return points;
+}
+
+}  // namespace domelight::cli
