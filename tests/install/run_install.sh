@@ -55,6 +55,15 @@ white_light() {
 }
 claim "examples/sample_minimal.cpp lights a white surface white under a white sky" white_light
 claim "examples/bake_minimal.cpp says what is wrong" no_file
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$work/triangle.obj"
+# In floats, what arrives from above and what a white surface sends back are both 1; every file of the tour is there.
+tour() {
+    "$work/build/tour" "$work/white.hdr" "$work/triangle.obj" "$work/tour" >"$work/told" || return 1
+    cat "$work/told"
+    grep -qx 'from above comes 1 1 1' "$work/told" && [ -s "$work/tour/specular.ktx2" ] && [ -s "$work/tour/filament/manifest.json" ] &&
+        [ -s "$work/tour/picture.exr" ]
+}
+claim "examples/tour.cpp goes through the five steps of domelight.h" tour
 sed -i 's/domelight 0.1 REQUIRED/domelight 99 REQUIRED/' "$work/project/CMakeLists.txt"
 claim "another version is refused" refuses_another_version
 

@@ -5,6 +5,7 @@
 #include "domelight/projection/projection.h"
 
 #include "io/reader_samples.h"
+#include "base/printable.h"
 #include "test.h"
 
 #include <ImfChannelList.h>
@@ -316,7 +317,7 @@ TEST_CASE("environment: every malformed file opens properly or gives one error t
             if (!environment) {
                 CHECK(environment.error().where == entry.path().string());
                 CHECK(!environment.error().what.empty());
-                for (const char c : environment.error().what) CHECK((c >= ' ' && c <= '~'));
+                CHECK(escaped(environment.error().what) == environment.error().what);
             }
             const auto reader = open_bytes(load(entry.path()), {.max_bytes = 64 << 20, .threads = 2});
             bool good = bool(reader);

@@ -13,7 +13,7 @@ namespace domelight {
 
 namespace {
 
-/// Rows on their way, with their power and how far they are noted.
+/// Reads rows, and adds up their radiant power and reports progress while it does so.
 class MeasuredRows {
   public:
     MeasuredRows(RowSource& rows, const Progress& progress) : rows_(rows), progress_(progress) {}
@@ -21,7 +21,8 @@ class MeasuredRows {
         if (const auto read = rows_.read(block); !read) return read;
         std::vector<Vec3d> sums(std::size_t(block.height));
         parallel_for(block.height, threads, [&](int y) {
-            // Four sums each, which the compiler keeps apart; four floats are added before.
+            // Four independent sums for each channel, so that additions overlap. Four floats are added in single
+            // precision before they join a sum.
             double sum[12] = {};
             const float* p = block.row(y);
             const int n = 3 * block.width;
@@ -47,7 +48,7 @@ class MeasuredRows {
     int next_ = 0;
 };
 
-/// Few enough to stay in a core's cache until they are used; more where several cores share them.
+/// Rows in a block: few enough to stay in a core's cache until they are used, more where several cores share them.
 int block_rows(int threads) {
     return resolve_threads(threads) <= 2 ? 16 : 64;
 }
@@ -71,7 +72,7 @@ bool permutes_axes(const Mat3& m) {
     return true;
 }
 
-/// Straight from the rows where that goes: the image, or nothing.
+/// The converted image where it can be computed while rows are read; nothing where the whole image is needed first.
 Result<std::optional<ImageF>> by_rows(const Environment& environment, const Projection& target,
                                       const Mat3& world_to_source, const ConvertOptions& o, Conversion& result) {
     const RowConversion conversion = convert_rows(environment.latlong_width(), environment.latlong_height(), target,
@@ -137,7 +138,8 @@ int matched_height(const Environment& environment, const Projection& target) {
     const ProjectionShape& shape = target.shape();
     double latlong = environment.latlong_height();
     if (const ProjectedImage* picture = environment.picture())
-        latlong = picture->projection.shape().latlong_height(picture->height());  // without rows()' bounds
+        latlong = picture->projection.shape().latlong_height(
+            picture->height());  // rows() may be smaller: its height is bounded
     return std::max(1, int(std::round(latlong * 1000 / shape.latlong_height(1000))));
 }
 

@@ -45,7 +45,7 @@ Sheet sheet_of(CubeLayout layout) {
               {5, 0, 5, true, false}}}};
 }
 
-/// Puts row `y` of a tile, whose texels start at `from`, where it belongs in its face.
+/// Copies row `y` of a tile, whose texels start at `from`, to its place in the face.
 void place_row(const Tile& tile, int y, const float* from, ImageView<float> face) {
     const int n = face.width;
     float* to = face.row(tile.mirror_y ? n - 1 - y : y);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/image/image.h"
 #include "domelight/base/result.h"
+#include "domelight/image/image.h"
 #include "domelight/image/row_source.h"
 
 #include <array>
@@ -11,19 +11,22 @@
 
 namespace domelight {
 
+// clang-format off
 /// How the six faces of a cube lie in one picture. Every face is in OpenGL's orientation (docs/conventions.md) except
-/// where said:
+/// where it is said otherwise. Where faces touch in a cross, the picture continues.
 ///
-///   horizontal_cross   . +Y .  .      vertical_cross   . +Y .      horizontal_strip  +X -X +Y -Y +Z -Z
-///                     -X +Z +X -Z                     -X +Z +X     vertical_strip    the same from the top down
-///                      . -Y .  .                       . -Y .      openexr_strip     the same, with +-X and +-Z
-///                      mirrored left to right and
-///                                                      . -Z .                        +-Y top to bottom, as ImfEnvmap.h
-///                                                      draws them, and
-///                                                                                    samples on the faces' edges (i /
-///                                                                                    (n - 1))
+///     horizontal_cross      vertical_cross
 ///
-/// In a vertical cross -Z hangs below -Y, turned by 180 degrees. Where faces touch in a cross, the picture continues.
+///        .  +Y  .  .           .  +Y  .
+///       -X  +Z +X -Z          -X  +Z +X
+///        .  -Y  .  .           .  -Y  .
+///                              .  -Z  .       here -Z is turned by 180 degrees
+///
+/// horizontal_strip   +X -X +Y -Y +Z -Z from left to right
+/// vertical_strip     the same from top to bottom
+/// openexr_strip      the same from top to bottom, as ImfEnvmap.h draws it: +X, -X, +Z and -Z are mirrored from left to
+///                    right, +Y and -Y from top to bottom, and the samples lie on the faces' edges, at i / (n - 1)
+// clang-format on
 enum class CubeLayout { horizontal_cross, vertical_cross, horizontal_strip, vertical_strip, openexr_strip };
 
 /// The layout whose shape a picture has, if any: 4:3, 3:4, 6:1 or 1:6 exactly.

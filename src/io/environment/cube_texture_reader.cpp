@@ -31,7 +31,7 @@ Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_
     if (info->faces != 6 || info->width != info->height || info->layers > 1)
         return Error{"texture is not a cube", file.string(), "An environment must be a cube or a lat-long image."};
     if (!info->decodable) return Error{"texels of format " + info->format + " cannot be decoded", file.string(), ""};
-    // Decoded faces, beside the texture as it is.
+    // The decoded faces are in memory together with the encoded texture.
     const std::int64_t size = info->width;
     if (size < 1 || size > 65536 || 2 * 6 * size * size * 12 > max_bytes)
         return Error{

@@ -25,7 +25,7 @@ namespace domelight {
 
 namespace {
 
-/// Turns directions about +Y, exactly at quarter turns.
+/// The turn about +Y by an angle in degrees. Quarter turns have exact entries.
 Mat3 rotation_y_deg(double angle_deg) {
     const double turn = std::remainder(angle_deg, 360.0);
     const double quarters = turn / 90;
@@ -36,21 +36,20 @@ Mat3 rotation_y_deg(double angle_deg) {
     return {{Vec3d{c, 0, -s}, Vec3d{0, 1, 0}, Vec3d{s, 0, c}}};
 }
 
-/// Directions of a world whose axis `up` the image's top shows, to the frame where that is +Y: by the shortest turn
-/// (for -Y, half a turn about X).
+/// The shortest turn that takes the axis `up`, which the image's top shows, to +Y (for -Y: half a turn about X).
 Mat3 up_to_y(const Vec3d& up) {
     if (up == Vec3d{0, 1, 0}) return {};
     if (up == Vec3d{0, -1, 0}) return {{Vec3d{1, 0, 0}, Vec3d{0, -1, 0}, Vec3d{0, 0, -1}}};
-    // The axis a = up x Y stays, up goes to Y, a x up goes to a x Y.
+    // The turn leaves a = up × Y where it is, and takes up to Y and a × up to a × Y.
     const Vec3d y{0, 1, 0}, a = cross(up, y), b = cross(a, up), image = cross(a, y);
-    const auto row = [&](double Vec3d::* i) { return a * (a.*i) + up * (y.*i) + b * (image.*i); };
+    const auto row = [&](double Vec3d::*i) { return a * (a.*i) + up * (y.*i) + b * (image.*i); };
     return {{row(&Vec3d::x), row(&Vec3d::y), row(&Vec3d::z)}};
 }
 
-/// What the options ask for, checked.
+/// The options after they have been checked.
 struct Request {
     EnvironmentOptions options;
-    Mat3 turn;  ///< world to the file's frame, apart from its lat-long convention
+    Mat3 turn;  ///< from the world to the file's frame, without its lat-long convention
     float scale = 1;
     std::optional<Projection> other;  ///< neither lat-long nor a cube
     Mat3 cube_axes;                   ///< the turned light to the frame of a cube's faces
@@ -102,7 +101,8 @@ Result<Request> check_options(const EnvironmentOptions& options) {
     };
     if (request.options.latlong == "pbrt") {
         if (request.options.projection != "auto" && request.options.projection != "latlong")
-            return Error{"pbrt's square is no " + options.projection, field_place("latlong"), ""};
+            return Error{"pbrt names the equal-area octahedral square, which is not a " + options.projection,
+                         field_place("latlong"), ""};
         request.options.latlong.clear();
         request.options.projection = "pbrt";
     }
@@ -123,13 +123,13 @@ Result<Request> check_options(const EnvironmentOptions& options) {
     if (!request.options.latlong.empty())
         if (const auto convention = latlong_convention(request.options.latlong); !convention)
             return convention.error().at(field_place("latlong"));
-    // Light turned by R arrives from d if it came from R^T d before.
+    // When the light is turned by R, what arrives from d came from Rᵀ d before.
     request.turn = up_to_y(*up) * rotation_y_deg(options.rotate_y_deg).transposed();
     request.scale = float(std::exp2(options.exposure));
     return request;
 }
 
-/// Twice as wide as high; one texel more or less is a rounding of someone's resize.
+/// Twice as wide as high. One texel more or less is accepted, because a resize may have rounded.
 bool has_latlong_shape(int width, int height) {
     return std::abs(std::int64_t(width) - 2 * std::int64_t(height)) <= 1;
 }
@@ -175,7 +175,7 @@ Result<std::optional<CubeLayout>> choose_layout(const ImageFacts& facts, const s
     return layout;
 }
 
-/// What concerns the file as a whole.
+/// Sets what is known about the file as a whole.
 Environment with_facts(Environment environment, const std::filesystem::path& file, const std::string& format, int width,
                        int height) {
     environment.file = file;
@@ -207,7 +207,7 @@ std::unique_ptr<RowSource> radiance_of(const std::filesystem::path& file, std::u
                                             std::move(report));
 }
 
-/// Adds what the reader of one more file says; files of a kind say the same things, and they are said once.
+/// Adds the report of one more file. A warning that several files share is kept once.
 void add_report(RepairReport& sum, const RepairReport& part) {
     add_repairs(sum, part);
     for (const std::string& warning : part.warnings)
@@ -287,17 +287,18 @@ Result<void> check_cube_memory(std::int64_t size, std::int64_t max_bytes) {
 Environment finish_cube(Cubemap cube, RepairReport report, const Request& request) {
     if (!request.options.latlong.empty())
         report.warnings.push_back("a lat-long convention means nothing for a cube: ignored");
-    return Environment::from_cube(std::move(cube), request.cube_axes * request.turn, std::move(report), request.options.threads);
+    return Environment::from_cube(std::move(cube), request.cube_axes * request.turn, std::move(report),
+                                  request.options.threads);
 }
 
 /// A picture in any other projection.
 Environment finish_other(ProjectedImage picture, RepairReport report, const Request& request) {
     const ProjectionShape& shape = picture.projection.shape();
     if (!picture.projection.full())
-        report.warnings.push_back(fmt::format("the projection {} shows {:.0f} % of all directions: {}",
-                                              picture.projection.name(), 25 * shape.coverage() / k_pi,
-                                              shape.coverage() < 3 * k_pi ? "the rest is black"
-                                                                          : "the rest repeats its rim"));
+        report.warnings.push_back(
+            fmt::format("the projection {} shows {:.0f} % of all directions: {}", picture.projection.name(),
+                        25 * shape.coverage() / k_pi,
+                        shape.coverage() < 3 * k_pi ? "the rest is black" : "the rest repeats its rim"));
     return Environment::from_picture(std::move(picture), request.turn, std::move(report), request.options.max_bytes,
                                      request.options.threads);
 }
@@ -348,7 +349,7 @@ Result<Environment> open_halves(const std::vector<std::filesystem::path>& files,
     return with_facts(finish_other({*request.other, std::move(stacked)}, std::move(report), request), files[0], first);
 }
 
-/// KTX2, KTX and DDS hold cubes as the engines load them.
+/// Opens a KTX2, KTX, DDS or .env file, which holds a cube as engines load it.
 Result<Environment> open_texture(const std::filesystem::path& file, const std::string& container,
                                  const Request& request) {
     if (const std::string& projection = request.options.projection; projection != "auto" && projection != "cube")
@@ -361,13 +362,13 @@ Result<Environment> open_texture(const std::filesystem::path& file, const std::s
     return with_facts(finish_cube(*std::move(cube), std::move(report), request), file, container, size, size);
 }
 
-/// A matrix that turns directions as the unit quaternion x, y, z, w does.
+/// The rotation matrix of the unit quaternion x, y, z, w.
 Mat3 turn_of(const std::array<float, 4>& q) {
     const Affine turn = affine_of_trs({}, q, {1, 1, 1});
     return Mat3{{Vec3d(turn.x), Vec3d(turn.y), Vec3d(turn.z)}}.transposed();
 }
 
-/// The light that a glTF file brings with it.
+/// Opens the image-based light of a glTF file (EXT_lights_image_based).
 Result<Environment> open_gltf_light(const std::filesystem::path& file, const Request& request) {
     if (const std::string& projection = request.options.projection; projection != "auto" && projection != "cube")
         return Error{"a glTF file's light is a cube: leave " + projection + " out", field_place("projection"), ""};
@@ -377,7 +378,7 @@ Result<Environment> open_gltf_light(const std::filesystem::path& file, const Req
     const int size = light->cube.size();
     Environment environment = with_facts(finish_cube(std::move(light->cube), std::move(report), request), file,
                                          "glTF EXT_lights_image_based", size, size);
-    // Light turned by R arrives from d if it came from R^T d before.
+    // When the light is turned by R, what arrives from d came from Rᵀ d before.
     environment.world_to_source = turn_of(light->rotation).transposed() * environment.world_to_source;
     return environment;
 }
