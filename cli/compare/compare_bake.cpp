@@ -277,14 +277,9 @@ int compare_bake(const BakeWords& w, const CommonOptions& common) {
     if (!bake) return print_error(bake.error());
     auto environment = open_environment_or_sky(w.env, options);
     if (!environment) return print_error(environment.error());
-    AuditSource source;
-    source.world_to_source = environment->world_to_source;
-    source.cube = environment->cube();
-    if (!source.cube) {
-        const auto pixels = environment->latlong();
-        if (!pixels) return print_error(pixels.error().at(join(w.env, " ")));
-        source.latlong = (*pixels)->view();
-    }
+    if (!environment->cube())
+        if (const auto pixels = environment->latlong(); !pixels)
+            return print_error(pixels.error().at(join(w.env, " ")));
     AuditOptions audit_options;
     audit_options.threads = threads;
     audit_options.lobe = bake->lobe;
@@ -294,12 +289,12 @@ int compare_bake(const BakeWords& w, const CommonOptions& common) {
     {
         ProgressBar bar(w.bake[0], common);
         audit_options.progress = bar.callback();
-        audit = audit_bake(bake->levels, source, audit_options);
+        audit = audit_bake(bake->levels, *environment, audit_options);
     }
     if (!audit) return print_error(audit.error().at(w.bake[0]));
     print_warnings(environment->report().warnings, common, join(w.env, " "));
     const std::string convention =
-        source.cube ? "" : convention_of(audit->orientation.ours_from_theirs, source.world_to_source);
+        environment->cube() ? "" : convention_of(audit->orientation.ours_from_theirs, environment->world_to_source);
     if (common.json)
         print_json(w, *bake, *audit, convention, environment->report().warnings);
     else if (!common.quiet)

@@ -38,11 +38,14 @@ struct Level {
 
 class Audit {
   public:
-    Audit(std::span<const CubeLevel> levels, const AuditSource& source, const AuditOptions& options)
+    Audit(std::span<const CubeLevel> levels, const Environment& source, const AuditOptions& options)
         : given_(levels), options_(options), exact_(source, options.lobe, options.threads), source_(source) {}
 
     Result<BakeAudit> run() {
         if (given_.empty()) return Error{"no levels to audit", "", ""};
+        // A lat-long source is filtered several times, but read only once.
+        if (!source_.cube())
+            if (const auto image = source_.latlong(); !image) return image.error();
         for (auto step :
              {&Audit::sample, &Audit::filter_as_stated, &Audit::find_orientation, &Audit::guess, &Audit::search}) {
             auto done = (this->*step)();
@@ -273,7 +276,7 @@ class Audit {
     std::span<const CubeLevel> given_;
     const AuditOptions& options_;
     ExactFilter exact_;
-    const AuditSource& source_;
+    const Environment& source_;
     std::vector<TexelSample> samples_, broad_samples_;
     std::vector<Cubemap> as_stated_;
     CubeOrientation orientation_;
@@ -285,7 +288,7 @@ class Audit {
 
 }  // namespace
 
-Result<BakeAudit> audit_bake(std::span<const CubeLevel> levels, const AuditSource& source,
+Result<BakeAudit> audit_bake(std::span<const CubeLevel> levels, const Environment& source,
                              const AuditOptions& options) {
     return Audit(levels, source, options).run();
 }

@@ -42,15 +42,12 @@ Result<FilterResult> ExactFilter::filter(std::span<const ExactLevel> levels, con
     FilterOptions options;
     options.sh_bands = 0;
     options.threads = threads_;
-    options.world_to_source = source_.world_to_source;
     options.progress = progress;
     for (const ExactLevel& level : levels)
         options.specular.push_back(level.roughness > 0
                                        ? LevelSpec{level.size, false, lobe_at_roughness(lobe_, level.roughness)}
                                        : LevelSpec{level.size, true, {}});
-    if (source_.cube) return prefilter(*source_.cube, options);
-    ImageRowSource rows(source_.latlong);
-    return prefilter(rows, options);
+    return prefilter(source_, options);
 }
 
 Progress piece_of(const Progress& whole, double begin, double end) {

@@ -15,7 +15,7 @@ struct ExactLevel {
 
 class ExactFilter {
   public:
-    ExactFilter(const AuditSource& source, Lobe lobe, int threads) : source_(source), lobe_(lobe), threads_(threads) {}
+    ExactFilter(const Environment& source, Lobe lobe, int threads) : source_(source), lobe_(lobe), threads_(threads) {}
 
     /// Filters the source once for all levels (several times where they need more than 512 MiB together) and calls
     /// `use(index, cube)` for each, in order. `progress` is passed on to prefilter().
@@ -25,7 +25,7 @@ class ExactFilter {
   private:
     Result<FilterResult> filter(std::span<const ExactLevel> levels, const Progress& progress) const;
 
-    const AuditSource& source_;
+    const Environment& source_;
     Lobe lobe_;
     int threads_;
 };

@@ -57,21 +57,21 @@ std::string verdict_on_bake(const BakeAudit& audit, const AuditOptions& options)
 }
 
 /// Texels of a source along a quarter of its horizon.
-double source_texels(const AuditSource& source) {
-    return source.cube ? source.cube->size() : source.latlong.width / 4.0;
+double source_texels(const Environment& source) {
+    return source.cube() ? source.cube()->size() : source.latlong_width() / 4.0;
 }
 
-std::string source_words(const AuditSource& source) {
-    return source.cube ? fmt::format("{}² faces", source.cube->size())
-                       : fmt::format("{} x {} pixels", source.latlong.width, source.latlong.height);
+std::string source_words(const Environment& source) {
+    return source.cube() ? fmt::format("{}² faces", source.cube()->size())
+                         : fmt::format("{} x {} pixels", source.latlong_width(), source.latlong_height());
 }
 
 /// Whether the source is too small for level 0: detail that the source lacks leaves an error that averaging removes.
-bool too_small(const AuditSource& source, const LevelAudit& first) {
+bool too_small(const Environment& source, const LevelAudit& first) {
     return source_texels(source) < first.size && first.error >= 0.02 && first.error >= 1.5 * first.broad_error;
 }
 
-std::string small_source_note(const LevelAudit& first, const AuditSource& source) {
+std::string small_source_note(const LevelAudit& first, const Environment& source) {
     return fmt::format(
         "the environment is too small for this bake: level 0 has faces of {}² and detail that the {} of the "
         "environment lack; its error of {} is mostly that (both averaged to 32²: {})",
@@ -80,7 +80,7 @@ std::string small_source_note(const LevelAudit& first, const AuditSource& source
 
 }  // namespace
 
-BakeAudit judged(BakeAudit audit, const AuditSource& source, const AuditOptions& options) {
+BakeAudit judged(BakeAudit audit, const Environment& source, const AuditOptions& options) {
     const auto above = [&](const LevelAudit& level) { return level.broad_error > options.same; };
     audit.of_source =
         !(audit.orientation.error > options.same) && !std::any_of(audit.levels.begin(), audit.levels.end(), above);

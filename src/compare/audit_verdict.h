@@ -6,6 +6,6 @@
 namespace domelight {
 
 /// The audit with of_source, within, verdict and notes set by its other members.
-BakeAudit judged(BakeAudit audit, const AuditSource& source, const AuditOptions& options);
+BakeAudit judged(BakeAudit audit, const Environment& source, const AuditOptions& options);
 
 }  // namespace domelight

@@ -66,10 +66,8 @@ std::vector<CubeLevel> bake(const ImageF& light, std::vector<Wanted> wanted, con
 
 const std::vector<Wanted> k_chain = {{32, 0}, {32, 0.37}, {16, 0.65}, {8, 1}};
 
-AuditSource source_of(const ImageF& light) {
-    AuditSource source;
-    source.latlong = light.view();
-    return source;
+Environment source_of(const ImageF& light) {
+    return Environment::from_latlong(light);
 }
 
 }  // namespace
@@ -130,7 +128,7 @@ TEST_SUITE("bake") {
 
     TEST_CASE("audit: the rotation of the source is taken into account") {
         const ImageF light = environment();
-        AuditSource source = source_of(light);
+        Environment source = source_of(light);
         source.world_to_source = rotation_y(0.7);
         const auto audit = audit_bake(bake(light, {{16, 0.5}}, rotation_y(0.7)), source);
         REQUIRE(bool(audit));

@@ -5,6 +5,7 @@
 #include "domelight/base/progress.h"
 #include "domelight/base/result.h"
 #include "domelight/base/vec.h"
+#include "domelight/environment/environment.h"
 #include "domelight/filtering/prefilter.h"
 #include "domelight/image/image.h"
 
@@ -20,13 +21,6 @@ struct CubeLevel {
     Cubemap cube;                     ///< RGB radiance, faces in the file's order
     std::optional<double> roughness;  ///< the roughness that the file or its format states, [0, 1]
     std::optional<double> exponent = {};  ///< the same for a Phong lobe, >= 0; infinity: the environment itself
-};
-
-/// The light that was baked: exactly one of `latlong` and `cube` is set.
-struct AuditSource {
-    ImageView<const float> latlong;  ///< RGB, default convention up to world_to_source
-    const Cubemap* cube = nullptr;
-    Mat3 world_to_source;  ///< as in Environment
 };
 
 /// How a cube is turned against texture(cube, d) = radiance from d: it holds in direction d what ours holds in
@@ -91,7 +85,7 @@ struct AuditOptions {
 /// compared on faces averaged to 32^2; and up to four close to the best roughness of each level, which are left out for
 /// a bake of another environment. Errors: no levels; a level without a finite texel above 0; those of prefilter(). NaN
 /// and infinite texels are left out.
-Result<BakeAudit> audit_bake(std::span<const CubeLevel> levels, const AuditSource& source,
+Result<BakeAudit> audit_bake(std::span<const CubeLevel> levels, const Environment& source,
                              const AuditOptions& options = {});
 
 }  // namespace domelight
