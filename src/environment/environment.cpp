@@ -3,13 +3,11 @@
 #include "domelight/filtering/resample/area_resample.h"
 #include "domelight/projection/projection.h"
 
-#include "projection/bordered_cube.h"
+#include "projection/bilinear.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <mutex>
 #include <optional>
 
@@ -32,44 +30,6 @@ class SharedRows : public RowSource {
     ImageRowSource rows_;
 };
 
-/// Weights of the two neighbours between which a coordinate in texels (centres at i + 1/2) lies.
-struct Between {
-    int first;
-    float share;  ///< of the second one
-    explicit Between(double texels) {
-        const double at = texels - 0.5, below = std::floor(at);
-        first = int(below);
-        share = float(at - below);
-    }
-};
-
-Vec3f mix(const float* a, const float* b, const float* c, const float* d, float x, float y) {
-    const auto channel = [&](int i) {
-        const float upper = a[i] + (b[i] - a[i]) * x, lower = c[i] + (d[i] - c[i]) * x;
-        return upper + (lower - upper) * y;
-    };
-    return {channel(0), channel(1), channel(2)};
-}
-
-Vec3f look_up(const ImageF& image, const Vec3d& direction) {
-    const int w = image.width(), h = image.height();
-    const UV uv = latlong_uv(direction);
-    const Between x(uv.u * w), y(uv.v * h);
-    const int left = (x.first + w) % w, right = (left + 1) % w;
-    const int top = std::clamp(y.first, 0, h - 1), bottom = std::clamp(y.first + 1, 0, h - 1);
-    return mix(image.at(left, top), image.at(right, top), image.at(left, bottom), image.at(right, bottom), x.share,
-               y.share);
-}
-
-Vec3f look_up(const BorderedCube& cube, const Vec3d& direction) {
-    const CubePoint at = cube_point(direction);
-    const Between x(at.uv.u * cube.size()), y(at.uv.v * cube.size());
-    // The border holds columns and rows -1 and size(); a coordinate of exactly 1 falls on the last pair.
-    const int i = std::min(x.first, cube.size() - 1), j = std::min(y.first, cube.size() - 1);
-    return mix(cube.texel(at.face, i, j), cube.texel(at.face, i + 1, j), cube.texel(at.face, i, j + 1),
-               cube.texel(at.face, i + 1, j + 1), x.share, y.share);
-}
-
 }  // namespace
 
 /// What the copies of an environment share.
@@ -90,6 +50,11 @@ struct Environment::State {
 
     /// The stored cube or picture as a lat-long image.
     Result<std::shared_ptr<const ImageF>> resampled() const;
+    std::shared_ptr<const BorderedCube> bordered_cube() {
+        const std::lock_guard lock(mutex);
+        if (!bordered) bordered = std::make_shared<const BorderedCube>(*cube);
+        return bordered;
+    }
     std::shared_ptr<const ImageF> kept() {
         const std::lock_guard lock(mutex);
         return latlong;
@@ -248,14 +213,10 @@ Result<std::shared_ptr<const ImageF>> Environment::latlong() const {
 
 Result<Vec3f> Environment::radiance(const Vec3d& direction) const {
     const Vec3d source = world_to_source * direction;
-    if (state_->cube) {
-        const std::lock_guard lock(state_->mutex);
-        if (!state_->bordered) state_->bordered = std::make_shared<const BorderedCube>(*state_->cube);
-        return look_up(*state_->bordered, source);
-    }
+    if (state_->cube) return look_up(*state_->bordered_cube(), Vec3f(source));
     const auto image = latlong();
     if (!image) return image.error();
-    return look_up(**image, source);
+    return bilinear(**image, latlong_uv(source), true);
 }
 
 RepairReport Environment::report() const {

@@ -10,9 +10,6 @@
 
 namespace domelight {
 
-/// Bilinear lookup across the faces of a bordered cube; the direction may have any length but 0.
-Vec3f look_up(const BorderedCube& cube, const Vec3f& direction);
-
 /// An environment in one of the textures of MapLookup. Each texel is the mean of the source over it: by exact overlap
 /// for cube and lat-long, over 8 x 8 points for the two kinds of disc.
 class EnvironmentMap {

@@ -7,8 +7,7 @@
 #include "domelight/texture/texture.h"
 
 #include "base/json.h"
-#include "projection/bordered_cube.h"
-#include "render/environment_map.h"
+#include "projection/bilinear.h"
 
 #include <fmt/core.h>
 
