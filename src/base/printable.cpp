@@ -1,5 +1,7 @@
 #include "base/printable.h"
 
+#include "base/utf8.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,31 +10,6 @@
 namespace domelight {
 
 namespace {
-
-/// The character at the start of a text and its bytes. What is not UTF-8 is one byte that is no character.
-struct Character {
-    std::uint32_t code = 0;
-    std::size_t bytes = 1;
-    bool valid = true;
-};
-
-Character first_character(std::string_view text) {
-    const auto byte = [&](std::size_t i) { return std::uint32_t(std::uint8_t(text[i])); };
-    const std::uint32_t lead = byte(0);
-    if (lead < 0x80) return {lead, 1, true};
-    const std::size_t bytes = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
-    const Character broken{lead, 1, false};
-    if (lead < 0xc2 || lead > 0xf4 || text.size() < bytes) return broken;
-    std::uint32_t code = lead & (0xffu >> (bytes + 1));
-    for (std::size_t i = 1; i < bytes; ++i) {
-        if ((byte(i) & 0xc0) != 0x80) return broken;
-        code = code << 6 | (byte(i) & 0x3f);
-    }
-    // Not in the shortest form, half of a surrogate pair, beyond Unicode's end.
-    constexpr std::uint32_t k_least[5] = {0, 0, 0x80, 0x800, 0x10000};
-    if (code < k_least[bytes] || (code >= 0xd800 && code <= 0xdfff) || code > 0x10ffff) return broken;
-    return {code, bytes, true};
-}
 
 /// Control characters, and those that are invisible, separate lines or set the direction of writing (Unicode's
 /// categories Cc, Zl, Zp and most of Cf; joiners inside words, U+200C and U+200D, are letters' business and stay).
@@ -44,7 +21,7 @@ bool acts_on_terminals(std::uint32_t code) {
                        [&](const auto& range) { return code >= range[0] && code <= range[1]; });
 }
 
-std::string escape(const Character& c) {
+std::string escape(const Utf8Character& c) {
     if (!c.valid || (c.code < 0x80 && c.code != '\n' && c.code != '\r' && c.code != '\t'))
         return fmt::format("\\x{:02x}", c.code);
     if (c.code < 0x80) return c.code == '\n' ? "\\n" : c.code == '\r' ? "\\r" : "\\t";
@@ -61,7 +38,7 @@ std::string escape_in_json(std::uint32_t code) {
 std::string printable(std::string_view text, std::size_t longest) {
     std::string result;
     for (std::size_t at = 0, count = 0; at < text.size() && count < longest; ++count) {
-        const Character c = first_character(text.substr(at));
+        const Utf8Character c = first_utf8_character(text.substr(at));
         if (c.valid && !acts_on_terminals(c.code))
             result += text.substr(at, c.bytes);
         else
@@ -78,7 +55,7 @@ std::string escaped(std::string_view text) {
 std::string escaped_json(std::string_view document) {
     std::string result;
     for (std::size_t at = 0; at < document.size();) {
-        const Character c = first_character(document.substr(at));
+        const Utf8Character c = first_utf8_character(document.substr(at));
         if (c.code >= 0x7f && c.valid && acts_on_terminals(c.code))
             result += escape_in_json(c.code);
         else

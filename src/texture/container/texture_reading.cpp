@@ -1,6 +1,7 @@
 // Reading of textures: detects the container, and has what all three containers need.
 #include "texture/container/texture_reading.h"
 
+#include "base/utf8.h"
 #include "texture/container/env.h"
 #include "texture/container/ktx1.h"
 #include "texture/container/ktx2.h"
@@ -95,28 +96,11 @@ Bytes widen_level(const StoredTexels& texels, Bytes stored) {
 }
 
 bool is_utf8_text(std::span<const std::uint8_t> bytes) {
-    for (std::size_t i = 0; i < bytes.size();) {
-        const std::uint8_t lead = bytes[i++];
-        if (lead < 0x80) {
-            if (lead < 0x20 && lead != '\t' && lead != '\n' && lead != '\r') return false;
-            continue;
-        }
-        const int more = lead >= 0xc2 && lead < 0xe0   ? 1
-                         : lead >= 0xe0 && lead < 0xf0 ? 2
-                         : lead >= 0xf0 && lead < 0xf5 ? 3
-                                                       : 0;
-        if (more == 0 || i + std::size_t(more) > bytes.size()) return false;
-        std::uint32_t point = lead & (0x3fu >> more);
-        for (int k = 0; k < more; ++k) {
-            if ((bytes[i] & 0xc0) != 0x80) return false;
-            point = point << 6 | (bytes[i++] & 0x3fu);
-        }
-        // Overlong forms, surrogates and code points beyond Unicode.
-        if (point < (more == 1   ? 0x80u
-                     : more == 2 ? 0x800u
-                                 : 0x10000u) ||
-            point > 0x10ffff || (point >= 0xd800 && point < 0xe000))
-            return false;
+    std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    while (!text.empty()) {
+        const Utf8Character c = first_utf8_character(text);
+        if (!c.valid || (c.code < 0x20 && c.code != '\t' && c.code != '\n' && c.code != '\r')) return false;
+        text.remove_prefix(c.bytes);
     }
     return true;
 }
