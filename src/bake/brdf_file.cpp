@@ -8,7 +8,7 @@
 #include "base/field_place.h"
 #include "io/picture/png_memory.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -106,7 +106,7 @@ Result<void> write_brdf_file(const std::filesystem::path& file, const BrdfFileOp
     if (extension == ".hdr") return write_hdr(file, rgb.view(), options.threads);
     if (extension == ".png") return write_linear_png(file, rgb);
     return Error{fmt::format("\"{}\" is not an ending of a BRDF table's file", extension), file.string(),
-                 "Accepted: .ktx2, .ktx, .dds, .exr, .hdr, .png."};
+                 fmt::format("Accepted: {}.", fmt::join(brdf_file_extensions(), ", "))};
 }
 
 }  // namespace domelight

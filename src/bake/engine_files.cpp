@@ -81,10 +81,7 @@ ImageF openexr_level(const FilteredMap& level, int threads) {
                          level.latlong.height(), threads)
             .pixels;
     }
-    ImageF strip(level.cube.size(), 6 * level.cube.size(), 3);
-    std::copy(level.cube.pixels().begin(), level.cube.pixels().end(), strip.pixels().begin());
-    const ProjectedImage source{*projection_from_name("cube"), std::move(strip)};
-    return reproject(source, *projection_from_name("cube/openexr"), level.cube.size(), level.cube.size(), threads)
+    return reproject(projected_cube(level.cube), *projection_from_name("cube/openexr"), level.cube.size(), level.cube.size(), threads)
         .pixels;
 }
 

@@ -147,10 +147,7 @@ Result<void> FilterJob::filter_cube(const Environment& environment, const BakeOp
         results_ = *std::move(results);
     }
     if (panorama_specs_.empty()) return {};
-    const ImageView<const float> strip = cube.strip();
-    ImageF pixels(strip.width, strip.height, 3);
-    std::copy_n(strip.data, pixels.pixels().size(), pixels.pixels().begin());
-    const ProjectedImage source{projection_from_name("cube")->turned(environment.world_to_source), std::move(pixels)};
+    const ProjectedImage source = projected_cube(cube, environment.world_to_source);
     for (const PanoramaSpec& spec : panorama_specs_) panoramas_.push_back(reprojected(source, spec, options));
     return {};
 }

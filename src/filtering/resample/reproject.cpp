@@ -231,6 +231,13 @@ Vec3d radiant_power(const ProjectedImage& image, int threads) {
     return sum;
 }
 
+ProjectedImage projected_cube(const Cubemap& cube, const Mat3& world_to_cube) {
+    const ImageView<const float> strip = cube.strip();
+    ImageF pixels(strip.width, strip.height, strip.channels);
+    std::copy_n(strip.data, pixels.pixels().size(), pixels.pixels().begin());
+    return {projection_from_name("cube")->turned(world_to_cube), std::move(pixels)};
+}
+
 ProjectedImage reproject(const ProjectedImage& source, const Projection& target, int width, int height, int threads,
                          const Progress& progress) {
     using namespace reproject_detail;

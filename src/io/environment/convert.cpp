@@ -105,20 +105,14 @@ Result<Conversion> convert(const Environment& environment, const Projection& tar
         const Mat3 m = world_to_source * target.world_to_picture().transposed();
         if (target.name() == "cube" && target.grid() == SampleGrid::centres && o.height == cube->size() &&
             permutes_axes(m)) {
-            ImageF strip(o.width, 6 * o.width, 3);
-            const Cubemap moved = area_resample_cube(*cube, o.width, m, o.threads);
-            std::copy(moved.pixels().begin(), moved.pixels().end(), strip.pixels().begin());
-            result.image.pixels = std::move(strip);
+            ProjectedImage moved = projected_cube(area_resample_cube(*cube, o.width, m, o.threads));
             result.method = "copy";
-            result.power_before =
-                radiant_power({*projection_from_name("cube"), ImageF(result.image.pixels)}, o.threads);
+            result.power_before = radiant_power(moved, o.threads);
+            result.image.pixels = std::move(moved.pixels);
             result.power_after = result.power_before;
             return result;
         }
-        const ImageView<const float> strip = cube->strip();
-        ImageF pixels(strip.width, strip.height, 3);
-        std::copy_n(strip.data, pixels.pixels().size(), pixels.pixels().begin());
-        source = {projection_from_name("cube")->turned(world_to_source), std::move(pixels)};
+        source = projected_cube(*cube, world_to_source);
     } else if (const ProjectedImage* picture = environment.picture()) {
         source = {picture->projection.turned(world_to_source), picture->pixels};
     } else {

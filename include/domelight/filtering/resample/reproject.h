@@ -15,6 +15,9 @@ struct ProjectedImage {
     int height() const { return pixels.height() / projection.charts(); }
 };
 
+/// A copy of a cube of radiance as a picture, whose world is turned into the cube's frame by `world_to_cube`.
+ProjectedImage projected_cube(const Cubemap& cube, const Mat3& world_to_cube = {});
+
 /// Radiant power per channel that arrives from all directions: sum of radiance times the texels' solid angles
 /// (W / m^2 for radiance in W / (m^2 sr)).
 Vec3d radiant_power(const ProjectedImage& image, int threads = 0);
