@@ -1,4 +1,5 @@
 #include "engines/all.h"
+#include "engines/environment_engine.h"
 
 namespace domelight {
 
@@ -26,17 +27,10 @@ Engine three_engine() {
 /// default), for its PMREM generator to filter. That generator makes cubes of a quarter of the width: 2048 x 1024 fills
 /// its 512^2.
 Engine three_latlong_engine() {
-    Engine e;
-    e.name = "three-latlong";
-    e.loads = "three.js: lat-long EXR for its own filter (EXRLoader, PMREMGenerator)";
+    Engine e = environment_engine("three-latlong",
+                                  "three.js: lat-long EXR for its own filter (EXRLoader, PMREMGenerator)", "latlong");
     e.note = "three.js filters this image itself";
-    e.roughness = linear_roughness;
-    e.container = Container::exr;
-    e.environment_only = true;
-    e.specular_file = "{stem}";
-    e.irradiance_file = "";
-    e.brdf_file = "";
-    e.brdf_form = BrdfForm::none;
+    e.size = 512;
     return e;
 }
 
