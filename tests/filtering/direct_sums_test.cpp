@@ -4,7 +4,7 @@
 #include "domelight/io/environment/open_environment.h"
 
 #include "accuracy.h"
-#include "base/instruction_set.h"
+#include "filtering/prefilter_checks.h"
 #include "filtering/direct/refined_rows.h"
 #include "test.h"
 
@@ -21,15 +21,6 @@ FilterOptions narrow_levels() {
     for (const auto& [size, level] : {std::pair{128, 1}, {64, 2}, {32, 3}})
         options.specular.push_back({size, false, ZonalKernel::ggx(std::exp2((level - 7) / 1.2))});
     return options;
-}
-
-ImageF noise_image(int width, int height, unsigned seed, float hot = 0) {
-    ImageF image(width, height, 3);
-    std::mt19937 engine(seed);
-    for (float& p : image.pixels()) p = 0.1f + float(engine() % 1024) / 1024;
-    if (hot > 0)
-        for (int c = 0; c < 3; ++c) image.at(width / 3, height / 3)[c] = hot;
-    return image;
 }
 
 void check_accuracy(ImageView<const float> image, int random) {
@@ -134,25 +125,7 @@ TEST_CASE("direct sums: the same bits on any number of threads and for rows hand
 
 TEST_CASE("direct sums: instruction sets agree to 1e-6") {
     const ImageF image = noise_image(512, 256, 5, 100);
-    std::optional<FilterResult> first;
-    for (const char* set : {"SCALAR", "SSE4", "AVX2", "AVX3"}) {
-        simd::limit_instruction_set(set);
-        ImageRowSource source(image);
-        auto result = prefilter(source, narrow_levels());
-        REQUIRE(result);
-        if (!first) {
-            first = std::move(*result);
-            continue;
-        }
-        for (std::size_t l = 0; l < result->specular.size(); ++l) {
-            double error2 = 0, sum2 = 0;
-            const auto a = first->specular[l].pixels(), b = result->specular[l].pixels();
-            for (std::size_t i = 0; i < a.size(); ++i)
-                error2 += (a[i] - double(b[i])) * (a[i] - double(b[i])), sum2 += double(a[i]) * a[i];
-            CHECK_MESSAGE(std::sqrt(error2 / sum2) <= 1e-6, set << ", level " << l << ": " << std::sqrt(error2 / sum2));
-        }
-    }
-    simd::limit_instruction_set("");
+    check_instruction_sets_agree(image, narrow_levels());
 }
 
 TEST_CASE("refined rows: the bilinear image at the new centres, across the seam and beyond the outermost centres") {

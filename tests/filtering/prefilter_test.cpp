@@ -10,7 +10,7 @@
 #include "filtering/harmonic/sh_synthesis.h"
 #include "filtering/harmonic/spectrum_evaluate.h"
 #include "filtering/harmonic/tent_nodes.h"
-#include "base/instruction_set.h"
+#include "filtering/prefilter_checks.h"
 #include "test.h"
 
 using namespace domelight;
@@ -23,15 +23,6 @@ FilterOptions generic_options(int size = 512, int count = 7) {
     options.specular = ggx_chain(size, count, [count](int l) { return double(l) / (count - 1); });
     options.irradiance_size = 16;
     return options;
-}
-
-ImageF noise_image(int width, int height, unsigned seed, float hot = 0) {
-    ImageF image(width, height, 3);
-    std::mt19937 engine(seed);
-    for (float& p : image.pixels()) p = 0.1f + float(engine() % 1024) / 1024;
-    if (hot > 0)
-        for (int c = 0; c < 3; ++c) image.at(width / 3, height / 3)[c] = hot;
-    return image;
 }
 
 void check_rows(const std::vector<Accuracy>& rows, double most_rmse, double most) {
@@ -146,25 +137,7 @@ TEST_CASE("prefilter: the same bits on any number of threads and for rows handed
 TEST_CASE("prefilter: instruction sets agree to 1e-6") {
     const ImageF image = noise_image(256, 128, 5, 1000);
     const FilterOptions options = generic_options(64, 4);
-    std::optional<FilterResult> first;
-    for (const char* set : {"SCALAR", "SSE4", "AVX2", "AVX3"}) {
-        simd::limit_instruction_set(set);
-        ImageRowSource source(image);
-        auto result = prefilter(source, options);
-        REQUIRE(result);
-        if (!first) {
-            first = std::move(*result);
-            continue;
-        }
-        for (std::size_t l = 0; l < options.specular.size(); ++l) {
-            double error2 = 0, sum2 = 0;
-            const auto a = first->specular[l].pixels(), b = result->specular[l].pixels();
-            for (std::size_t i = 0; i < a.size(); ++i)
-                error2 += (a[i] - double(b[i])) * (a[i] - double(b[i])), sum2 += double(a[i]) * a[i];
-            CHECK_MESSAGE(std::sqrt(error2 / sum2) <= 1e-6, set << ", level " << l << ": " << std::sqrt(error2 / sum2));
-        }
-    }
-    simd::limit_instruction_set("");
+    check_instruction_sets_agree(image, options);
 }
 
 TEST_CASE("prefilter: a turn of the world turns the maps") {
