@@ -206,9 +206,10 @@ TEST_CASE("gltf: morph targets by the mesh's weights, unless the node has its ow
     const int mesh = sample.add("meshes", {{"primitives", Json::array({primitive})}, {"weights", {0.5, 0.25}}});
     sample.add("nodes", {{"mesh", mesh}});
     sample.add("nodes", {{"mesh", mesh}, {"weights", {0, 1}}});
-    sample.add("nodes", {{"mesh", mesh}});
+    sample.add("nodes", {{"mesh", mesh}, {"translation", {7, 0, 0}}});
     const auto scene = sample.load();
     REQUIRE_MESSAGE(scene, error_of(scene));
+    REQUIRE(scene->instances.size() == 3);
     CHECK(corners(*scene, 0)[0] == Vec3f{1, 0, 0.5f});
     CHECK(near(scene->meshes[0].normals[0], normalize(Vec3f{0.5f, 0, 1})));
     CHECK(corners(*scene, 1)[0] == Vec3f{4, 0, 0});

@@ -41,8 +41,14 @@ const filesIn = folder => fs.readdirSync(folder, {recursive: true}).filter(name 
 // The evening sky's brightest part then comes to 0.87: some engines' pictures end at 1.
 const exposure = environment => (environment === 'sky.hdr' ? ['--exposure', 1.3] : []);
 
-const accepted = option => new RegExp(`${option} ([a-z0-9-]+(?:\\|[a-z0-9-]+)+)`).exec(domelight('bake', '--help'))[1].split('|');
-const engineNames = accepted('--for');
+// What the help says that an option accepts: names between bars, or a table of a line each, indented deeper than the options.
+const help = domelight('bake', '--help');
+const accepted = option => new RegExp(`${option} ([a-z0-9-]+(?:\\|[a-z0-9-]+)+)`).exec(help)[1].split('|');
+const listed = option => {
+    const table = new RegExp(`^  ${option} .*\\n((?:    .*\\n)+)`, 'm').exec(help)[1];
+    return [...table.matchAll(/^ {6}([a-z0-9-]+)  /gm)].map(line => line[1]);
+};
+const engineNames = listed('--for');
 
 /// Bakes an environment of the work folder once for each engine and further options: the folder's name in it.
 const bakes = new Map();
