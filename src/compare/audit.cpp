@@ -18,11 +18,14 @@ namespace {
 constexpr double k_ladder[] = {0.18, 0.24, 0.31, 0.39, 0.48, 0.58, 0.69, 0.8, 0.9, 1};
 /// The same for Charlie, whose ladder has no 0.
 constexpr double k_charlie_ladder[] = {0.1, 0.14, 0.18, 0.24, 0.31, 0.39, 0.48, 0.58, 0.69, 0.8, 0.9, 1};
+/// Between 0 and the ladder's first, for levels that fit best there, because filtering with a narrow lobe takes long.
+constexpr double k_narrow_rung = 0.13;
 
-constexpr int k_broad_texels = 1536;  ///< sampled from each averaged level
-constexpr double k_good_fit = 0.02;   ///< a stated roughness whose error is at most this needs no ladder
-constexpr double k_good_turn = 0.05;  ///< an orientation whose error is at most this needs no ladder
-constexpr int k_rounds = 4;           ///< filter runs of the final search, at most
+constexpr int k_broad_texels = 1536;     ///< sampled from each averaged level
+constexpr double k_good_fit = 0.02;      ///< a stated roughness whose error is at most this needs no ladder
+constexpr double k_good_turn = 0.05;     ///< an orientation whose error is at most this needs no ladder
+constexpr double k_good_mirror = 0.005;  ///< an error at roughness 0 that the rounding of common encodings explains
+constexpr int k_rounds = 4;              ///< filter runs of the final search, at most
 
 /// One roughness of the ladder: the exact filter there, averaged to faces of k_broad_size^2.
 struct Rung {
@@ -34,6 +37,7 @@ struct Rung {
 struct Level {
     std::optional<double> stated;
     LevelSearch broad, fine;
+    double broad_error = 1;  ///< of averaged faces, at the best roughness
 };
 
 class Audit {
@@ -47,7 +51,7 @@ class Audit {
         if (!source_.cube())
             if (const auto image = source_.latlong(); !image) return image.error();
         for (auto step :
-             {&Audit::sample, &Audit::filter_as_stated, &Audit::find_orientation, &Audit::guess, &Audit::search}) {
+             {&Audit::sample, &Audit::find_orientation, &Audit::filter_as_stated, &Audit::guess, &Audit::search}) {
             auto done = (this->*step)();
             if (!done) return done.error();
         }
@@ -61,7 +65,7 @@ class Audit {
     Result<void> sample() {
         for (std::size_t l = 0; l < given_.size(); ++l) {
             const Cubemap& cube = given_[l].cube;
-            samples_.push_back(sample_texels(cube, std::max(options_.texels, 96)));
+            samples_.push_back(sample_texels(cube, std::max(options_.texels, 96), options_.threads));
             if (!(samples_.back().mean > 0))
                 return Error{fmt::format("level {} is black, so it cannot be audited", l), "", ""};
             broad_samples_.push_back(sample_broadly(cube, k_broad_texels, options_.threads));
@@ -69,22 +73,17 @@ class Audit {
         return {};
     }
 
-    /// Every level that states its roughness, filtered by that one.
-    Result<void> filter_as_stated() {
-        std::vector<ExactLevel> wanted;
-        std::vector<std::size_t> levels;
-        for (std::size_t l = 0; l < given_.size(); ++l)
-            if (const auto r = stated_roughness(given_[l])) {
-                wanted.push_back({given_[l].cube.size(), *r});
-                levels.push_back(l);
-            }
-        as_stated_.resize(given_.size());
-        return filter(wanted, 0.3, [&](std::size_t i, Cubemap cube) { as_stated_[levels[i]] = std::move(cube); });
-    }
-
+    /// By averaged faces, so that a bake of another environment is recognised before any level is filtered at its size.
     Result<void> find_orientation() {
         OrientationSearch search(broad_samples_[0]);
-        if (!as_stated_[0].empty()) search.add(broad(as_stated_[0]), options_.threads);
+        if (const auto r = stated_roughness(given_[0])) {
+            const double roughness = broad_roughness(*r);
+            const ExactLevel wanted{size_for_rung(roughness), roughness};
+            const auto add = [&](std::size_t, const Cubemap& cube) {
+                search.add(rung_for({roughness, broad(cube)}, 0), options_.threads);
+            };
+            if (auto ok = filter(std::span(&wanted, 1), 0.05, add); !ok) return ok;
+        }
         orientation_ = search.found();
         if (orientation_.error > k_good_turn) {
             if (auto ok = make_ladder(); !ok) return ok;
@@ -101,50 +100,68 @@ class Audit {
             const auto stated = stated_roughness(given_[l]);
             const RoughnessRange range =
                 roughness_range(starts_at_mirror(options_.lobe), given_[l].cube.size(), stated);
-            RoughnessRange broad_range = range;
-            broad_range.narrow = true;
             std::vector<int> turned = turned_texels(samples_[l], m), broad_turned = turned_texels(broad_samples_[l], m);
-            levels_.push_back({stated, LevelSearch(std::move(broad_samples_[l]), std::move(broad_turned), broad_range),
+            levels_.push_back({stated, LevelSearch(std::move(broad_samples_[l]), std::move(broad_turned), range),
                                LevelSearch(std::move(samples_[l]), std::move(turned), range)});
-            Level& level = levels_.back();
-            if (!stated) continue;
-            level.broad.add(*stated, broad(as_stated_[l]));
-            level.fine.add(*stated, as_stated_[l]);
-            as_stated_[l] = {};
         }
     }
 
-    /// A first guess at the roughness of every level: the stated one where it fits, otherwise the best of the ladder.
+    /// Every level that states its roughness, filtered by that one.
+    Result<void> filter_as_stated() {
+        if (of_another()) return {};
+        std::vector<ExactLevel> wanted;
+        std::vector<std::size_t> levels;
+        for (std::size_t l = 0; l < levels_.size(); ++l)
+            if (const auto r = levels_[l].stated) {
+                wanted.push_back({given_[l].cube.size(), *r});
+                levels.push_back(l);
+            }
+        const auto ok = filter(wanted, 0.3, [&](std::size_t i, const Cubemap& cube) {
+            Level& level = levels_[levels[i]];
+            level.broad.add(wanted[i].roughness, broad(cube));
+            level.fine.add(wanted[i].roughness, cube);
+            level.broad_error = level.broad.best_error();
+        });
+        if (ok && levels_[0].stated) orientation_.error = std::min(orientation_.error, levels_[0].broad_error);
+        return ok;
+    }
+
+    /// A first guess at the roughness of every level: the stated one where it fits, otherwise the best of the ladder or
+    /// between two of its rungs.
     Result<void> guess() {
         for (std::size_t l = 0; l < levels_.size(); ++l) {
             Level& level = levels_[l];
-            if (level.stated && level.fine.best_error() <= k_good_fit) {
+            if (!of_another() && level.stated && level.fine.best_error() <= k_good_fit) {
                 if (*level.stated > 0) level.fine.guess(*level.stated);
                 continue;
             }
             if (auto ok = make_ladder(); !ok) return ok;
             for (const Rung& rung : ladder_) level.broad.add(rung.roughness, rung_for(rung, l));
+            level.broad_error = level.broad.best_error();
             guessed_.push_back(l);
         }
         if (of_another()) return {};
-        if (auto ok = refine_guesses(); !ok) return ok;
-        for (const std::size_t l : guessed_) levels_[l].fine.guess(levels_[l].broad.found().roughness);
+        if (auto ok = add_narrow_rung(); !ok) return ok;
+        for (const std::size_t l : guessed_) {
+            Level& level = levels_[l];
+            const LevelSearch::Coarse found = level.broad.coarse();
+            level.broad_error = found.error;
+            level.fine.guess(level.fine.allowed(found.roughness), level.broad.best_roughness() == 0);
+        }
         return measure_mirrors();
     }
 
-    /// Filters the averaged levels again, at roughnesses close to the best of the ladder.
-    Result<void> refine_guesses() {
-        std::vector<ExactLevel> wanted;
-        std::vector<std::size_t> levels;
+    /// For levels that fit best below the ladder's second roughness above 0, but not exactly at 0.
+    Result<void> add_narrow_rung() {
+        std::vector<std::size_t> narrow;
         for (const std::size_t l : guessed_)
-            for (const double r : levels_[l].broad.wanted()) {
-                wanted.push_back({size_for_rung(r), r});
-                levels.push_back(l);
-            }
-        return filter(wanted, 0.1, [&](std::size_t i, Cubemap cube) {
-            const Rung rung{wanted[i].roughness, broad(cube)};
-            levels_[levels[i]].broad.add(rung.roughness, rung_for(rung, levels[i]));
-        });
+            if (const LevelSearch& broad = levels_[l].broad;
+                broad.best_roughness() <= k_ladder[0] && broad.best_error() > k_good_mirror)
+                narrow.push_back(l);
+        if (narrow.empty() || !starts_at_mirror(options_.lobe)) return {};
+        if (auto ok = add_rungs(std::span(&k_narrow_rung, 1)); !ok) return ok;
+        for (const std::size_t l : narrow) levels_[l].broad.add(k_narrow_rung, rung_for(ladder_.back(), l));
+        return {};
     }
 
     /// For levels that fit best at roughness 0: measures how fast the error grows away from 0, at the ladder's first
@@ -207,6 +224,11 @@ class Audit {
         });
     }
 
+    /// A stated roughness as averaged faces show it: a narrower lobe than a texel's cannot be told from 0.
+    double broad_roughness(double stated) const {
+        return starts_at_mirror(options_.lobe) && stated < least_roughness(k_broad_size) ? 0 : stated;
+    }
+
     /// The size at which a rung is filtered: texels half as wide as the lobe, and not above 4 k_broad_size.
     static int size_for_rung(double roughness) {
         int size = k_broad_size;
@@ -230,9 +252,8 @@ class Audit {
     }
 
     LevelAudit report_of(const Level& level) const {
-        // The search at the level's own size is skipped for a bake of another environment.
-        const bool broadly = of_another() && !level.stated;
-        const LevelSearch& search = broadly ? level.broad : level.fine;
+        // Nothing is filtered at the levels' own sizes for a bake of another environment.
+        const LevelSearch& search = of_another() ? level.broad : level.fine;
         const LevelSearch::Found found = search.found();
         LevelAudit audit;
         audit.size = level.fine.sample().size;
@@ -243,12 +264,12 @@ class Audit {
         audit.scale = found.fit.scale;
         audit.energy = found.energy;
         audit.error = found.fit.error;
-        audit.broad_error = std::min(audit.error, level.broad.best_error());
+        audit.broad_error = std::min(audit.error, level.broad_error);
         audit.relative_rmse = found.fit.relative_rmse;
         audit.largest = found.fit.largest;
         audit.stated_roughness = level.stated;
         if (level.stated) {
-            const Fit trusting = level.fine.trusting(*level.stated);
+            const Fit trusting = search.trusting(*level.stated);
             audit.stated_error = trusting.error;
             audit.stated_relative_rmse = trusting.relative_rmse;
         }
@@ -278,7 +299,6 @@ class Audit {
     ExactFilter exact_;
     const Environment& source_;
     std::vector<TexelSample> samples_, broad_samples_;
-    std::vector<Cubemap> as_stated_;
     CubeOrientation orientation_;
     std::vector<Level> levels_;
     std::vector<std::size_t> guessed_;

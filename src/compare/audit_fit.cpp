@@ -6,6 +6,8 @@
 #include "domelight/image/colour.h"
 #include "domelight/projection/projection.h"
 
+#include "projection/cube_solid_angles.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -47,12 +49,13 @@ const std::vector<Mat3>& cube_orientations() {
     return all;
 }
 
-double mean_luminance(const Cubemap& cube) {
+double mean_luminance(const Cubemap& cube, int threads) {
     const int n = cube.size();
+    const std::vector<double> angles = cube_solid_angles(n, threads);
     double sum = 0, weight = 0;
     for (int y = 0; y < n; ++y)
         for (int x = 0; x < n; ++x) {
-            const double w = cube_solid_angle(x, y, n);
+            const double w = angles[std::size_t(y) * std::size_t(n) + std::size_t(x)];
             for (int f = 0; f < 6; ++f) {
                 const float* p = cube.face(f).at(x, y);
                 const float l = luminance(Vec3f{p[0], p[1], p[2]});
@@ -102,11 +105,11 @@ void add_texel(TexelSample& sample, const Cubemap& cube, std::int64_t texel, dou
 
 }  // namespace
 
-TexelSample sample_texels(const Cubemap& cube, int most) {
+TexelSample sample_texels(const Cubemap& cube, int most, int threads) {
     TexelSample sample;
     const int n = cube.size();
     sample.size = n;
-    sample.mean = mean_luminance(cube);
+    sample.mean = mean_luminance(cube, threads);
     const std::int64_t all = std::int64_t(6) * n * n;
     if (all <= most) {
         for (std::int64_t i = 0; i < all; ++i) add_texel(sample, cube, i, 1);
@@ -131,14 +134,8 @@ TexelSample sample_texels(const Cubemap& cube, int most) {
 
 namespace {
 
-/// The solid angle of a texel over that of one at the centre of a face, by the texel's centre.
-double relative_solid_angle(int x, int y, int size) {
-    const double s = (2 * x + 1.0) / size - 1, t = (2 * y + 1.0) / size - 1, square = 1 + s * s + t * t;
-    return 1 / (square * std::sqrt(square));
-}
-
 /// The mean of the finite texels, weighted by solid angle, of a square of `count`^2 texels of a face.
-Vec3f mean_of_square(const Cubemap& cube, int face, int left, int top, int count) {
+Vec3f mean_of_square(const Cubemap& cube, std::span<const double> angles, int face, int left, int top, int count) {
     Vec3d sum;
     double weight = 0;
     for (int y = top; y < top + count; ++y)
@@ -146,7 +143,7 @@ Vec3f mean_of_square(const Cubemap& cube, int face, int left, int top, int count
             const float* p = cube.face(face).at(x, y);
             const Vec3d value{p[0], p[1], p[2]};
             if (!std::isfinite(value.x + value.y + value.z)) continue;
-            const double w = relative_solid_angle(x, y, cube.size());
+            const double w = angles[std::size_t(y) * std::size_t(cube.size()) + std::size_t(x)];
             sum = sum + value * w;
             weight += w;
         }
@@ -156,10 +153,11 @@ Vec3f mean_of_square(const Cubemap& cube, int face, int left, int top, int count
 /// Averages over squares of `count`^2 texels.
 Cubemap reduced(const Cubemap& cube, int count, int threads) {
     Cubemap out(cube.size() / count);
+    const std::vector<double> angles = cube_solid_angles(cube.size(), threads);
     parallel_for(6 * out.size(), threads, [&](int row) {
         const int face = row / out.size(), y = row % out.size();
         for (int x = 0; x < out.size(); ++x) {
-            const Vec3f mean = mean_of_square(cube, face, count * x, count * y, count);
+            const Vec3f mean = mean_of_square(cube, angles, face, count * x, count * y, count);
             float* p = out.face(face).at(x, y);
             p[0] = mean.x, p[1] = mean.y, p[2] = mean.z;
         }
@@ -176,7 +174,7 @@ Cubemap averaged_to(const Cubemap& cube, int size, int threads) {
 }
 
 TexelSample sample_broadly(const Cubemap& cube, int most, int threads) {
-    return sample_texels(averaged_to(cube, k_broad_size, threads), most);
+    return sample_texels(averaged_to(cube, k_broad_size, threads), most, threads);
 }
 
 std::vector<int> turned_texels(const TexelSample& sample, const Mat3& m) {

@@ -23,7 +23,7 @@ struct TexelSample {
 };
 /// All finite texels, or about `most` of them: the brightest, which are a quarter, and of the others one from each of
 /// as many pieces of the strip as the rest allows.
-TexelSample sample_texels(const Cubemap& cube, int most);
+TexelSample sample_texels(const Cubemap& cube, int most, int threads = 0);
 
 /// The same for a cube that is first averaged to faces of at most k_broad_size^2.
 TexelSample sample_broadly(const Cubemap& cube, int most, int threads);
@@ -33,7 +33,7 @@ constexpr int k_broad_size = 32;
 Cubemap averaged_to(const Cubemap& cube, int size, int threads);
 
 /// Mean luminance over the sphere, of the finite texels.
-double mean_luminance(const Cubemap& cube);
+double mean_luminance(const Cubemap& cube, int threads = 0);
 
 /// For each sampled texel, the one of a cube of the same size that lies in direction `m` d.
 std::vector<int> turned_texels(const TexelSample& sample, const Mat3& m);

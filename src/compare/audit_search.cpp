@@ -14,13 +14,19 @@ namespace {
 constexpr double k_spacing = 0.04;
 /// Filtering with a narrower lobe takes as long as a whole bake, so that it is done only at a stated roughness.
 constexpr double k_least_searched = 0.08;
-/// An error of averaged levels that is within the precision of common encodings.
-constexpr double k_good_broad_fit = 0.005;
-/// Roughnesses between 0 and the ladder's first.
-constexpr double k_narrow[] = {0.09, 0.13};
+/// An error that the rounding of half floats explains.
+constexpr double k_exact_fit = 0.001;
+/// Roughnesses at which interpolated light is fitted between two neighbours of the best fit.
+constexpr int k_coarse_steps = 16;
 
 double square(double x) {
     return x * x;
+}
+
+/// The scale in which filtered light is interpolated over three roughnesses, of which the first may be 0: near a lamp
+/// it is about a power of the roughness, and at 0 it changes with the lobe's width, the square of the roughness.
+double interpolation_scale(double roughness, bool from_mirror) {
+    return from_mirror ? square(roughness) : std::log(roughness);
 }
 
 /// Lagrange's weights at x of three points.
@@ -30,7 +36,7 @@ std::array<double, 3> weights_at(double x, const std::array<double, 3>& p) {
             (x - p[0]) * (x - p[1]) / ((p[2] - p[0]) * (p[2] - p[1]))};
 }
 
-/// Interpolates the logarithm where possible, because filtered light near a lamp is about a power of the roughness.
+/// Interpolates the logarithm where possible.
 float interpolate(const std::array<float, 3>& v, const std::array<double, 3>& w) {
     if (v[0] > 0 && v[1] > 0 && v[2] > 0)
         return float(std::exp(w[0] * std::log(v[0]) + w[1] * std::log(v[1]) + w[2] * std::log(v[2])));
@@ -73,9 +79,12 @@ bool LevelSearch::has(double roughness) const {
 }
 
 Fit LevelSearch::trusting(double roughness) const {
-    for (const Tried& t : tried_)
-        if (t.roughness == roughness) return fit_level(sample_, t.exact, 1);
-    return {};
+    const auto above = [](double r, const Tried& t) { return r < t.roughness; };
+    const std::size_t after =
+        std::size_t(std::upper_bound(tried_.begin(), tried_.end(), roughness, above) - tried_.begin());
+    if (after > 0 && tried_[after - 1].roughness == roughness) return fit_level(sample_, tried_[after - 1].exact, 1);
+    if (tried_.size() < 3) return {};
+    return fit_level(sample_, interpolated(roughness, std::clamp<std::size_t>(after, 1, tried_.size() - 2)).exact, 1);
 }
 
 double LevelSearch::error_at(double roughness) const {
@@ -89,6 +98,10 @@ std::size_t LevelSearch::best() const {
     return std::size_t(std::min_element(tried_.begin(), tried_.end(), less) - tried_.begin());
 }
 
+double LevelSearch::allowed(double roughness) const {
+    return range_.mirror && roughness < 0.5 * range_.least ? 0 : std::clamp(roughness, range_.least, 1.0);
+}
+
 /// This roughness and a neighbour on either side.
 std::vector<double> LevelSearch::near(double roughness) const {
     if (roughness == 0) return {0};
@@ -100,12 +113,16 @@ std::vector<double> LevelSearch::near(double roughness) const {
     return values;
 }
 
-/// Whether the best fit has a neighbour on each side, or lies at the end of the range.
-bool LevelSearch::bracketed() const {
+/// Whether a smaller roughness than the best fit's was tried, or none is allowed. 0 is no neighbour: the error is not a
+/// parabola that far.
+bool LevelSearch::neighbour_below() const {
     const std::size_t b = best();
     const double at = tried_[b].roughness;
-    const bool below = b > 0 || at == 0 || at <= range_.least, above = b + 1 < tried_.size() || at >= 1;
-    return below && above;
+    return (b > 0 && tried_[b - 1].roughness > 0) || at <= range_.least;
+}
+
+bool LevelSearch::neighbour_above() const {
+    return best() + 1 < tried_.size() || tried_[best()].roughness >= 1;
 }
 
 double LevelSearch::minimum() const {
@@ -117,22 +134,28 @@ double LevelSearch::minimum() const {
 }
 
 std::vector<double> LevelSearch::wanted() const {
-    if (guess_ && !has(*guess_)) return near(*guess_);
+    if (guess_ && !has(*guess_)) {
+        std::vector<double> values = near(*guess_);
+        if (try_mirror_ && *guess_ > 0) values.push_back(0);
+        return values;
+    }
     if (tried_.empty()) return {};
     const std::size_t b = best();
     const double at = tried_[b].roughness;
+    if (at == 0) return {};
     std::vector<double> values;
-    if (at == 0) {
-        if (!range_.narrow || tried_[b].fit.error <= k_good_broad_fit) return {};
-        for (const double r : k_narrow)
-            if (r >= range_.least && !has(r)) values.push_back(r);
-        return values;
-    }
-    if (!bracketed()) {
-        // The step grows with the number of roughnesses tried.
-        const double step = k_spacing * at * double(std::max<std::size_t>(1, tried_.size() - 1));
-        if (b == 0 && at > range_.least) values.push_back(std::max(range_.least, at - step));
-        if (b + 1 == tried_.size() && at < 1) values.push_back(std::min(1.0, at + step));
+    const bool below = neighbour_below(), above = neighbour_above();
+    if (!below || !above) {
+        // One spacing beyond the guess's neighbours; farther with each roughness tried since.
+        const double step = k_spacing * at * double(std::max<std::size_t>(3, tried_.size()) - 2);
+        const double lower = std::max(range_.least, at - step), upper = std::min(1.0, at + step);
+        // A guess that is exact needs a neighbour only to measure how fast the error grows. The wider lobe is faster.
+        if (at == guess_ && tried_[b].fit.error <= k_exact_fit) {
+            if (tried_.size() > 1) return {};
+            return {above ? lower : upper};
+        }
+        if (!below) values.push_back(lower);
+        if (!above) values.push_back(upper);
         return values;
     }
     const double low = b > 0 ? tried_[b - 1].roughness : at,
@@ -141,21 +164,44 @@ std::vector<double> LevelSearch::wanted() const {
     return near(std::max(range_.least, minimum()));
 }
 
-/// The fit at a roughness between the neighbours of the best fit, with the exact light interpolated.
+/// The fit at any roughness, with the exact light interpolated over three neighbours, of which tried_[middle] is the
+/// second.
+LevelSearch::Tried LevelSearch::interpolated(double roughness, std::size_t middle) const {
+    const Tried &a = tried_[middle - 1], &b = tried_[middle], &c = tried_[middle + 1];
+    const auto scale = [&](double r) { return interpolation_scale(r, a.roughness == 0); };
+    const auto w = weights_at(scale(roughness), {scale(a.roughness), scale(b.roughness), scale(c.roughness)});
+    Tried made{roughness, {}, w[0] * a.mean + w[1] * b.mean + w[2] * c.mean, {}};
+    made.exact.reserve(b.exact.size());
+    for (std::size_t k = 0; k < b.exact.size(); ++k) {
+        const Vec3f &u = a.exact[k], &v = b.exact[k], &t = c.exact[k];
+        made.exact.push_back(
+            {interpolate({u.x, v.x, t.x}, w), interpolate({u.y, v.y, t.y}, w), interpolate({u.z, v.z, t.z}, w)});
+    }
+    made.fit = fit_level(sample_, made.exact);
+    return made;
+}
+
+/// The fit at a roughness between the neighbours of the best fit, if these are close to it.
 LevelSearch::Tried LevelSearch::between(double roughness) const {
     const std::size_t b = best();
     if (b == 0 || b + 1 == tried_.size() || roughness == tried_[b].roughness) return tried_[b];
-    const Tried &low = tried_[b - 1], &middle = tried_[b], &high = tried_[b + 1];
-    if (high.roughness - low.roughness > 3 * k_spacing * middle.roughness) return middle;
-    const auto w = weights_at(roughness, {low.roughness, middle.roughness, high.roughness});
-    Tried made{roughness, {}, w[0] * low.mean + w[1] * middle.mean + w[2] * high.mean, {}};
-    for (std::size_t k = 0; k < middle.exact.size(); ++k) {
-        const Vec3f &a = low.exact[k], &m = middle.exact[k], &c = high.exact[k];
-        made.exact.push_back(
-            {interpolate({a.x, m.x, c.x}, w), interpolate({a.y, m.y, c.y}, w), interpolate({a.z, m.z, c.z}, w)});
-    }
-    made.fit = fit_level(sample_, made.exact);
+    const Tried& middle = tried_[b];
+    if (tried_[b + 1].roughness - tried_[b - 1].roughness > 3 * k_spacing * middle.roughness) return middle;
+    Tried made = interpolated(roughness, b);
     return made.fit.error < middle.fit.error ? made : middle;
+}
+
+LevelSearch::Coarse LevelSearch::coarse() const {
+    const std::size_t b = best();
+    Coarse found{tried_[b].roughness, tried_[b].fit.error};
+    if (tried_.size() < 3) return found;
+    const std::size_t middle = std::clamp<std::size_t>(b, 1, tried_.size() - 2);
+    const double low = tried_[b > 0 ? b - 1 : 0].roughness, high = tried_[std::min(b + 1, tried_.size() - 1)].roughness;
+    for (int i = 1; i < k_coarse_steps; ++i) {
+        const double r = low + (high - low) * i / k_coarse_steps;
+        if (const double error = interpolated(r, middle).fit.error; error < found.error) found = {r, error};
+    }
+    return found;
 }
 
 /// The slope of the squared error over the squared distance from the minimum `at`, measured at its neighbours.

@@ -13,9 +13,8 @@ double least_roughness(int size);
 
 /// The roughnesses that a search may try.
 struct RoughnessRange {
-    bool mirror = true;   ///< 0, the environment itself, is among them
-    double least = 0.1;   ///< the least one above 0; filtering with narrower lobes takes seconds
-    bool narrow = false;  ///< where 0 fits best but not well, roughnesses below the ladder's first are tried too
+    bool mirror = true;  ///< 0, the environment itself, is among them
+    double least = 0.1;  ///< the least one above 0; filtering with narrower lobes takes seconds
 };
 /// For a level with faces of `size`^2 whose file states the roughness `stated`.
 RoughnessRange roughness_range(bool mirror, int size, std::optional<double> stated);
@@ -27,14 +26,17 @@ class LevelSearch {
     LevelSearch(TexelSample sample, std::vector<int> turned, RoughnessRange range);
 
     const TexelSample& sample() const { return sample_; }
-    /// Sets where the search begins.
-    void guess(double roughness) { guess_ = roughness; }
+    /// Sets where the search begins; with `mirror`, roughness 0 is tried as well.
+    void guess(double roughness, bool mirror = false) {
+        guess_ = roughness;
+        try_mirror_ = mirror;
+    }
     /// Sets the slope of the squared error over the squared roughness at 0, for a level that fits best there.
     void growth_at_mirror(double growth) { growth_at_mirror_ = growth; }
     void add(double roughness, const Cubemap& exact);
 
     bool has(double roughness) const;  ///< whether it was added
-    /// The fit with the scale held at 1, at a roughness that was added.
+    /// The fit with the scale held at 1; interpolated at a roughness that was not added.
     Fit trusting(double roughness) const;
     double best_error() const { return tried_[best()].fit.error; }
     double best_roughness() const { return tried_[best()].roughness; }
@@ -53,6 +55,15 @@ class LevelSearch {
     /// The best fit; interpolated between neighbours where they are close enough.
     Found found() const;
 
+    struct Coarse {
+        double roughness = 0, error = 1;
+    };
+    /// The best fit among roughnesses that may lie far apart, and between them, where the exact light is interpolated:
+    /// where to begin a search with close neighbours.
+    Coarse coarse() const;
+    /// The roughness nearest to this one at which a search may begin.
+    double allowed(double roughness) const;
+
   private:
     struct Tried {
         double roughness = 0;
@@ -61,9 +72,11 @@ class LevelSearch {
         std::vector<Vec3f> exact;  ///< at the sampled texels
     };
     std::size_t best() const;
-    bool bracketed() const;
+    bool neighbour_below() const;
+    bool neighbour_above() const;
     double minimum() const;
     double growth(double at, double error) const;
+    Tried interpolated(double roughness, std::size_t middle) const;
     Tried between(double roughness) const;
     std::vector<double> near(double roughness) const;
 
@@ -71,6 +84,7 @@ class LevelSearch {
     std::vector<int> turned_;
     RoughnessRange range_;
     std::optional<double> guess_;
+    bool try_mirror_ = false;
     double growth_at_mirror_ = 0;
     std::vector<Tried> tried_;  ///< in rising order of roughness
 };

@@ -223,6 +223,31 @@ TEST_SUITE("bake") {
         }
     }
 
+    TEST_CASE("audit: roughnesses below the ladder's first are found, 0 among them") {
+        ImageF light(256, 128, 3);
+        for (std::size_t i = 0; i < light.pixels().size(); ++i)
+            light.pixels()[i] = 0.2F + float(mix_bits(i) % 1000) / 1000;
+        const std::vector<Wanted> wanted = {{128, 0}, {128, 0.1}, {64, 0.15}};
+        const auto audit = audit_bake(bake(light, wanted), source_of(light));
+        REQUIRE(bool(audit));
+        CHECK(audit->of_source);
+        for (std::size_t l = 0; l < wanted.size(); ++l) {
+            CAPTURE(l);
+            CHECK(std::abs(audit->levels[l].roughness - wanted[l].roughness) < 1e-3);
+            CHECK(audit->levels[l].error < 2e-3);
+        }
+    }
+
+    TEST_CASE("audit: a small first level that states its roughness gives the orientation") {
+        const ImageF light = environment();
+        std::vector<CubeLevel> levels = bake(light, {{8, 0.6}}, rotation_y(k_pi / 2).transposed());
+        levels[0].roughness = 0.6;
+        const auto audit = audit_bake(levels, source_of(light));
+        REQUIRE(bool(audit));
+        CHECK(audit->orientation.words == "turned by 90 degrees about +Y");
+        CHECK(audit->levels[0].stated_error < 1e-5);
+    }
+
     TEST_CASE("audit: our own bake passes, also by a limit above its error and not by one below") {
         const ImageF light = environment();
         std::vector<CubeLevel> levels = bake(light, k_chain);

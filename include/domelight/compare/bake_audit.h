@@ -80,11 +80,12 @@ struct AuditOptions {
 };
 
 /// Audits a bake. The exact filter is prefilter() at the level's own size; the 48 exchanges and mirrorings of the axes
-/// carry texel centres of a cube to texel centres, so nothing is interpolated. Every run of the filter serves all
-/// levels: one at the stated roughnesses; where these are absent or do not fit, one or two at many roughnesses,
-/// compared on faces averaged to 32^2; and up to four close to the best roughness of each level, which are left out for
-/// a bake of another environment. Errors: no levels; a level without a finite texel above 0; those of prefilter(). NaN
-/// and infinite texels are left out.
+/// carry texel centres of a cube to texel centres, so nothing is interpolated. The orientation is found first, on faces
+/// averaged to 32^2. For a bake of another environment that is all: every figure is then of averaged faces. Otherwise
+/// every run of the filter serves all levels: one at the stated roughnesses; where these are absent or do not fit, one
+/// at a ladder of roughnesses, compared on averaged faces; and up to four close to the best roughness of each level.
+/// Errors: no levels; a level without a finite texel above 0; those of prefilter(). NaN and infinite texels are left
+/// out.
 Result<BakeAudit> audit_bake(std::span<const CubeLevel> levels, const Environment& source,
                              const AuditOptions& options = {});
 

@@ -6,6 +6,7 @@
 #include "filtering/resample/area_resample_aligned.h"
 #include "filtering/resample/area_resample_latlong.h"
 #include "filtering/resample/area_resample_plain.h"
+#include "projection/cube_solid_angles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -80,31 +81,23 @@ class CoarsenedCube : public AreaResampler {
 
     ImageF finish() override {
         const ImageF fine = fine_->finish();
-        const int n = fine.width();
-        // Solid angles from the corners' (cube_solid_angle has four of these a texel).
-        std::vector<double> corner(std::size_t(n + 1) * (n + 1));
-        parallel_for(n + 1, threads_, [&](int y) {
-            for (int x = 0; x <= n; ++x) {
-                const double s = 2.0 * x / n - 1, t = 2.0 * y / n - 1;
-                corner[std::size_t(y) * (n + 1) + x] = std::atan2(s * t, std::sqrt(s * s + t * t + 1));
-            }
-        });
+        const std::vector<double> angles = cube_solid_angles(fine.width(), threads_);
         ImageF out(size_, 6 * size_, 3);
         parallel_for(6 * size_, threads_, [&](int row) {
-            for (int x = 0; x < size_; ++x) average(fine, corner, x, row, out.at(x, row));
+            for (int x = 0; x < size_; ++x) average(fine, angles, x, row, out.at(x, row));
         });
         return out;
     }
 
   private:
-    void average(const ImageF& fine, const std::vector<double>& corner, int out_x, int out_row, float* to) const {
+    void average(const ImageF& fine, const std::vector<double>& angles, int out_x, int out_row, float* to) const {
         const int n = fine.width(), top = out_row / size_ * n;
         double sum[3] = {}, total = 0;
         for (int y = out_row % size_ * factor_; y < (out_row % size_ + 1) * factor_; ++y) {
-            const double *above = &corner[std::size_t(y) * (n + 1)], *below = above + n + 1;
+            const double* row_angles = &angles[std::size_t(y) * n];
             const float* from = fine.row(top + y);
             for (int x = out_x * factor_; x < (out_x + 1) * factor_; ++x) {
-                const double w = (below[x + 1] - below[x]) - (above[x + 1] - above[x]);
+                const double w = row_angles[x];
                 for (int c = 0; c < 3; ++c) sum[c] += w * from[3 * x + c];
                 total += w;
             }
