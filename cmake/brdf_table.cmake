@@ -7,4 +7,4 @@ target_compile_options(make_brdf_table PRIVATE -O2 -fno-math-errno -fno-trapping
 add_custom_command(OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/brdf_table_default.cpp
                    COMMAND make_brdf_table ${CMAKE_CURRENT_BINARY_DIR}/brdf_table_default.cpp
                    DEPENDS make_brdf_table COMMENT "Integrating the default BRDF table" VERBATIM)
-target_sources(domelight PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/brdf_table_default.cpp)
+target_sources(domelight_core PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/brdf_table_default.cpp)

@@ -1,15 +1,19 @@
-# A stranger's project finds the library with find_package(domelight) and links domelight::domelight.
+# A stranger's project finds the library with find_package(domelight [COMPONENTS core ...]) and links domelight::domelight, or the components that it uses.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-install(TARGETS domelight EXPORT domelight-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+set(domelight_package ${CMAKE_INSTALL_LIBDIR}/cmake/domelight)
+foreach(component ${domelight_components})
+  install(TARGETS domelight_${component} EXPORT domelight-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endforeach()
+if(TARGET domelight)
+  install(TARGETS domelight EXPORT domelight-targets)
+endif()
 install(DIRECTORY include/domelight DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(EXPORT domelight-targets NAMESPACE domelight:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/domelight)
-configure_package_config_file(cmake/domelight-config.cmake.in domelight-config.cmake
-                              INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/domelight)
+install(EXPORT domelight-targets NAMESPACE domelight:: DESTINATION ${domelight_package})
+configure_package_config_file(cmake/domelight-config.cmake.in domelight-config.cmake INSTALL_DESTINATION ${domelight_package})
 write_basic_package_version_file(domelight-config-version.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/domelight-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/domelight-config-version.cmake
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/domelight)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/domelight-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/domelight-config-version.cmake DESTINATION ${domelight_package})
 if(TARGET domelight_program)
   install(TARGETS domelight_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()

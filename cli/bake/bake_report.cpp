@@ -1,6 +1,6 @@
 #include "cli/bake/bake_report.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 #include "cli/console/console.h"
 #include "cli/console/field_options.h"
 #include "cli/console/print.h"

@@ -1,7 +1,7 @@
 #include "domelight/bake/bake.h"
 #include "domelight/bake/brdf_file.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/output_endings.h"

@@ -7,7 +7,7 @@
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/texture/texture.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 #include "cli/console/environment_options.h"
 #include "cli/console/field_options.h"
 #include "io/environment/cube_texture_reader.h"

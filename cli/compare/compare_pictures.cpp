@@ -4,7 +4,7 @@
 #include "domelight/compare/metrics.h"
 #include "domelight/io/write_image.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 #include "cli/console/field_options.h"
 #include "cli/console/output_endings.h"
 #include "compare/compare_sheet.h"

@@ -1,8 +1,8 @@
 #pragma once
 // The only way to stdout for what a command says: whatever comes from outside is escaped here.
 
-#include "base/json.h"
-#include "base/printable.h"
+#include "io/file/json.h"
+#include "io/file/printable.h"
 
 #include <fmt/core.h>
 

@@ -5,7 +5,7 @@
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/display_options.h"

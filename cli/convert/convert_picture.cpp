@@ -4,7 +4,7 @@
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 #include "cli/console/print.h"
 #include "cli/console/output_endings.h"
 #include "compare/picture_reader.h"

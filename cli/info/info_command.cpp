@@ -3,8 +3,8 @@
 #include "domelight/io/file/file_extension.h"
 #include "domelight/study/environment_survey.h"
 
-#include "base/json.h"
-#include "base/sha256.h"
+#include "io/file/json.h"
+#include "io/file/sha256.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/print.h"

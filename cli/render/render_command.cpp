@@ -1,6 +1,6 @@
 #include "domelight/bake/bake.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 #include "cli/commands.h"
 #include "cli/console/environment_options.h"
 #include "cli/console/field_options.h"

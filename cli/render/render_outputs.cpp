@@ -3,7 +3,7 @@
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
-#include "base/printable.h"
+#include "io/file/printable.h"
 #include "preview/screen_picture.h"
 #include "preview/tonemap.h"
 

@@ -4,7 +4,7 @@
 #include "domelight/bake/bake.h"
 #include "domelight/io/write_image.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 #include "cli/console/interruption.h"
 #include "cli/render/render_study_pictures.h"
 #include "cli/console/print.h"

@@ -4,7 +4,7 @@
 #include "domelight/io/picture/animation.h"
 #include "domelight/io/write_image.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 #include "cli/console/interruption.h"
 #include "cli/render/render_outputs.h"
 #include "io/file/file_reader.h"

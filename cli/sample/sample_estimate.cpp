@@ -4,8 +4,8 @@
 #include "domelight/io/write_image.h"
 #include "domelight/study/strategy_study.h"
 
-#include "base/json.h"
-#include "base/printable.h"
+#include "io/file/json.h"
+#include "io/file/printable.h"
 #include "preview/plot.h"
 
 #include <fmt/core.h>

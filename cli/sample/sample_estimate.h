@@ -3,7 +3,7 @@
 #include "domelight/sampling/environment_sampler.h"
 #include "domelight/base/progress.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 #include "cli/sample/sample_options.h"
 
 #include <string>

@@ -3,8 +3,8 @@
 #include "domelight/image/colour.h"
 #include "domelight/io/write_image.h"
 
-#include "base/json.h"
-#include "base/printable.h"
+#include "io/file/json.h"
+#include "io/file/printable.h"
 
 #include <fmt/core.h>
 

@@ -5,8 +5,8 @@
 #include "domelight/io/write_image.h"
 #include "domelight/texture/texture.h"
 
-#include "base/json.h"
-#include "base/printable.h"
+#include "io/file/json.h"
+#include "io/file/printable.h"
 #include "bake/staging.h"
 
 #include <fmt/core.h>

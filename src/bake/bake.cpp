@@ -14,7 +14,7 @@
 #include "bake/preview_sheet.h"
 #include "bake/sh_report.h"
 #include "bake/staging.h"
-#include "base/sha256.h"
+#include "io/file/sha256.h"
 
 #include <fmt/core.h>
 

@@ -4,7 +4,7 @@
 #include "domelight/image/row_source.h"
 
 #include "bake/tap.h"
-#include "base/sha256.h"
+#include "io/file/sha256.h"
 #include "filtering/prefilter_runs.h"
 #include "io/environment/convert_rows.h"
 

@@ -4,9 +4,9 @@
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/projection/projections.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 #include "bake/panorama.h"
-#include "base/sha256.h"
+#include "io/file/sha256.h"
 
 #include <fmt/core.h>
 

@@ -5,7 +5,7 @@
 
 #include "bake/engine_files.h"
 #include "bake/mirror.h"
-#include "base/sha256.h"
+#include "io/file/sha256.h"
 #include "texture/chain_encoder.h"
 #include "texture/container/texture_stream.h"
 

@@ -4,7 +4,7 @@
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/texture/texture.h"
 
-#include "base/printable.h"
+#include "io/file/printable.h"
 #include "io/environment/cube_input.h"
 #include "io/environment/cube_texture_reader.h"
 #include "io/exr/exr_layers.h"

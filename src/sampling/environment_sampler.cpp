@@ -5,8 +5,7 @@
 
 #include "sampling/distribution/texel_float.h"
 #include "sampling/light_samples.h"
-
-#include <fmt/core.h>
+#include "sampling/radiance_check.h"
 
 #include <algorithm>
 #include <cassert>
@@ -68,29 +67,6 @@ Luminance survey(ImageView<const float> image, LightWeight weight, int threads) 
     return all;
 }
 
-Result<void> check(ImageView<const float> image, int threads) {
-    if (image.width < 1 || image.height < 1) return Error{"the environment has no texels", "", ""};
-    if (image.channels != 3)
-        return Error{fmt::format("the environment has {} channels instead of 3", image.channels), "", ""};
-    std::vector<int> bad(image.height, -1);
-    parallel_ranges(image.height, 16, threads, [&](int begin, int end) {
-        for (int y = begin; y < end; ++y) {
-            const float* p = image.row(y);
-            bool fine = true;
-            for (int i = 0; i < 3 * image.width; ++i) fine &= p[i] >= 0 && p[i] <= std::numeric_limits<float>::max();
-            if (fine) continue;
-            for (int i = 0; bad[y] < 0; ++i)
-                if (!(p[i] >= 0 && p[i] <= std::numeric_limits<float>::max())) bad[y] = i / 3;
-        }
-    });
-    for (int y = 0; y < image.height; ++y)
-        if (bad[y] >= 0)
-            return Error{fmt::format("texel ({}, {}) is ({}, {}, {})", bad[y], y, image.at(bad[y], y)[0],
-                                     image.at(bad[y], y)[1], image.at(bad[y], y)[2]),
-                         "", "Radiance must be finite and not negative; open_environment repairs files."};
-    return {};
-}
-
 std::array<float, 9> floats_of(const Mat3& m) {
     std::array<float, 9> out;
     for (int i = 0; i < 3; ++i)
@@ -118,7 +94,7 @@ Result<EnvironmentSampler> EnvironmentSampler::build(EnvironmentSampler sampler)
 Result<EnvironmentSampler> EnvironmentSampler::build(ImageView<const float> latlong,
                                                      const EnvironmentSamplerOptions& options,
                                                      const Mat3& world_to_source) {
-    if (auto fine = check(latlong, options.threads); !fine) return fine.error();
+    if (auto fine = check_radiance(latlong, options.threads); !fine) return fine.error();
     EnvironmentSampler sampler;
     sampler.options_ = options;
     sampler.image_ = latlong;
@@ -135,7 +111,7 @@ Result<EnvironmentSampler> EnvironmentSampler::build(const Environment& environm
     sampler.owned_ = *std::move(image);
     sampler.image_ = sampler.owned_->view();
     sampler.world_to_source_ = environment.world_to_source;
-    if (auto fine = check(sampler.image_, options.threads); !fine) return fine.error();
+    if (auto fine = check_radiance(sampler.image_, options.threads); !fine) return fine.error();
     return build(std::move(sampler));
 }
 

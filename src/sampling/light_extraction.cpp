@@ -4,11 +4,11 @@
 #include "domelight/image/colour.h"
 
 #include "base/field_place.h"
+#include "base/text.h"
 #include "sampling/bright_regions.h"
 #include "sampling/harmonic_fill.h"
+#include "sampling/radiance_check.h"
 #include "sampling/texel_sphere.h"
-
-#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,21 +22,6 @@ Vec3d rgb(const float* p) {
 }
 double largest(const Vec3d& v) {
     return std::max({v.x, v.y, v.z});
-}
-
-Result<void> check(ImageView<const float> image) {
-    if (image.width < 1 || image.height < 1) return Error{"the environment has no texels", "", ""};
-    if (image.channels != 3)
-        return Error{fmt::format("the environment has {} channels instead of 3", image.channels), "", ""};
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) {
-            const float* p = image.at(x, y);
-            for (int c = 0; c < 3; ++c)
-                if (!(p[c] >= 0 && p[c] <= std::numeric_limits<float>::max()))
-                    return Error{fmt::format("texel ({}, {}) is ({}, {}, {})", x, y, p[0], p[1], p[2]), "",
-                                 "Radiance must be finite and not negative; open_environment repairs files."};
-        }
-    return {};
 }
 
 ImageF copy(ImageView<const float> image) {
@@ -200,7 +185,7 @@ double unaccounted(const LightExtractionReport& r) {
 Result<void> check_light_extraction_options(const LightExtractionOptions& o) {
     const auto within = [](const char* field, double value, double low, double high) -> Result<void> {
         if (value >= low && value <= high) return {};
-        return Error{fmt::format("{:g} is not from {:g} to {:g}", value, low, high), field_place(field), ""};
+        return Error{text(value, " is not from ", low, " to ", high), field_place(field), ""};
     };
     if (auto ok = within("max_lights", o.max_lights, 0, 1024); !ok) return ok;
     if (auto ok = within("least_share", o.least_share, 0, 1); !ok) return ok;
@@ -212,7 +197,7 @@ Result<void> check_light_extraction_options(const LightExtractionOptions& o) {
 Result<LightExtraction> extract_lights(ImageView<const float> image, const LightExtractionOptions& options,
                                        const Mat3& world_to_source) {
     if (auto ok = check_light_extraction_options(options); !ok) return ok.error();
-    if (auto ok = check(image); !ok) return ok.error();
+    if (auto ok = check_radiance(image, options.threads); !ok) return ok.error();
     const TexelSphere sphere(image.width, image.height);
     LightExtraction out;
     out.remainder = copy(image);

@@ -2,7 +2,7 @@
 
 #include "domelight/base/parallel.h"
 
-#include "base/printable.h"
+#include "io/file/printable.h"
 #include "io/image_reader.h"
 #include "io/picture/texture_image.h"
 

@@ -1,7 +1,7 @@
 #include "domelight/io/file/file_extension.h"
 #include "domelight/scene/scene.h"
 
-#include "base/printable.h"
+#include "io/file/printable.h"
 #include "io/image_reader.h"
 #include "scene/scene_readers.h"
 

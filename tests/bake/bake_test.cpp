@@ -8,7 +8,7 @@
 #include "bake/mirror.h"
 #include "bake/sh_report.h"
 #include "bake/staging.h"
-#include "base/sha256.h"
+#include "io/file/sha256.h"
 #include "io/picture/texture_image.h"
 #include "test.h"
 

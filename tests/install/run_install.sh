@@ -24,6 +24,12 @@ same_version() {
         "$(sed -nE 's/^project\(domelight VERSION ([0-9.]+).*/\1/p' "$here/../../CMakeLists.txt")" ]
 }
 names_no_build_folder() { ! grep -rnF -e "$(cd -- "$here/../.." && pwd)" "$work/prefix/lib" --include='*.cmake'; }
+refuses_unknown_component() {
+    mkdir "$work/unknown"
+    sed 's/COMPONENTS core/COMPONENTS kitchen/' "$here/core/CMakeLists.txt" >"$work/unknown/CMakeLists.txt"
+    ! cmake -S "$work/unknown" -B "$work/unknown/build" -DCMAKE_PREFIX_PATH="$work/moved" >"$work/unknown/said" 2>&1 &&
+        grep -q 'has no component "kitchen"; it' "$work/unknown/said"
+}
 refuses_another_version() { ! cmake -S "$work/project" -B "$work/other" -DCMAKE_PREFIX_PATH="$work/moved"; }
 
 no_file() { ! "$work/build/bake_minimal" "$work/none.hdr" "$work/none.ktx2" 2>"$work/said" && grep '^error: .*none\.hdr' "$work/said"; }
@@ -33,7 +39,7 @@ claim "the installed program runs and tells the project's version" same_version
 claim "the package names no folder of the build" names_no_build_folder
 # A package must not depend on where it was installed first.
 claim "the prefix can be moved" mv "$work/prefix" "$work/moved"
-cp -r "$here/project" "$work/project"
+cp -r "$here/everything" "$work/project"
 cp "$here"/../../examples/*.cpp "$work/project"
 claim "a stranger's project finds the package" \
     cmake -S "$work/project" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/moved"
@@ -64,7 +70,28 @@ tour() {
         [ -s "$work/tour/picture.exr" ]
 }
 claim "examples/tour.cpp goes through the five steps of domelight.h" tour
+
+# A program that only samples and filters: neither its link line nor the program itself knows the libraries that files and rays need.
+not_of_core='exr|Imath|Iex|embree|draco|webp|crypto|ssl|png|jpeg|zstd|astc|meshopt|fmt'
+core_links_little() {
+    ninja -C "$work/core" -t commands sampler | tail -n 1 >"$work/link"
+    cat "$work/link"
+    grep -q 'domelight_core' "$work/link" && ! grep -qiE -e "lib($not_of_core)|-l($not_of_core)" "$work/link" || return 1
+    ldd "$work/core/sampler" | tee "$work/needs"
+    ! grep -qiE "lib($not_of_core)" "$work/needs"
+}
+core_runs() {
+    # A white sky of radiance 2 stays 2; every direction is as likely as any other, 1 / (4 pi).
+    "$work/core/sampler" | tee "$work/printed"
+    awk '{ exit !($1 > 0.0792 && $1 < 0.08 && $2 > 1.9999 && $2 < 2.0001) }' "$work/printed"
+}
+claim "a project that only samples and filters finds the component core" \
+    cmake -S "$here/core" -B "$work/core" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/moved"
+claim "it compiles and links" cmake --build "$work/core"
+claim "it links Highway and threads, and none of the libraries that files and rays need" core_links_little
+claim "it runs" core_runs
 sed -i 's/domelight 0.1 REQUIRED/domelight 99 REQUIRED/' "$work/project/CMakeLists.txt"
+claim "an unknown component is refused, and those that exist are listed" refuses_unknown_component
 claim "another version is refused" refuses_another_version
 
 echo "install: $passed passed, $failed failed, 0 skipped"

@@ -5,7 +5,7 @@
 #include "domelight/projection/projection.h"
 
 #include "io/reader_samples.h"
-#include "base/printable.h"
+#include "io/file/printable.h"
 #include "test.h"
 
 #include <ImfChannelList.h>

@@ -3,7 +3,7 @@
 #include "domelight/texture/texture.h"
 
 #include "texture/chain_encoder.h"
-#include "base/sha256.h"
+#include "io/file/sha256.h"
 #include "test.h"
 
 #include <cmath>

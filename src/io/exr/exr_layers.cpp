@@ -2,7 +2,7 @@
 
 #include "domelight/base/parallel.h"
 
-#include "base/printable.h"
+#include "io/file/printable.h"
 #include "io/exr/exr_header_reader.h"
 #include "io/exr/exr_stream.h"
 

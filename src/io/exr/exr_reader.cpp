@@ -1,6 +1,6 @@
 #include "domelight/base/parallel.h"
 
-#include "base/printable.h"
+#include "io/file/printable.h"
 #include "image/colour_primaries.h"
 #include "image/repair.h"
 #include "io/exr/exr_header_reader.h"

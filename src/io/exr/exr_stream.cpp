@@ -1,6 +1,6 @@
 #include "io/exr/exr_stream.h"
 
-#include "base/printable.h"
+#include "io/file/printable.h"
 
 #include <Iex.h>
 #include <ImfThreading.h>

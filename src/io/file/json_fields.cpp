@@ -1,7 +1,7 @@
 #include "io/file/json_fields.h"
 
-#include "base/json.h"
-#include "base/printable.h"
+#include "io/file/json.h"
+#include "io/file/printable.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include "domelight/base/result.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,6 +1,6 @@
 #include "io/hdr/hdr_header_reader.h"
 
-#include "base/printable.h"
+#include "io/file/printable.h"
 #include "io/image_reader.h"
 
 #include <fmt/format.h>

@@ -6,7 +6,7 @@
 #include "domelight/render/shading/shading.h"
 #include "domelight/texture/texture.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 #include "projection/bilinear.h"
 
 #include <fmt/core.h>

@@ -4,8 +4,6 @@
 #include "sampling/distribution/weight_rows.h"
 #include "sampling/distribution/guided_simd.h"
 
-#include <fmt/format.h>
-
 #include <bit>
 
 namespace domelight {

@@ -2,7 +2,7 @@
 
 #include "domelight/base/parallel.h"
 
-#include <fmt/format.h>
+#include "base/text.h"
 
 #include <algorithm>
 #include <cassert>
@@ -37,7 +37,7 @@ Result<void> for_each_weight_row(const Weights& weights, int threads,
     if (width < 1 || height < 1) return Error{"there are no texels to draw from", "", ""};
     if (width > k_most || height > k_most)
         return Error{
-            fmt::format("{} x {} texels are too many to draw from: at most {} on a side", width, height, k_most), "",
+            text(width, " x ", height, " texels are too many to draw from: at most ", k_most, " on a side"), "",
             "resample the environment to a smaller size"};
 
     std::vector<int> bad(height, -1);
@@ -57,8 +57,7 @@ Result<void> for_each_weight_row(const Weights& weights, int threads,
     });
     for (int y = 0; y < height; ++y)
         if (bad[y] >= 0)
-            return Error{fmt::format("the weight of the texel in column {}, row {} is {}", bad[y], y,
-                                     weight_fault(bad_weight[y])),
+            return Error{text("the weight of the texel in column ", bad[y], ", row ", y, " is ", weight_fault(bad_weight[y])),
                          "", "weights must be finite and not negative; repair the environment before drawing from it"};
     return {};
 }

@@ -1,6 +1,6 @@
 #include "scene/gltf/gltf_data.h"
 
-#include "base/printable.h"
+#include "io/file/printable.h"
 #include "scene/gltf/gltf_meshopt.h"
 #include "scene/gltf/gltf_uri.h"
 #include "io/image_reader.h"

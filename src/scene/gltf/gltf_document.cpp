@@ -1,7 +1,7 @@
 #include "scene/gltf/gltf_document.h"
 
-#include "base/json.h"
-#include "base/printable.h"
+#include "io/file/json.h"
+#include "io/file/printable.h"
 #include "scene/gltf/gltf_materials.h"
 #include "scene/sound_places.h"
 #include "io/image_reader.h"

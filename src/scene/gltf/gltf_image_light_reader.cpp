@@ -1,5 +1,5 @@
 // Reads glTF's EXT_lights_image_based.
-#include "base/json.h"
+#include "io/file/json.h"
 #include "texture/texel/rgba8_ranges.h"
 #include "scene/gltf/gltf_chunks.h"
 #include "scene/gltf/gltf_data.h"

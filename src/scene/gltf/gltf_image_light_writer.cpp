@@ -1,7 +1,7 @@
 // Writes glTF with EXT_lights_image_based.
 #include "domelight/io/file/atomic_file.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 #include "scene/gltf/gltf_image_light.h"
 #include "io/picture/png_memory.h"
 

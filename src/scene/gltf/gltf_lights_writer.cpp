@@ -1,6 +1,6 @@
 #include "scene/gltf/gltf_lights_writer.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 
 #include <fmt/core.h>
 

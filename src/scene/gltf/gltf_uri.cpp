@@ -1,6 +1,6 @@
 #include "scene/gltf/gltf_uri.h"
 
-#include "base/printable.h"
+#include "io/file/printable.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "scene/mesh/mesh_repair.h"
 
-#include "base/printable.h"
+#include "io/file/printable.h"
 #include "io/image_reader.h"
 
 #include <fmt/format.h>

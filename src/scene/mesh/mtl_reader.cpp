@@ -1,6 +1,6 @@
 #include "scene/mesh/mtl_reader.h"
 
-#include "base/printable.h"
+#include "io/file/printable.h"
 #include "io/image_reader.h"
 #include "io/file/text_fields.h"
 

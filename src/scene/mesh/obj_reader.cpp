@@ -1,6 +1,6 @@
 #include "domelight/base/parallel.h"
 
-#include "base/printable.h"
+#include "io/file/printable.h"
 #include "io/image_reader.h"
 #include "scene/mesh/mesh_repair.h"
 #include "scene/mesh/mtl_reader.h"

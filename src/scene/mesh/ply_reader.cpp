@@ -1,4 +1,4 @@
-#include "base/printable.h"
+#include "io/file/printable.h"
 #include "io/file/byte_budget.h"
 #include "io/image_reader.h"
 #include "scene/mesh/mesh_repair.h"

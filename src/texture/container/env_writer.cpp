@@ -1,7 +1,7 @@
 // Writes Babylon's .env, version 2.
 #include "domelight/io/file/atomic_file.h"
 
-#include "base/json.h"
+#include "io/file/json.h"
 #include "io/file/output_file.h"
 #include "io/picture/png_memory.h"
 #include "texture/container/env.h"

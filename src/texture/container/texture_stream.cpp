@@ -4,7 +4,7 @@
 #include "domelight/base/parallel.h"
 
 #include "texture/chain_encoder.h"
-#include "base/sha256.h"
+#include "io/file/sha256.h"
 #include "io/file/output_file.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "base/printable.h"
+#include "io/file/printable.h"
 
 #include "base/utf8.h"
 

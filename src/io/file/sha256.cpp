@@ -1,4 +1,4 @@
-#include "base/sha256.h"
+#include "io/file/sha256.h"
 
 #include <openssl/evp.h>
 

@@ -1,4 +1,4 @@
-#include "base/json.h"
+#include "io/file/json.h"
 
 #include "test.h"
 
