@@ -6,10 +6,10 @@
 //
 // PSNR: of log2(v + 1e-4 of the mean), channel by channel, against its range over the picture. The exhaustive search
 // sees every N-th block (257), as do the others where they are compared with it.
+#include "domelight/compare/picture_reader.h"
 #include "domelight/texture/texture.h"
 
 #include "texture/block/bc6h_encode.h"
-#include "compare/picture_reader.h"
 #include "texture/block/bc6h_encode_simd.h"
 #include "base/instruction_set.h"
 

@@ -1,13 +1,13 @@
 #include "cli/convert/convert_picture.h"
 
 #include "domelight/bake/bake.h"
+#include "domelight/compare/picture_reader.h"
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
 #include "io/file/json.h"
 #include "cli/console/print.h"
 #include "cli/console/output_endings.h"
-#include "compare/picture_reader.h"
 #include "preview/screen_picture.h"
 
 #include <fmt/core.h>

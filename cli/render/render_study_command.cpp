@@ -3,10 +3,10 @@
 #include "domelight/io/file/atomic_file.h"
 #include "domelight/bake/bake.h"
 #include "domelight/io/write_image.h"
+#include "domelight/study/render_study_pictures.h"
 
 #include "io/file/json.h"
 #include "cli/console/interruption.h"
-#include "cli/render/render_study_pictures.h"
 #include "cli/console/print.h"
 
 #include <fmt/core.h>

@@ -1,4 +1,4 @@
-#include "compare/compare_sheet.h"
+#include "domelight/compare/compare_sheet.h"
 
 #include "domelight/base/parallel.h"
 

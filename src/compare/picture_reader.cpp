@@ -1,4 +1,4 @@
-#include "compare/picture_reader.h"
+#include "domelight/compare/picture_reader.h"
 
 #include "domelight/base/parallel.h"
 #include "domelight/io/environment/open_environment.h"

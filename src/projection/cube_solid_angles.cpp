@@ -18,8 +18,7 @@ std::vector<double> cube_solid_angles(int size, int threads) {
     });
     for (std::size_t y = 0; y < n; ++y) {
         const double *above = &corner[y * corners], *below = above + corners;
-        for (std::size_t x = 0; x < n; ++x)
-            angles[y * n + x] = (below[x + 1] - below[x]) - (above[x + 1] - above[x]);
+        for (std::size_t x = 0; x < n; ++x) angles[y * n + x] = (below[x + 1] - below[x]) - (above[x + 1] - above[x]);
     }
     return angles;
 }

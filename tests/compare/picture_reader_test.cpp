@@ -1,4 +1,4 @@
-#include "compare/picture_reader.h"
+#include "domelight/compare/picture_reader.h"
 
 #include "domelight/io/write_image.h"
 

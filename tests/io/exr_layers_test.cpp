@@ -1,6 +1,7 @@
 #include "io/exr/exr_layers.h"
 
-#include "compare/picture_reader.h"
+#include "domelight/compare/picture_reader.h"
+
 #include "test.h"
 
 #include <ImfChannelList.h>

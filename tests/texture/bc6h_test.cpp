@@ -1,10 +1,10 @@
 #include "texture/block/bc6h.h"
 
+#include "domelight/compare/picture_reader.h"
 #include "domelight/texture/texture.h"
 
 #include "texture/block/bc6h_encode.h"
 #include "texture/texel/half.h"
-#include "compare/picture_reader.h"
 #include "texture/block/bc6h_encode_simd.h"
 #include "base/instruction_set.h"
 #include "test.h"

@@ -1,19 +1,19 @@
-#include "cli/render/render_study_pictures.h"
+#include "domelight/study/render_study_pictures.h"
 
+#include "domelight/compare/compare_sheet.h"
 #include "domelight/image/colour.h"
 
 #include "image/draw.h"
 #include "preview/colour_map.h"
-#include "compare/compare_sheet.h"
 #include "preview/plot.h"
 #include "preview/tonemap.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace domelight::cli {
+namespace domelight {
 namespace {
 
 constexpr Colour8 k_paper{255, 255, 255}, k_ink{30, 34, 40}, k_quiet{110, 116, 124}, k_best{0, 128, 92},
@@ -300,4 +300,4 @@ Image<std::uint8_t> stacked(const std::vector<Image<std::uint8_t>>& pictures) {
     return image;
 }
 
-}  // namespace domelight::cli
+}  // namespace domelight
