@@ -10,21 +10,23 @@ import sys
 
 from PIL import Image, ImageDraw, ImageFont
 
-TEXT = [chr(c) for c in range(32, 127)] + list("°²·×απ–−…→↓")
+TEXT = [chr(c) for c in range(32, 127)] + list("°²·×απ–−…→↓\ufffd")
 FACES = [("small", "DejaVuSans.ttf", 15), ("large", "DejaVuSans-Bold.ttf", 24)]
 SDF_TEXT, SDF_SIZE, SDF_RANGE = "+-XYZ", 36, 5  # distances of +-5 px at a nominal size of 36 px
 
 HEAD = """#pragma once
 // Made by docs/figures/make_font.py from DejaVu Sans 2.37; do not edit.
 //
-// The outlines are DejaVu's (https://dejavu-fonts.github.io): Bitstream Vera is Copyright (c) 2003 by Bitstream, Inc.; DejaVu changes are in
-// public domain. The licence permits use, copying, merging, embedding and distribution of the font and of documents made with it.
+// The outlines are DejaVu's (https://dejavu-fonts.github.io): Bitstream Vera is Copyright (c) 2003 by Bitstream, Inc.;
+// DejaVu changes are in public domain. The licence permits use, copying, merging, embedding and distribution of the
+// font and of documents made with it.
 
 #include <cstdint>
 
 namespace domelight::font_data {
 
-/// A glyph's box relative to the pen: `left` to the right, `top` above the baseline. `bits`: one hexadecimal digit a pixel (0 none, f full).
+/// A glyph's box relative to the pen: `left` to the right, `top` above the baseline. `bits`: one hexadecimal digit a
+/// pixel (0 none, f full).
 struct Glyph {
     std::uint16_t code;
     std::int8_t left, top;

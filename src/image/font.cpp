@@ -1,5 +1,7 @@
 #include "image/font.h"
 
+#include "base/utf8.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -9,6 +11,8 @@ namespace domelight {
 namespace {
 
 using namespace font_data;
+
+constexpr std::uint32_t k_replacement = 0xfffd;
 
 std::span<const Glyph> glyphs(FontSize size) {
     if (size == FontSize::small) return k_small;
@@ -44,21 +48,9 @@ int font_descent(FontSize size) {
 }
 
 std::uint32_t next_code_point(std::string_view& text) {
-    const auto byte = [&](std::size_t i) { return std::uint32_t(std::uint8_t(text[i])); };
-    const std::uint32_t first = byte(0);
-    const int length = first < 0x80                    ? 1
-                       : first >= 0xc2 && first < 0xe0 ? 2
-                       : (first & 0xf0) == 0xe0        ? 3
-                       : first >= 0xf0 && first < 0xf5 ? 4
-                                                       : 0;
-    std::uint32_t code = length == 1 ? first : first & (0x7fu >> length);
-    bool valid = length > 0 && std::size_t(length) <= text.size();
-    for (int i = 1; valid && i < length; ++i) {
-        valid = (byte(i) & 0xc0) == 0x80;
-        code = code << 6 | (byte(i) & 0x3f);
-    }
-    text.remove_prefix(valid ? length : 1);
-    return valid ? code : 0xfffd;
+    const Utf8Character character = first_utf8_character(text);
+    text.remove_prefix(character.bytes);
+    return character.valid ? character.code : k_replacement;
 }
 
 float font_field(char code, float x, float y) {

@@ -15,7 +15,8 @@ const font_data::Glyph& font_glyph(FontSize size, std::uint32_t code);
 int font_ascent(FontSize size);   ///< pixels from the baseline up to the top of capitals and accents
 int font_descent(FontSize size);  ///< pixels from the baseline down
 
-/// Removes the next code point from UTF-8 `text`; a malformed byte is skipped and gives U+FFFD.
+/// Removes the next code point from UTF-8 `text`, which is not empty. A byte that does not begin a character, by
+/// first_utf8_character(), is removed alone and gives U+FFFD, which both fonts draw as a box on its corner.
 std::uint32_t next_code_point(std::string_view& text);
 
 /// A glyph of "+-XYZ" at any size: signed distance to its outline in em, positive inside, at (x right of the pen, y

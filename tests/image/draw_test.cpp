@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 using namespace domelight;
 
@@ -17,6 +18,25 @@ TEST_CASE("next_code_point: UTF-8, and a replacement for what is not") {
     for (std::string_view bad : {"\xff", "\xc3", "\xe2\x86", "\x80z", "\xc3z"}) {
         CHECK(next_code_point(bad) == 0xfffd);
         CHECK(bad.size() <= 1);
+    }
+}
+
+TEST_CASE("draw_text: every broken byte draws one replacement, also where the bytes look like a character") {
+    const auto drawn = [](std::string_view text, FontSize size) {
+        Image<std::uint8_t> image(200, 40, 3);
+        draw_text(image.view(), 4, 30, text, size, {255, 255, 255});
+        return std::vector<std::uint8_t>(image.pixels().begin(), image.pixels().end());
+    };
+    for (const FontSize size : {FontSize::small, FontSize::large}) {
+        CHECK(drawn("a\xef\xbf\xbdz", size) != drawn("a?z", size));
+        CHECK(drawn("a\xffz", size) == drawn("a\ufffdz", size));
+        // A slash in three bytes, half of a surrogate pair, and a code point beyond the last.
+        CHECK(drawn("\xe0\x80\xaf", size) == drawn("\ufffd\ufffd\ufffd", size));
+        CHECK(drawn("\xed\xa0\x80", size) == drawn("\ufffd\ufffd\ufffd", size));
+        CHECK(drawn("\xf4\x90\x80\x80", size) == drawn("\ufffd\ufffd\ufffd\ufffd", size));
+        CHECK(text_width("\xed\xa0\x80", size) == 3 * text_width("\ufffd", size));
+        // A character that the fonts do not have.
+        CHECK(drawn("\xe4\xb8\xad", size) == drawn("?", size));
     }
 }
 
