@@ -25,7 +25,12 @@ struct GroundSums {
     Vec3d with, without;     ///< irradiance on the ground
     Vec3d ground, beyond;    ///< background behind the ground, and where the ray misses it
     double ground_part = 0;  ///< over the samples, without the share of transparent surfaces
+    int non_finite = 0;      ///< samples of which some light was infinite or not a number, and was left out
 };
+
+bool is_finite(const Vec3d& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 class ShadowTracer {
   public:
@@ -48,26 +53,35 @@ class ShadowTracer {
         const Ray ray = camera_.through(x, y, point(k_pixel_pair));
         const float rest = transmittance(ray);
         if (rest <= 0) return;
-        const Vec3d behind = Vec3d(background_radiance(options_, sampler_, ray.direction)) * double(rest);
+        const Vec3d seen = Vec3d(background_radiance(options_, sampler_, ray.direction)) * double(rest);
+        const bool finite = is_finite(seen);
+        const Vec3d behind = finite ? seen : Vec3d();
         const float distance = (height_ - ray.origin.y) / ray.direction.y;
         // Seen from below, there is no ground.
         if (!(distance > 0) || !(ray.direction.y < 0) || !std::isfinite(distance)) {
             sums.beyond = sums.beyond + behind;
+            sums.non_finite += !finite;
             return;
         }
         sums.ground = sums.ground + behind;
         sums.ground_part += rest;
         const Vec3f p = ray.origin + ray.direction * distance;
-        light_ground({p.x, height_, p.z}, point(k_light_pair), point(k_cosine_pair), rest, sums);
+        const bool lit = light_ground({p.x, height_, p.z}, point(k_light_pair), point(k_cosine_pair), rest, sums);
+        sums.non_finite += !finite || !lit;
     }
 
   private:
     /// E with and without the scene at a point of the ground: one sample of each strategy, combined by the balance
-    /// heuristic.
-    void light_ground(const Vec3f& p, UnitPoint light_point, UnitPoint cosine_point, float weight,
+    /// heuristic. Returns whether all light was finite; what is not is left out.
+    bool light_ground(const Vec3f& p, UnitPoint light_point, UnitPoint cosine_point, float weight,
                       GroundSums& sums) const {
+        bool finite = true;
         const auto add = [&](const Vec3f& direction, const Vec3f& light, float distance) {
             const Vec3d all = Vec3d(light) * double(weight);
+            if (!is_finite(all)) {
+                finite = false;
+                return;
+            }
             if (!(luminance(all) > 0)) return;
             sums.without = sums.without + all;
             sums.with = sums.with + all * double(visibility(p, direction, distance));
@@ -89,6 +103,7 @@ class ShadowTracer {
             if (a.strength > 0 && a.direction.y > 0)
                 add(a.direction, l.intensity * (a.strength * a.direction.y), a.distance);
         }
+        return finite;
     }
 
     float visibility(const Vec3f& p, const Vec3f& direction, float distance) const {
@@ -133,6 +148,7 @@ Result<void> catch_shadow(RenderResult& picture, const RayScene& scene, const En
               samples = std::max(1, catcher.samples);
     std::atomic<bool> cancelled{false};
     std::atomic<int> done{0};
+    std::atomic<std::int64_t> non_finite{0};
     std::mutex progress_mutex;
     parallel_for(height, o.threads, [&](int y) {
         if (cancelled) return;
@@ -141,6 +157,7 @@ Result<void> catch_shadow(RenderResult& picture, const RayScene& scene, const En
             if (opacity >= 1) continue;
             GroundSums s;
             for (int i = 0; i < samples; ++i) tracer.sample(x, y, std::uint32_t(i), s);
+            non_finite += s.non_finite;
             const Vec3d left{ratio(s.with.x, s.without.x), ratio(s.with.y, s.without.y), ratio(s.with.z, s.without.z)};
             if (o.background == Background::transparent) {
                 opacity += float(s.ground_part / samples * (1 - ratio(luminance(s.with), luminance(s.without))));
@@ -157,6 +174,7 @@ Result<void> catch_shadow(RenderResult& picture, const RayScene& scene, const En
         }
     });
     if (cancelled) return Error{"cancelled", "", ""};
+    picture.non_finite_samples += non_finite;
     return {};
 }
 

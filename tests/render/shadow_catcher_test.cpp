@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <memory>
 
 using namespace domelight;
@@ -184,6 +185,36 @@ TEST_CASE("catch_shadow: a lamp's shadow is where the ball stands before it, and
             }
         }
     CHECK(dark > 10);
+}
+
+TEST_CASE("catch_shadow: samples whose light is not finite are counted, and leave no trace in the picture") {
+    PunctualLight sun;
+    sun.direction = {0, -1, 0};
+    sun.intensity = {1, 1, 1};
+    const auto lost = [](const World& w, Background background) {
+        auto picture = render_reference(w.scene, w.sampler, w.options);
+        REQUIRE(picture);
+        const std::int64_t before = picture->non_finite_samples;
+        RenderOptions o = w.options;
+        o.background = background;
+        REQUIRE(catch_shadow(*picture, w.scene, w.sampler, {0, o.samples}, o));
+        for (const float v : picture->radiance.pixels()) CHECK(std::isfinite(v));
+        for (const float v : picture->opacity.pixels()) CHECK(std::isfinite(v));
+        return picture->non_finite_samples - before;
+    };
+    constexpr int k_size = 8, k_samples = 4;
+    for (const float wrong : {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()})
+        for (const Background background : {Background::transparent, Background::environment}) {
+            PunctualLight glare = sun;
+            glare.intensity = {1, wrong, 1};
+            World w = ball_above(constant(1), {sun, glare});
+            look_close(w, k_size, k_samples);
+            // The camera sees nothing but the ground: every sample meets both lamps.
+            CHECK(lost(w, background) == k_size * k_size * k_samples);
+        }
+    World fine = ball_above(constant(1), {sun});
+    look_close(fine, k_size, k_samples);
+    CHECK(lost(fine, Background::environment) == 0);
 }
 
 TEST_CASE("catch_shadow: half a ball's opacity is half its shadow; ground without shadow stays as it was") {

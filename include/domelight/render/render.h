@@ -141,7 +141,8 @@ struct ShadowCatcher {
 /// by E with the scene over E without it, where E is the irradiance on the ground from the environment and the scene's
 /// lights. Both are estimated from the same light directions, so ground without shadow is unchanged to the last bit.
 /// The ground reflects no light onto the scene. With a transparent background the opacity becomes 1 - (1 - opacity) (E
-/// with / E without), in luminance, and the radiance is unchanged: a black shadow. Errors: "cancelled".
+/// with / E without), in luminance, and the radiance is unchanged: a black shadow. Light that is infinite or not a
+/// number is left out, and its samples are added to RenderResult::non_finite_samples. Errors: "cancelled".
 Result<void> catch_shadow(RenderResult& picture, const RayScene& scene, const EnvironmentSampler& sampler,
                           const ShadowCatcher& catcher, const RenderOptions& options);
 
