@@ -154,6 +154,9 @@ TEST_CASE("gltf malformed: instances are counted, and the same place is taken on
     many.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
         many.accessor(places, "VEC3");
     CHECK(contains(error_of(many.load()), "meshes stand more than 1048576 times in the scene"));
+    CHECK(many.load({.max_instances = (1 << 20) + 1}));
+    CHECK(contains(error_of(sample.load({.max_instances = 2})), "meshes stand more than 2 times in the scene"));
+    CHECK(sample.load({.max_instances = 3}));
 }
 
 TEST_CASE("gltf malformed: broken JSON and broken containers") {

@@ -167,8 +167,15 @@ struct Scene {
     std::int64_t triangle_count() const;  ///< over all instances
 };
 
+/// How a scene is read. A scene beyond one of the limits is refused with an error that states the limit, before the
+/// memory is allocated; no part of it is returned.
 struct SceneOptions {
-    std::int64_t max_bytes = std::int64_t(4) << 30;  ///< a scene that would need more memory is refused
+    /// Bytes, >= 0, that the file and what it is decoded to may need together: buffers, meshes, images, and each
+    /// instance with what the renderer makes of it. The file itself may not be larger either.
+    std::int64_t max_bytes = std::int64_t(4) << 30;
+    /// glTF: times, >= 0, that primitives of meshes may stand in the scene, nodes and EXT_mesh_gpu_instancing together.
+    /// A primitive that stands in exactly the same place again is left out with a warning and does not count.
+    std::int64_t max_instances = std::int64_t(1) << 20;
     /// KHR_lights_punctual has lux and candela: intensities are divided by this, unless the file says what one unit of
     /// its environment's irradiance is in lux (extras.lux_per_unit of the light or of the asset, as `domelight lights`
     /// writes it).
@@ -178,8 +185,9 @@ struct SceneOptions {
 
 /// Reads glTF 2.0 (.gltf, .glb), .obj or .ply. Errors name the file and what is wrong in it: broken JSON, missing
 /// buffers and textures, paths out of the file's folder, cyclic nodes, indices and accessors out of range, extensions
-/// that are required and unknown, no triangles. Repaired with a warning: NaN vertices and degenerate triangles (left
-/// out), normals of length 0 (recomputed).
+/// that are required and unknown, JSON nested more than 256 deep, no triangles, more memory than
+/// SceneOptions::max_bytes or more instances than SceneOptions::max_instances. Repaired with a warning: NaN vertices and
+/// degenerate triangles (left out), normals of length 0 (recomputed).
 Result<Scene> load_scene(const std::filesystem::path& file, const SceneOptions& options = {});
 
 /// Lights that were taken out of an environment: what `domelight lights` writes as lights.gltf.

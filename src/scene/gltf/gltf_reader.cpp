@@ -17,9 +17,6 @@ namespace domelight {
 
 namespace {
 
-/// Times that meshes may stand in a scene.
-constexpr std::size_t k_most_instances = std::size_t(1) << 20;
-
 /// A frame without scale or shear that has the same orientation, for cameras and lights. Empty if the axes have
 /// collapsed.
 std::optional<Affine> rigid(const Affine& a) {
@@ -203,8 +200,8 @@ Result<void> SceneBuilder::add_instance(int mesh, const Affine& to_world, const 
             budget_.take(1, sizeof(Instance) + name.size() + k_bytes_each + copied * k_bytes_per_triangle, "instances");
         !room)
         return room.error();
-    if (scene_.instances.size() >= k_most_instances)
-        return Error{fmt::format("meshes stand more than {} times in the scene", k_most_instances), "",
+    if (std::int64_t(scene_.instances.size()) >= options_.max_instances)
+        return Error{fmt::format("meshes stand more than {} times in the scene", options_.max_instances), "",
                      "Put meshes that belong together into one."};
     scene_.instances.push_back({mesh, to_world, name.empty() ? triangles.name : name});
     return {};
