@@ -52,8 +52,7 @@ constexpr EncodingQuality k_timed[] = {EncodingQuality::fast, EncodingQuality::s
 
 /// Megapixels a second.
 void print_speeds(const ImageF& picture) {
-    std::vector<FilteredMap> map(1);
-    map[0].latlong = picture;
+    const std::vector<FilteredMap> map{{Layout::latlong, picture}};
     const double megapixels = double(picture.width()) * picture.height() / 1e6;
     const ImageF all = block_strip(picture, 1);
     std::vector<float> texels;
@@ -79,8 +78,7 @@ void print_speeds(const ImageF& picture) {
 }
 
 void print_psnr(const std::string& name, const ImageF& picture, int step) {
-    std::vector<FilteredMap> map(1);
-    map[0].latlong = block_strip(picture, step);
+    const std::vector<FilteredMap> map{{Layout::latlong, block_strip(picture, step)}};
     std::string line = fmt::format("| {:<28} |", name);
     std::vector<EncodingReport> reports;
     for (const EncodingQuality quality :

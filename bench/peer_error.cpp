@@ -134,7 +134,7 @@ Mat3 orientation_of(const Cubemap& roughest, const ImageF& source, double roughn
     options.specular.push_back({32, false, ZonalKernel::ggx(roughness)});
     ImageRowSource rows(source);
     const FilterResult ours = take(prefilter(rows, options));
-    const Cubemap& cube = ours.specular[0].cube;
+    const FilteredMap& cube = ours.specular[0];
     const Texels few = pick_texels(roughest, 200, 1);
     Mat3 best;
     double least = 1e30;

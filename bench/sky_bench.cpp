@@ -59,8 +59,7 @@ void preview(benchmark::State& state) {
     (void)source->read(sky.view());
     std::vector<FilteredMap> levels;
     for (int size = 512; size >= 8; size /= 2) {
-        FilteredMap level;
-        level.cube = Cubemap(size);
+        FilteredMap level = Cubemap(size);
         for (std::size_t i = 0; i < level.pixels().size(); ++i) level.pixels()[i] = sky.pixels()[i];
         levels.push_back(std::move(level));
     }

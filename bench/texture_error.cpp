@@ -87,8 +87,7 @@ Json compare(const ImageF& picture, const char* file) {
 Json encode(char** args) {
     const Encoding encoding = need(encoding_from_name(args[0]));
     const EncodingQuality quality = need(encoding_quality_from_name(args[1]));
-    std::vector<FilteredMap> maps(1);
-    maps[0].latlong = read_picture(args[2]);
+    const std::vector<FilteredMap> maps{{Layout::latlong, read_picture(args[2])}};
     std::vector<double> seconds;
     Texture texture;
     for (int k = 0; k < 4; ++k) {  // the first warms up

@@ -75,12 +75,8 @@ std::vector<Picture> pictures(const ProjectedImage& image, const std::string& la
 
 /// The picture as a level to encode.
 FilteredMap as_level(const ProjectedImage& image) {
-    FilteredMap level;
-    if (image.projection.charts() == 6)
-        level.cube = Cubemap(image.pixels);
-    else
-        level.latlong = image.projection.charts() == 2 ? side_by_side(image) : image.pixels;
-    return level;
+    if (image.projection.charts() == 6) return {Layout::cube, image.pixels};
+    return {Layout::latlong, image.projection.charts() == 2 ? side_by_side(image) : image.pixels};
 }
 
 Result<void> write_picture(const std::string& file, ImageView<const float> picture, const ProjectedImage& image,

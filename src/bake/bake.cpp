@@ -122,10 +122,10 @@ class EngineBake {
     }
 
     /// Encodes and writes everything, or starts to do so.
-    void start(FilterJob::Maps& maps, const FilterResult& result, std::vector<StageTime>& stages) {
+    void start(const FilterJob::Maps& maps, const FilterResult& result, std::vector<StageTime>& stages) {
         const StageClock clock(stages, "encode");
         report_.sh =
-            make_sh_report(result.sh, options_.sh_bands, options_.sh_window, maps.irradiance_over_pi, options_.threads);
+            make_sh_report(result.sh, options_.sh_bands, options_.sh_window, *maps.irradiance_over_pi, options_.threads);
         report_.sh.files.reserve(2);
         write_light(maps);
         write_sh();
@@ -158,12 +158,12 @@ class EngineBake {
     }
 
   private:
-    void write_light(FilterJob::Maps& maps) {
+    void write_light(const FilterJob::Maps& maps) {
         if (engine_.environment_only) {
-            write_panorama(engine_.specular_file, maps.panorama);
+            write_panorama(engine_.specular_file, *maps.panorama);
         } else {
             write("specular", engine_.specular_file, plan_.lobe, Quantity::radiance, plan_.specular, maps.specular,
-                  plan_.encoding, &maps.irradiance_over_pi);
+                  plan_.encoding, maps.irradiance_over_pi);
             report_.maps.front().gaps = phong_gaps(plan_.gap_probes, maps.gap_probes);
         }
         if (!plan_.sheen.empty())
@@ -171,9 +171,9 @@ class EngineBake {
                   plan_.encoding);
         if (!engine_.skybox_file.empty() && plan_.specular.front().spec.mirror)
             write("skybox", engine_.skybox_file, plan_.lobe, Quantity::radiance, {plan_.specular.front()},
-                  std::span(maps.specular).first(1), plan_.encoding);
-        if (!engine_.irradiance_file.empty()) write_irradiance(maps.irradiance_over_pi);
-        if (!engine_.panorama_file.empty()) write_panorama(engine_.panorama_file, maps.panorama);
+                  maps.specular.first(1), plan_.encoding);
+        if (!engine_.irradiance_file.empty()) write_irradiance(*maps.irradiance_over_pi);
+        if (!engine_.panorama_file.empty()) write_panorama(engine_.panorama_file, *maps.panorama);
     }
 
     void write_irradiance(const FilteredMap& over_pi) {
@@ -188,7 +188,7 @@ class EngineBake {
     }
 
     void write(const char* role, const std::string& name, Lobe lobe, Quantity quantity,
-               const std::vector<LevelPlan>& levels, std::span<FilteredMap> maps, Encoding encoding,
+               const std::vector<LevelPlan>& levels, std::span<const FilteredMap> maps, Encoding encoding,
                const FilteredMap* irradiance_over_pi = nullptr) {
         BakedMap& map = report_.maps.emplace_back();
         map.role = role;
@@ -197,8 +197,7 @@ class EngineBake {
         map.layout = plan_.layout;
         map.levels = baked_levels(levels, plan_.layout);
         MapFormat format = map_format(name, encoding);
-        format.mirror = engine_.mirror;
-        format.latlong_quarters = plan_.latlong_quarters;
+        format.order = plan_.order;
         format.irradiance_over_pi = irradiance_over_pi;
         format.radiance_sh = report_.sh.radiance;
         format.metadata = map_metadata(plan_, map, levels);
@@ -207,7 +206,7 @@ class EngineBake {
     }
 
     /// The environment as one image, in the engine's projection.
-    void write_panorama(const std::string& name, ImageF& panorama) {
+    void write_panorama(const std::string& name, const FilteredMap& panorama) {
         BakedMap& map = report_.maps.emplace_back();
         map.role = "environment";
         map.layout = Layout::latlong;
@@ -215,13 +214,10 @@ class EngineBake {
         const std::vector<LevelPlan> level{LevelPlan{LevelSpec{plan_.panorama->height, true, {}}}};
         map.levels = baked_levels(level, Layout::latlong);
         map.levels.front().width = plan_.panorama->width;
-        FilteredMap image;
-        image.latlong = std::move(panorama);
         MapFormat format = map_format(name, engine_.environment_only ? plan_.encoding : Encoding::rgba16f);
         if (!engine_.environment_only) format.container = Container::exr;
         format.metadata = map_metadata(plan_, map, level);
-        write_map(map, {&image, 1}, format, options_, staging_, background_);
-        panorama = std::move(image.latlong);  // the preview and the next engine need it again
+        write_map(map, {&panorama, 1}, format, options_, staging_, background_);
     }
 
     MapFormat map_format(const std::string& name, Encoding encoding) const {
@@ -319,15 +315,6 @@ std::string stem_of(const std::vector<std::filesystem::path>& files) {
     return files.empty() ? "sky" : files.front().stem().string();
 }
 
-/// environment   null before it is opened: plan_engine()
-Result<std::vector<EnginePlan>> plan_all(const BakeOptions& options, const Environment* environment) {
-    if (auto ok = check_bake_options(options); !ok) return ok.error();
-    std::vector<EnginePlan> plans;
-    for (const std::string& name : options.engines)
-        plans.push_back(*plan_engine(**find_engine(name), options, environment));
-    return plans;
-}
-
 std::filesystem::path engine_folder(const std::filesystem::path& folder, const BakeOptions& options,
                                     const Engine& engine) {
     return options.engines.size() > 1 ? folder / engine.name : folder;
@@ -357,7 +344,7 @@ void add_warnings(BakeReport& report, const Environment& environment, const Bake
 
 Result<BakeReport> bake(const Environment& environment, const BakeOptions& options,
                         const std::filesystem::path& folder) {
-    auto plans = plan_all(options, &environment);
+    auto plans = plan_bake(options, &environment);
     if (!plans) return plans.error();
     if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
         return Error{"is a file, not a folder", folder.string(), "Name a folder for the results."};
@@ -389,10 +376,9 @@ Result<BakeReport> bake(const Environment& environment, const BakeOptions& optio
         auto staging = Staging::open(report.engines[e].folder);
         if (!staging) return staging.error();
         bakes.push_back(std::make_unique<EngineBake>(report.engines[e], plan, options, stem, *std::move(staging)));
-        FilterJob::Maps maps = job.take(e);
+        const FilterJob::Maps maps = job.maps(e);
         bakes[e]->start(maps, job.result(e), report.stages);
         bakes[e]->draw(maps, source.file, report.stages);
-        job.give_back(e, std::move(maps));
         if (auto ok = bakes[e]->finish_writing(report.stages); !ok) return ok.error();
     }
     {
@@ -409,7 +395,7 @@ Result<BakeReport> bake(const Environment& environment, const BakeOptions& optio
 
 bool bake_is_up_to_date(const std::vector<std::filesystem::path>& files, const BakeOptions& options,
                         const std::filesystem::path& folder) {
-    const auto plans = plan_all(options, nullptr);
+    const auto plans = plan_bake(options, nullptr);
     if (!plans) return false;
     for (const EnginePlan& plan : *plans)
         if (!std::filesystem::exists(engine_folder(folder, options, *plan.engine) / "manifest.json")) return false;

@@ -5,7 +5,6 @@
 #include "domelight/io/write_image.h"
 #include "domelight/filtering/resample/reproject.h"
 
-#include "bake/mirror.h"
 #include "scene/gltf/gltf_image_light.h"
 #include "texture/container/playcanvas_atlas.h"
 
@@ -17,10 +16,6 @@
 namespace domelight {
 namespace {
 
-void take_reports(BakedMap& report, const std::vector<EncodingReport>& encoded) {
-    for (std::size_t l = 0; l < report.levels.size() && l < encoded.size(); ++l) report.levels[l].encoding = encoded[l];
-}
-
 /// Lets `write` make the file in the background, then hashes it.
 void start_writing(BakedMap& report, const BakeOptions& options, const std::filesystem::path& path,
                    Background& background, std::function<Result<void>(const std::filesystem::path&)> write) {
@@ -30,15 +25,7 @@ void start_writing(BakedMap& report, const BakeOptions& options, const std::file
     });
 }
 
-Texture encode_chain(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
-                     const BakeOptions& options) {
-    std::vector<EncodingReport> encoded;
-    Texture texture = encode_texture(levels, format.encoding, options.threads, &encoded);
-    take_reports(report, encoded);
-    return texture;
-}
-
-void write_babylon(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
+void write_babylon(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
                    const std::filesystem::path& path, Background& background) {
     auto env = std::make_shared<BabylonEnv>();
     env->cube = encode_chain(report, levels, format, options);
@@ -47,7 +34,7 @@ void write_babylon(BakedMap& report, std::span<FilteredMap> levels, const MapFor
                   [env, threads = options.threads](const auto& file) { return write_env(file, *env, threads); });
 }
 
-void write_gltf(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
+void write_gltf(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
                 const std::filesystem::path& path, Background& background) {
     auto light = std::make_shared<GltfImageLightFile>();
     light->cube = encode_chain(report, levels, format, options);
@@ -60,14 +47,11 @@ void write_gltf(BakedMap& report, std::span<FilteredMap> levels, const MapFormat
     });
 }
 
-void write_playcanvas(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
+void write_playcanvas(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format,
                       const BakeOptions& options, const std::filesystem::path& path, Background& background) {
-    std::vector<const ImageF*> maps;
-    for (const FilteredMap& level : levels) maps.push_back(&level.latlong);
-    ImageF diffuse = format.irradiance_over_pi->latlong;
-    turn_latlong(diffuse, format.latlong_quarters);
     std::vector<EncodingReport> encoded;
-    auto atlas = std::make_shared<Image<std::uint8_t>>(make_playcanvas_atlas(maps, diffuse, options.threads, &encoded));
+    auto atlas = std::make_shared<Image<std::uint8_t>>(
+        make_playcanvas_atlas(levels, *format.irradiance_over_pi, format.order, options.threads, &encoded));
     take_reports(report, encoded);
     start_writing(report, options, path, background,
                   [atlas](const auto& file) { return write_playcanvas_atlas(file, *atlas); });
@@ -75,32 +59,25 @@ void write_playcanvas(BakedMap& report, std::span<FilteredMap> levels, const Map
 
 /// Levels as required for OpenEXR's `envmap`: samples on the edges, and its own lat-long centre.
 ImageF openexr_level(const FilteredMap& level, int threads) {
-    if (level.cube.empty()) {
-        const ProjectedImage source{*projection_from_name("latlong"), level.latlong};
-        return reproject(source, *projection_from_name("latlong/openexr"), level.latlong.width(),
-                         level.latlong.height(), threads)
-            .pixels;
-    }
-    return reproject(projected_cube(level.cube), *projection_from_name("cube/openexr"), level.cube.size(), level.cube.size(), threads)
+    const std::string projection = layout_name(level.layout);
+    const ProjectedImage source{*projection_from_name(projection), level.image};
+    return reproject(source, *projection_from_name(projection + "/openexr"), level.width(), level.height(), threads)
         .pixels;
 }
 
-void write_openexr(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
+void write_openexr(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
                    const std::filesystem::path& path, Background& background) {
-    const bool cube = !levels.front().cube.empty();
     ExrWriteOptions exr;
     exr.half = format.encoding == Encoding::rgba16f;
     exr.attributes = format.metadata;
     exr.threads = options.threads;
     // The attribute would be wrong for another convention.
-    const bool envmap = format.mirror == CubeMirror::none && format.latlong_quarters == 0 && report.projection.empty();
-    if (envmap) exr.envmap = cube ? "cube" : "latlong";
+    const bool envmap = format.order.keeps_places() && report.projection.empty();
+    if (envmap) exr.envmap = layout_name(levels.front().layout);
     if (exr.half) encode_chain(report, levels, format, options);  // half floats clip alike in every container
     auto pictures = std::make_shared<std::vector<ImageF>>();
     for (const FilteredMap& level : levels)
-        pictures->push_back(envmap ? openexr_level(level, options.threads)
-                            : cube ? cube_layout(level.cube, "vertical-strip")
-                                   : level.latlong);
+        pictures->push_back(envmap ? openexr_level(level, options.threads) : format.order.apply(level).image);
     start_writing(report, options, path, background, [pictures, exr](const auto& file) {
         std::vector<ImageView<const float>> views(pictures->begin(), pictures->end());
         return write_exr_levels(file, views, exr);
@@ -114,7 +91,7 @@ bool is_engine_file(Container container) {
            container == Container::exr_mip;
 }
 
-void write_engine_file(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
+void write_engine_file(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format,
                        const BakeOptions& options, const std::filesystem::path& path, Background& background) {
     switch (format.container) {
         case Container::env:

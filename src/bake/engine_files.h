@@ -9,7 +9,7 @@ namespace domelight {
 bool is_engine_file(Container container);
 
 /// Encodes a chain now and writes it in the background. As write_map(); `levels` are mirrored and turned already.
-void write_engine_file(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
+void write_engine_file(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format,
                        const BakeOptions& options, const std::filesystem::path& path, Background& background);
 
 }  // namespace domelight

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <iterator>
 #include <span>
 
 namespace domelight {
@@ -84,9 +83,8 @@ std::size_t index_of(std::vector<T>& values, T value, const Same& same) {
 FilterJob::FilterJob(const std::vector<EnginePlan>& plans, const Environment& environment, const BakeOptions& options) {
     for (const EnginePlan& plan : plans) {
         Indices& indices = engines_.emplace_back();
+        indices.plan = &plan;
         indices.run = index_of(runs_, filter_options(plan, environment, options), same_run);
-        if (!plan.engine->environment_only) indices.specular_count = plan.specular.size();
-        indices.sheen_count = plan.sheen.size();
         if (plan.panorama) indices.panorama = index_of(panorama_specs_, *plan.panorama, std::equal_to());
     }
 }
@@ -124,8 +122,8 @@ Result<void> FilterJob::read_rows(const Environment& environment, const BakeOpti
     results_ = *std::move(results);
     const ProjectedImage source{projection_from_name("latlong")->turned(environment.world_to_source), std::move(kept)};
     for (std::size_t i = 0; i < conversions.size(); ++i)
-        panoramas_.push_back(conversions[i].rows ? conversions[i].rows->finish()
-                                                 : reprojected(source, panorama_specs_[i], options));
+        panoramas_.emplace_back(Layout::latlong, conversions[i].rows ? conversions[i].rows->finish()
+                                                                     : reprojected(source, panorama_specs_[i], options));
     if (hash_rows) rows_sha256_ = hash.finish();
     return {};
 }
@@ -148,7 +146,8 @@ Result<void> FilterJob::filter_cube(const Environment& environment, const BakeOp
     }
     if (panorama_specs_.empty()) return {};
     const ProjectedImage source = projected_cube(cube, environment.world_to_source);
-    for (const PanoramaSpec& spec : panorama_specs_) panoramas_.push_back(reprojected(source, spec, options));
+    for (const PanoramaSpec& spec : panorama_specs_)
+        panoramas_.emplace_back(Layout::latlong, reprojected(source, spec, options));
     return {};
 }
 
@@ -168,30 +167,24 @@ int FilterJob::band_limit() const {
     return limit;
 }
 
-FilterJob::Maps FilterJob::take(std::size_t engine) {
+FilterJob::Maps FilterJob::maps(std::size_t engine) const {
     const Indices& indices = engines_[engine];
-    FilterResult& result = results_[indices.run];
-    const auto specular = std::make_move_iterator(result.specular.begin()),
-               sheen = specular + std::ptrdiff_t(indices.specular_count),
-               probes = sheen + std::ptrdiff_t(indices.sheen_count),
-               end = std::make_move_iterator(result.specular.end());
+    const FilterResult& result = results_[indices.run];
+    std::span<const FilteredMap> rest = result.specular;
+    const auto next = [&](std::size_t count) {
+        const auto part = rest.first(count);
+        rest = rest.subspan(count);
+        return part;
+    };
+    // As filter_options() lists them.
     Maps maps;
-    maps.specular.assign(specular, sheen);
-    maps.sheen.assign(sheen, probes);
-    maps.gap_probes.assign(probes, end);
-    maps.irradiance_over_pi = std::move(result.irradiance_over_pi);
-    if (indices.panorama) maps.panorama = std::move(panoramas_[*indices.panorama]);
+    maps.irradiance_over_pi = &result.irradiance_over_pi;
+    if (indices.panorama) maps.panorama = &panoramas_[*indices.panorama];
+    if (indices.plan->engine->environment_only) return maps;
+    maps.specular = next(indices.plan->specular.size());
+    maps.sheen = next(indices.plan->sheen.size());
+    maps.gap_probes = next(indices.plan->gap_probes.size());
     return maps;
-}
-
-void FilterJob::give_back(std::size_t engine, Maps maps) {
-    const Indices& indices = engines_[engine];
-    FilterResult& result = results_[indices.run];
-    const auto sheen = std::move(maps.specular.begin(), maps.specular.end(), result.specular.begin());
-    const auto probes = std::move(maps.sheen.begin(), maps.sheen.end(), sheen);
-    std::move(maps.gap_probes.begin(), maps.gap_probes.end(), probes);
-    result.irradiance_over_pi = std::move(maps.irradiance_over_pi);
-    if (indices.panorama) panoramas_[*indices.panorama] = std::move(maps.panorama);
 }
 
 }  // namespace domelight

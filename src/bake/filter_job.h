@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace domelight {
@@ -14,20 +15,21 @@ namespace domelight {
 /// baked alone. Engines that want the same levels share one filter run.
 class FilterJob {
   public:
+    /// The plans must outlive the job.
     FilterJob(const std::vector<EnginePlan>& plans, const Environment& environment, const BakeOptions& options);
 
     /// Reads the environment once, to its last row, and computes everything.
     Result<void> run(const Environment& environment, const BakeOptions& options);
 
-    /// An engine's maps. They are lent to one engine and returned for the next.
+    /// An engine's maps, which the job keeps: engines share them.
     struct Maps {
-        std::vector<FilteredMap> specular, sheen;
-        std::vector<FilteredMap> gap_probes;  ///< of EnginePlan::gap_probes
-        FilteredMap irradiance_over_pi;
-        ImageF panorama;  ///< the environment as one image, in the engine's projection
+        std::span<const FilteredMap> specular, sheen;
+        std::span<const FilteredMap> gap_probes;  ///< of EnginePlan::gap_probes
+        const FilteredMap* irradiance_over_pi = nullptr;
+        /// The environment as one image, in the engine's projection; null where the engine takes none.
+        const FilteredMap* panorama = nullptr;
     };
-    Maps take(std::size_t engine);
-    void give_back(std::size_t engine, Maps maps);
+    Maps maps(std::size_t engine) const;
 
     /// Of the run that made an engine's maps.
     const FilterResult& result(std::size_t engine) const { return results_[engines_[engine].run]; }
@@ -38,9 +40,8 @@ class FilterJob {
 
   private:
     struct Indices {
+        const EnginePlan* plan = nullptr;
         std::size_t run = 0;
-        /// The run's levels are the specular ones, then those of the sheen, then the probes of the gaps.
-        std::size_t specular_count = 0, sheen_count = 0;
         std::optional<std::size_t> panorama;
     };
     Result<void> read_rows(const Environment& environment, const BakeOptions& options);
@@ -50,7 +51,7 @@ class FilterJob {
     std::vector<FilterResult> results_;  ///< one for each of runs_
     std::vector<Indices> engines_;
     std::vector<PanoramaSpec> panorama_specs_;  ///< distinct ones
-    std::vector<ImageF> panoramas_;             ///< one for each of panorama_specs_
+    std::vector<FilteredMap> panoramas_;        ///< one for each of panorama_specs_
     std::string rows_sha256_;
 };
 

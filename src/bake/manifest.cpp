@@ -67,7 +67,7 @@ Json options_json(const EnginePlan& plan, const BakeOptions& o) {
               {"lobe", lobe_name(plan.lobe)}};
     if (plan.size_of_source) json["size_of_source"] = true;
     Json widths = Json::array();
-    const bool phong = plan.lobe == Lobe::phong_brdf || plan.lobe == Lobe::phong_plain;
+    const bool phong = is_phong(plan.lobe);
     for (const LevelPlan& level : plan.specular)
         widths.push_back(phong ? exponent_json(level.exponent) : Json(level.roughness));
     json[phong ? "exponents" : "roughness"] = widths;
@@ -105,7 +105,7 @@ Json options_json(const EnginePlan& plan, const BakeOptions& o) {
 Json level_json(const BakedMap& map, const BakedLevel& level) {
     Json json{{"level", level.level}, {"size", level.size}};
     if (map.quantity == Quantity::radiance) {
-        if (map.lobe == Lobe::phong_brdf || map.lobe == Lobe::phong_plain) {
+        if (is_phong(map.lobe)) {
             json["exponent"] = exponent_json(level.exponent);
         } else {
             json["roughness"] = level.roughness;

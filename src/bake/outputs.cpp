@@ -4,7 +4,6 @@
 #include "domelight/io/write_image.h"
 
 #include "bake/engine_files.h"
-#include "bake/mirror.h"
 #include "io/file/sha256.h"
 #include "texture/chain_encoder.h"
 #include "texture/container/texture_stream.h"
@@ -52,6 +51,18 @@ std::string expand_stem(std::string name, const std::string& stem) {
     return at == std::string::npos ? name : name.replace(at, 6, stem);
 }
 
+void take_reports(BakedMap& report, const std::vector<EncodingReport>& encoded) {
+    for (std::size_t l = 0; l < report.levels.size() && l < encoded.size(); ++l) report.levels[l].encoding = encoded[l];
+}
+
+Texture encode_chain(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format,
+                     const BakeOptions& options) {
+    ChainEncoder encoder(levels, format.encoding, {}, EncodingQuality::standard, format.order);
+    Texture texture = encode_in_memory(encoder, options.threads);
+    take_reports(report, encoder.reports());
+    return texture;
+}
+
 namespace {
 
 const char* const k_face_names[] = {"px", "nx", "py", "ny", "pz", "nz"};
@@ -72,33 +83,30 @@ Result<TextureLayout> layout_of(const ChainEncoder& encoder, Container container
 
 /// Compressed levels must be complete before the position of the first byte is known, so they are encoded now; the rest
 /// is done in the background.
-void write_compressed_chain(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
+void write_compressed_chain(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format,
                             const BakeOptions& options, const std::filesystem::path& path, Background& background) {
-    std::vector<EncodingReport> encoded;
-    auto texture = std::make_shared<Texture>(
-        encode_texture(levels, format.encoding, options.threads, &encoded, options.encoding_quality));
-    texture->metadata = format.metadata;
-    for (std::size_t l = 0; l < encoded.size(); ++l) report.levels[l].encoding = encoded[l];
+    ChainEncoder encoder(levels, format.encoding, format.metadata, options.encoding_quality, format.order);
+    auto texture = std::make_shared<Texture>(encode_in_memory(encoder, options.threads));
+    take_reports(report, encoder.reports());
     background.start([texture, path, &file = report.file, hashes = options.hashes]() -> Result<void> {
         if (auto ok = write_ktx2(path, *texture, Supercompression::zstd); !ok) return ok;
         return hash_into(file, path, hashes);
     });
 }
 
-Result<void> write_plain_chain(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
+Result<void> write_plain_chain(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format,
                                const BakeOptions& options, const std::filesystem::path& path) {
-    ChainEncoder encoder(levels, format.encoding, format.metadata, options.encoding_quality);
+    ChainEncoder encoder(levels, format.encoding, format.metadata, options.encoding_quality, format.order);
     const auto layout = layout_of(encoder, format.container);
     if (!layout) return layout.error().at(path.string());
     auto hash = encode_to_file(path, encoder, *layout, options.threads, options.hashes);
     if (!hash) return hash.error();
     report.file.sha256 = *std::move(hash);
-    const auto encoded = encoder.reports();
-    for (std::size_t l = 0; l < encoded.size(); ++l) report.levels[l].encoding = encoded[l];
+    take_reports(report, encoder.reports());
     return {};
 }
 
-void write_chain(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
+void write_chain(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
                  Staging& staging, Background& background) {
     report.file.file = format.name + container_extension(format.container);
     const auto path = staging.stage(report.file.file);
@@ -128,38 +136,34 @@ void write_picture(BakedFile& file, ImageF picture, const MapFormat& format, con
     });
 }
 
-ImageF copy_face(const Cubemap& cube, int f) {
-    ImageF face(cube.size(), cube.size(), cube.channels());
+ImageF copy_face(const FilteredMap& cube, int f) {
     const auto from = cube.face(f);
-    std::copy(from.data, from.data + face.pixels().size(), face.pixels().begin());
+    ImageF face = ImageF::uninitialized(from.width, from.height, from.channels);
+    std::copy_n(from.data, face.pixels().size(), face.pixels().begin());
     return face;
 }
 
 /// The pictures that one level becomes, with the suffix of each one's name.
-std::vector<std::pair<std::string, ImageF>> level_pictures(const FilteredMap& level, CubePicture layout) {
+std::vector<std::pair<std::string, ImageF>> level_pictures(FilteredMap level, CubePicture layout) {
     std::vector<std::pair<std::string, ImageF>> pictures;
-    if (level.cube.empty()) {
-        pictures.emplace_back("", level.latlong);
+    if (level.layout == Layout::latlong) {
+        pictures.emplace_back("", std::move(level.image));
     } else if (layout == CubePicture::faces) {
-        for (int f = 0; f < 6; ++f) pictures.emplace_back(std::string("_") + k_face_names[f], copy_face(level.cube, f));
+        for (int f = 0; f < 6; ++f) pictures.emplace_back(std::string("_") + k_face_names[f], copy_face(level, f));
     } else {
-        pictures.emplace_back("", cube_layout(level.cube, cube_picture_name(layout)));
+        pictures.emplace_back("", cube_layout(std::move(level).cube(), cube_picture_name(layout)));
     }
     return pictures;
 }
 
-void write_pictures(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format,
+void write_pictures(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format,
                     const BakeOptions& options, Staging& staging, Background& background) {
-    if (format.container == Container::hdr || format.encoding == Encoding::rgba16f) {
-        std::vector<EncodingReport> encoded;
-        if (format.container == Container::hdr)
-            encoded = rgbe_reports(levels);
-        else
-            encode_texture(levels, Encoding::rgba16f, options.threads, &encoded);  // half floats clip alike everywhere
-        for (std::size_t l = 0; l < encoded.size(); ++l) report.levels[l].encoding = encoded[l];
-    }
+    if (format.container == Container::hdr)
+        take_reports(report, rgbe_reports(levels, format.order));
+    else if (format.encoding == Encoding::rgba16f)  // half floats clip alike in every container
+        encode_chain(report, levels, format, options);
     for (std::size_t l = 0; l < levels.size(); ++l) {
-        auto pictures = level_pictures(levels[l], format.cube_picture);
+        auto pictures = level_pictures(format.order.apply(levels[l]), format.cube_picture);
         report.levels[l].files.resize(pictures.size());
         const std::string number = levels.size() > 1 ? fmt::format("_{}", l) : "";
         for (std::size_t p = 0; p < pictures.size(); ++p) {
@@ -174,14 +178,13 @@ void write_pictures(BakedMap& report, std::span<FilteredMap> levels, const MapFo
 bool is_widened(std::span<const FilteredMap> levels, const MapFormat& format) {
     const bool openexr = format.container == Container::exr || format.container == Container::exr_mip;
     if (!openexr || !format.widen_for_range || format.encoding != Encoding::rgba16f) return false;
-    return !std::all_of(levels.begin(), levels.end(), [](const FilteredMap& level) {
-        return fits_half(level.cube.empty() ? level.latlong.view() : level.cube.strip());
-    });
+    return !std::all_of(levels.begin(), levels.end(),
+                        [](const FilteredMap& level) { return fits_half(level.image.view()); });
 }
 
 }  // namespace
 
-void write_map(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& planned, const BakeOptions& options,
+void write_map(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& planned, const BakeOptions& options,
                Staging& staging, Background& background) {
     MapFormat format = planned;
     report.widened = is_widened(levels, planned);
@@ -189,18 +192,10 @@ void write_map(BakedMap& report, std::span<FilteredMap> levels, const MapFormat&
     report.encoding = format.container == Container::hdr ? "rgbe" : encoding_name(format.encoding);
     report.container = container_name(format.container);
     report.zstd = format.zstd;
-    for (FilteredMap& level : levels) {
-        mirror_cube(level.cube, format.mirror);
-        turn_latlong(level.latlong, format.latlong_quarters);
-    }
     if (format.container == Container::exr || format.container == Container::hdr) {
         write_pictures(report, levels, format, options, staging, background);
     } else {
         write_chain(report, levels, format, options, staging, background);
-    }
-    for (FilteredMap& level : levels) {  // undone, for the picture and the next engine
-        mirror_cube(level.cube, format.mirror);
-        turn_latlong(level.latlong, -format.latlong_quarters);
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include "bake/plan.h"
 #include "bake/staging.h"
+#include "texture/texel_order.h"
 
 #include <functional>
 #include <future>
@@ -38,12 +39,10 @@ struct MapFormat {
     Container container = Container::ktx2;
     bool zstd = false;
     CubePicture cube_picture = CubePicture::cross;
-    CubeMirror mirror = CubeMirror::none;
-    int latlong_quarters = 0;  ///< turn_latlong()
-    std::string name;          ///< without extension
+    TexelOrder order;  ///< from the maps to the file
+    std::string name;  ///< without extension
     std::map<std::string, std::string> metadata;
-    /// For containers that also hold diffuse light: radiance coefficients, and E / pi as a map (in the default
-    /// convention).
+    /// For containers that also hold diffuse light: radiance coefficients, and E / pi as a map.
     std::span<const Vec3d> radiance_sh = {};
     const FilteredMap* irradiance_over_pi = nullptr;
 };
@@ -51,8 +50,15 @@ struct MapFormat {
 /// Encodes a map's levels now and writes them, or starts to do so. Fills in `report`, whose role, lobe, quantity,
 /// layout and levels (one for each of `levels`) are set; its file names are valid at once, its hashes after
 /// `background.wait()`. `report` must not be moved until then.
-void write_map(BakedMap& report, std::span<FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
+void write_map(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
                Staging& staging, Background& background);
+
+/// What encoding did to each level goes into the report.
+void take_reports(BakedMap& report, const std::vector<EncodingReport>& encoded);
+
+/// Encodes a map's levels in memory, and fills in the report of each. The texture has no metadata.
+Texture encode_chain(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format,
+                     const BakeOptions& options);
 
 /// The file's name and, unless hashes are off, its hash.
 Result<void> hash_into(BakedFile& file, const std::filesystem::path& written, bool hashes);

@@ -22,32 +22,6 @@ int most_levels(int size) {
     return std::bit_width(unsigned(size));
 }
 
-bool is_phong(Lobe lobe) {
-    return lobe == Lobe::phong_brdf || lobe == Lobe::phong_plain;
-}
-
-LevelPlan glossy_level(Lobe lobe, int size, double roughness) {
-    // Charlie has no mirror: its lobe lies along the horizon.
-    if (lobe == Lobe::charlie) roughness = std::max(roughness, k_charlie_least_roughness);
-    LevelPlan level;
-    level.roughness = roughness;
-    level.alpha = roughness * roughness;
-    level.spec.size = size;
-    level.spec.mirror = roughness == 0;
-    level.spec.kernel = {lobe, level.alpha};
-    if (level.spec.mirror) level.spec.kernel.width = 1;  // not used; any valid kernel
-    return level;
-}
-
-LevelPlan phong_level(Lobe lobe, int size, double exponent) {
-    LevelPlan level;
-    level.exponent = exponent;
-    level.spec.size = size;
-    level.spec.mirror = std::isinf(exponent);
-    level.spec.kernel = {lobe, level.spec.mirror ? 1.0 : exponent};
-    return level;
-}
-
 Error field_error(const char* field, std::string what, std::string hint = "") {
     return {std::move(what), field_place(field), std::move(hint)};
 }
@@ -223,10 +197,50 @@ int quarters_of(const std::string& convention) {
     return int(std::lround(std::atan2(centre.z, centre.x) * 2 / k_pi)) & 3;
 }
 
-}  // namespace
+/// The levels of the specular chain, and of the sheen's.
+Result<void> plan_chain(EnginePlan& plan, const BakeOptions& o) {
+    const Engine& engine = *plan.engine;
+    plan.layout = o.layout.value_or(engine.layout);
+    const int scale = plan.layout == Layout::latlong ? 2 : 1;  // a lat-long map is as fine as a cube of half its height
+    const int size = o.size.value_or(scale * engine.size);
+    const auto levels = level_count(engine, o, size, plan.layout, is_chain(plan.container));
+    if (!levels) return levels.error();
+    const auto exponents = o.exponents.empty() ? default_phong_exponents(*levels) : o.exponents;
+    for (int l = 0; l < *levels; ++l) {
+        const int level_size = size >> l;
+        const double roughness = o.roughness.empty() ? engine.roughness(l, *levels, size / scale) : o.roughness[l];
+        plan.specular.push_back(is_phong(plan.lobe) ? phong_level(plan.lobe, level_size, exponents[l])
+                                                    : glossy_level(plan.lobe, level_size, roughness));
+        if (!engine.sheen_file.empty() && !o.lobe)
+            plan.sheen.push_back(glossy_level(Lobe::charlie, level_size, roughness));
+    }
+    if (!engine.panorama_file.empty())
+        plan.panorama = panorama_spec(engine.panorama, 4 * plan.specular.front().spec.size / scale);
+    return {};
+}
 
+/// From the maps in their default convention to the engine's.
+Result<void> plan_order(EnginePlan& plan) {
+    if (plan.engine->environment_only) return {};
+    if (plan.layout == Layout::cube) {
+        plan.order = TexelOrder::of_cube(cube_mirror_matrix(plan.engine->mirror));
+        return {};
+    }
+    const int quarters = quarters_of(plan.engine->latlong);
+    plan.order = TexelOrder::of_latlong(quarters);
+    if (quarters % 2 == 0) return {};
+    for (const LevelPlan& level : plan.specular)
+        if (level.spec.size % 2)
+            return field_error("size",
+                               fmt::format("a lat-long map {} high cannot be turned by a quarter: its "
+                                           "width is not a multiple of 4",
+                                           level.spec.size),
+                               "Use a size and a number of levels that keep every height even.");
+    return {};
+}
+
+/// Plans the bake for one engine, whose options have passed check_values().
 Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& o, const Environment* environment) {
-    if (auto ok = check_values(o); !ok) return ok.error();
     EnginePlan plan;
     plan.engine = &engine;
     plan.lobe = o.lobe.value_or(Lobe::ggx);
@@ -234,54 +248,36 @@ Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& o, const
     plan.brdf_size = o.brdf_size.value_or(engine.brdf_size);
     if (auto ok = plan_encoding(plan, o); !ok) return ok.error();
     if (auto ok = plan_irradiance(plan, o); !ok) return ok.error();
-    if (engine.environment_only) {
-        if (auto ok = plan_environment_only(plan, o, environment); !ok) return ok.error();
-    } else {
-        plan.layout = o.layout.value_or(engine.layout);
-        const int scale =
-            plan.layout == Layout::latlong ? 2 : 1;  // a lat-long map is as fine as a cube when it is twice as high
-        const int size = o.size.value_or(scale * engine.size);
-        const auto levels = level_count(engine, o, size, plan.layout, is_chain(plan.container));
-        if (!levels) return levels.error();
-        const auto exponents = o.exponents.empty() ? default_phong_exponents(*levels) : o.exponents;
-        for (int l = 0; l < *levels; ++l) {
-            const int level_size = size >> l;
-            const double roughness = o.roughness.empty() ? engine.roughness(l, *levels, size / scale) : o.roughness[l];
-            plan.specular.push_back(is_phong(plan.lobe) ? phong_level(plan.lobe, level_size, exponents[l])
-                                                        : glossy_level(plan.lobe, level_size, roughness));
-            if (!engine.sheen_file.empty() && !o.lobe)
-                plan.sheen.push_back(glossy_level(Lobe::charlie, level_size, roughness));
-        }
-    }
+    if (auto ok = engine.environment_only ? plan_environment_only(plan, o, environment) : plan_chain(plan, o); !ok)
+        return ok.error();
     if (is_phong(plan.lobe) && o.method == BakeMethod::exact) plan.gap_probes = phong_gap_probes(plan.specular);
     plan.irradiance_size =
         o.irradiance_size.value_or(engine.irradiance_size) * (plan.layout == Layout::latlong ? 2 : 1);
-    if (!engine.panorama_file.empty()) {
-        const int size = 4 * plan.specular.front().spec.size / (plan.layout == Layout::latlong ? 2 : 1);
-        plan.panorama = panorama_spec(engine.panorama, size);
-    }
     if (const auto ok = check_own_container(plan, o); !ok) return ok.error();
-    plan.latlong_quarters = quarters_of(engine.latlong);
-    if (plan.latlong_quarters % 2 && plan.layout == Layout::latlong && !engine.environment_only)
-        for (const LevelPlan& level : plan.specular)
-            if (level.spec.size % 2)
-                return field_error("size",
-                                   fmt::format("a lat-long map {} high cannot be turned by a quarter: its "
-                                               "width is not a multiple of 4",
-                                               level.spec.size),
-                                   "Use a size and a number of levels that keep every height even.");
+    if (const auto ok = plan_order(plan); !ok) return ok.error();
     return plan;
 }
 
-Result<void> check_bake_options(const BakeOptions& options) {
+}  // namespace
+
+Result<std::vector<EnginePlan>> plan_bake(const BakeOptions& options, const Environment* environment) {
     if (options.engines.empty()) return field_error("engines", "no engine");
+    std::vector<EnginePlan> plans;
     for (const std::string& name : options.engines) {
         const auto engine = find_engine(name);
         if (!engine) return engine.error().at(field_place("engines"));
         if (std::count(options.engines.begin(), options.engines.end(), name) > 1)
             return field_error("engines", name + " is given twice");
-        if (auto plan = plan_engine(**engine, options, nullptr); !plan) return plan.error();
+        if (auto ok = check_values(options); !ok) return ok.error();
+        auto plan = plan_engine(**engine, options, environment);
+        if (!plan) return plan.error();
+        plans.push_back(*std::move(plan));
     }
+    return plans;
+}
+
+Result<void> check_bake_options(const BakeOptions& options) {
+    if (auto plans = plan_bake(options, nullptr); !plans) return plans.error();
     return {};
 }
 

@@ -3,18 +3,14 @@
 #include "domelight/bake/bake.h"
 
 #include "bake/panorama.h"
+#include "engines/chain.h"
+#include "texture/texel_order.h"
 
 #include <vector>
 
 namespace domelight {
 
-/// One level of a chain, with its kernel and the values that are recorded of it.
-struct LevelPlan {
-    LevelSpec spec;
-    double roughness = 0, alpha = 0, exponent = 0;
-};
-
-/// An engine with the options applied.
+/// An engine with the options applied: the one statement of what is filtered, and of how it is stored.
 struct EnginePlan {
     const Engine* engine = nullptr;
     Layout layout = Layout::cube;
@@ -31,12 +27,13 @@ struct EnginePlan {
     BrdfForm brdf_form = BrdfForm::none;
     std::optional<PanoramaSpec> panorama;  ///< the environment as one image, where the engine takes it
     bool size_of_source = false;           ///< the only map is a panorama, as large as the environment
-    int latlong_quarters = 0;  ///< the quarter turns of the engine's lat-long maps: turn_latlong() of bake/mirror.h
+    TexelOrder order;                      ///< from the maps to the engine's convention
 };
 
-/// Plans the bake for an engine. Errors: options that contradict each other or the engine; `where` is the option.
+/// Plans the bake for each of BakeOptions::engines. Errors: options that contradict each other or an engine; `where` is
+/// the option.
 ///
 /// environment   null before it is opened: an image that is to be as large as the source then has some other size
-Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& options, const Environment* environment);
+Result<std::vector<EnginePlan>> plan_bake(const BakeOptions& options, const Environment* environment);
 
 }  // namespace domelight

@@ -3,6 +3,7 @@
 #include "domelight/preview/preview.h"
 
 #include "bake/panorama.h"
+#include "preview/preview_map.h"
 
 #include <fmt/core.h>
 
@@ -34,10 +35,7 @@ std::string brdf_detail(BrdfForm form) {
 std::string irradiance_detail(const EnginePlan& plan, const FilteredMap& over_pi) {
     if (plan.container == Container::playcanvas_atlas) return "in the atlas";
     if (plan.engine->environment_only || plan.engine->irradiance_file.empty()) return "for comparison; not a file";
-    const std::string size = over_pi.cube.empty()
-                                 ? fmt::format("{} × {}", over_pi.latlong.width(), over_pi.latlong.height())
-                                 : fmt::format("{}²", over_pi.cube.size());
-    return size + (plan.irradiance_quantity == Quantity::irradiance ? ", stored as E" : ", stored as E / π");
+    return size_text(over_pi) + (plan.irradiance_quantity == Quantity::irradiance ? ", stored as E" : ", stored as E / π");
 }
 
 std::string subtitle(const EnginePlan& plan, const EngineReport& report) {
@@ -55,7 +53,7 @@ Image<std::uint8_t> draw_preview(const EnginePlan& plan, const FilterJob::Maps& 
     FilteredMap panorama;  // shown as the first level where there are no levels
     if (plan.engine->environment_only) {
         const PanoramaSpec& spec = *plan.panorama;
-        panorama.latlong = panorama_as_latlong(maps.panorama, spec.projection, 512, threads);
+        panorama = {Layout::latlong, panorama_as_latlong(maps.panorama->image, spec.projection, 512, threads)};
         input.specular.push_back({.map = &panorama,
                                   .detail = "projection " + spec.projection,
                                   .name = fmt::format("the environment · {} × {}", spec.width, spec.height)});
@@ -70,8 +68,8 @@ Image<std::uint8_t> draw_preview(const EnginePlan& plan, const FilterJob::Maps& 
     for (std::size_t l = 0; l < maps.sheen.size(); ++l)
         input.sheen.push_back(
             {.map = &maps.sheen[l], .roughness = plan.sheen[l].roughness, .alpha = plan.sheen[l].alpha});
-    input.irradiance_over_pi = &maps.irradiance_over_pi;
-    input.irradiance_detail = irradiance_detail(plan, maps.irradiance_over_pi);
+    input.irradiance_over_pi = maps.irradiance_over_pi;
+    input.irradiance_detail = irradiance_detail(plan, *maps.irradiance_over_pi);
     input.sh = report.sh.radiance;
     if (plan.brdf_form != BrdfForm::none) input.brdf = brdf;
     input.brdf_channels = plan.brdf_form == BrdfForm::scale_bias_charlie ? 3 : 2;

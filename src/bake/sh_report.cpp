@@ -25,12 +25,12 @@ std::array<double, 3> channels(const Vec3d& v) {
 /// Solid angles of a map's texels: of one face (all are alike), or of a lat-long row's texels.
 class SolidAngles {
   public:
-    explicit SolidAngles(const FilteredMap& map) : cube_(!map.cube.empty()), width_(cube_ ? map.cube.size() : 1) {
-        const int height = cube_ ? width_ : map.latlong.height();
-        for (int y = 0; y < height; ++y)
+    explicit SolidAngles(const FilteredMap& map)
+        : cube_(map.layout == Layout::cube), width_(cube_ ? map.width() : 1) {
+        for (int y = 0; y < map.height(); ++y)
             for (int x = 0; x < width_; ++x)
                 omega_.push_back(cube_ ? cube_solid_angle(x, y, width_)
-                                       : latlong_solid_angle(y, map.latlong.width(), height));
+                                       : latlong_solid_angle(y, map.width(), map.height()));
     }
     double operator()(int x, int y) const { return cube_ ? omega_[std::size_t(y % width_) * width_ + x] : omega_[y]; }
 
@@ -42,8 +42,7 @@ class SolidAngles {
 
 /// Mean of a map over the sphere: sum of omega E / sum of omega.
 std::array<double, 3> map_mean(const FilteredMap& map, const SolidAngles& solid_angle) {
-    const bool cube = !map.cube.empty();
-    const auto image = cube ? map.cube.strip() : map.latlong.view();
+    const auto image = map.image.view();
     std::array<double, 3> sum{};
     double total = 0;
     for (int y = 0; y < image.height; ++y)
@@ -68,17 +67,15 @@ ShReport make_sh_report(std::span<const Vec3d> radiance, int bands, ShWindow win
     const std::vector<Vec3d> over_pi = sh_irradiance_over_pi(report.radiance);
     for (const Vec3d& v : over_pi) report.irradiance.push_back(v * k_pi);
 
-    const bool cube = !irradiance_over_pi.cube.empty();
-    const auto truth = cube ? irradiance_over_pi.cube.strip() : irradiance_over_pi.latlong.view();
+    const auto truth = irradiance_over_pi.image.view();
     const SolidAngles solid_angle(irradiance_over_pi);
     const auto mean = map_mean(irradiance_over_pi, solid_angle);
     std::vector<RowError> rows(truth.height);
     parallel_ranges(truth.height, 8, threads, [&](int begin, int end) {
         for (int y = begin; y < end; ++y)
             for (int x = 0; x < truth.width; ++x) {
-                const int n = truth.width, fy = y % n;
-                const Vec3d d = cube ? normalize(cube_direction(y / n, {(x + 0.5) / n, (fy + 0.5) / n}))
-                                     : latlong_direction({(x + 0.5) / n, (y + 0.5) / truth.height});
+                const Vec3d d = map_direction(irradiance_over_pi.layout, irradiance_over_pi.width(),
+                                              irradiance_over_pi.height(), x, y);
                 const double omega = solid_angle(x, y);
                 const auto value = channels(sh_evaluate(over_pi, d));
                 for (int c = 0; c < 3; ++c) {

@@ -32,7 +32,7 @@ Result<void> ExactFilter::make(std::span<const ExactLevel> levels, const Progres
         auto filtered =
             filter(levels.subspan(first, count), piece_of(progress, double(first) / all, double(first + count) / all));
         if (!filtered) return filtered.error();
-        for (std::size_t i = 0; i < count; ++i) use(first + i, std::move(filtered->specular[i].cube));
+        for (std::size_t i = 0; i < count; ++i) use(first + i, std::move(filtered->specular[i]).cube());
         first += count;
     }
     return {};

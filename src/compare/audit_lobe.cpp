@@ -14,10 +14,6 @@ double exponent_of_roughness(double roughness) {
     return 0.5 * (std::pow(roughness, -4) - 1);
 }
 
-bool is_phong(Lobe lobe) {
-    return lobe == Lobe::phong_brdf || lobe == Lobe::phong_plain;
-}
-
 ZonalKernel lobe_at_roughness(Lobe lobe, double roughness) {
     return {lobe, is_phong(lobe) ? exponent_of_roughness(roughness) : roughness * roughness};
 }

@@ -10,8 +10,6 @@ double roughness_of_exponent(double exponent);
 /// Infinite at roughness 0.
 double exponent_of_roughness(double roughness);
 
-bool is_phong(Lobe lobe);
-
 /// The kernel of this lobe at a roughness in (0, 1].
 ZonalKernel lobe_at_roughness(Lobe lobe, double roughness);
 

@@ -73,6 +73,20 @@ std::string cube_mirror_direction(CubeMirror mirror) {
     return {};
 }
 
+Mat3 cube_mirror_matrix(CubeMirror mirror) {
+    switch (mirror) {
+        case CubeMirror::none:
+            return {};
+        case CubeMirror::x:
+            return {{Vec3d{-1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}};
+        case CubeMirror::z:
+            return {{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, -1}}};
+        case CubeMirror::swap_yz:
+            return {{Vec3d{1, 0, 0}, Vec3d{0, 0, 1}, Vec3d{0, 1, 0}}};
+    }
+    return {};
+}
+
 std::string brdf_form_name(BrdfForm form) {
     switch (form) {
         case BrdfForm::none:

@@ -2,6 +2,7 @@
 
 #include "domelight/filtering/resample/area_resample.h"
 #include "domelight/base/parallel.h"
+#include "domelight/projection/projection.h"
 
 #include "filtering/harmonic/bright_texels.h"
 #include "filtering/harmonic/cube_analysis.h"
@@ -25,16 +26,6 @@ constexpr int k_chunk_rows = 64;
 
 const Error k_cancelled{"cancelled", "", ""};
 
-FilteredMap as_map(Layout layout, ImageF image) {
-    FilteredMap map;
-    if (layout == Layout::latlong) {
-        map.latlong = std::move(image);
-    } else {
-        map.cube = Cubemap(std::move(image));
-    }
-    return map;
-}
-
 /// The levels that are the environment itself, made while its rows pass by. Runs that want the same level share it.
 class MirrorLevels {
   public:
@@ -53,7 +44,7 @@ class MirrorLevels {
     /// After the last row: fills the mirror levels of each run's result.
     void finish(std::span<FilterResult> results) {
         for (Mirror& mirror : mirrors_) {
-            mirror.map = as_map(mirror.layout, mirror.resampler->finish());
+            mirror.map = {mirror.layout, mirror.resampler->finish()};
             mirror.resampler.reset();
         }
         for (std::size_t r = 0; r < results.size(); ++r)
@@ -172,9 +163,9 @@ class Synthesis {
             const int size = irradiance ? options_.irradiance_size : options_.specular[levels[i]].size;
             FilteredMap& map = irradiance ? result_.irradiance_over_pi : result_.specular[levels[i]];
             if (options_.layout == Layout::cube)
-                map.cube = grid_to_cube(grids[i], size, lookup, result_.clamped);
+                map = grid_to_cube(grids[i], size, lookup, result_.clamped);
             else
-                map.latlong = grid_to_latlong(grids[i], size, lookup, result_.clamped);
+                map = {Layout::latlong, grid_to_latlong(grids[i], size, lookup, result_.clamped)};
         }
     }
 
@@ -259,6 +250,11 @@ FilterOptions with_shared_progress(const FilterOptions& options, std::size_t i, 
 
 }  // namespace
 
+Vec3d map_direction(Layout layout, int width, int height, int x, int y) {
+    const UV uv{(x + 0.5) / width, (y % height + 0.5) / height};
+    return layout == Layout::cube ? normalize(cube_direction(y / height, uv)) : latlong_direction(uv);
+}
+
 Result<std::vector<FilterResult>> prefilter(RowSource& source, std::span<const FilterOptions> runs) {
     const int width = source.width(), height = source.height(), threads = runs.front().threads;
     std::deque<RowPrefilter> prefilters;
@@ -310,9 +306,10 @@ Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& optio
         if (!level.mirror) continue;
         FilteredMap& map = result.specular[l];
         if (options.layout == Layout::cube)
-            map.cube = area_resample_cube(source, level.size, options.world_to_source, options.threads);
+            map = area_resample_cube(source, level.size, options.world_to_source, options.threads);
         else
-            map.latlong = area_resample_cube_to_latlong(source, level.size, options.world_to_source, options.threads);
+            map = {Layout::latlong,
+                   area_resample_cube_to_latlong(source, level.size, options.world_to_source, options.threads)};
     }
     if (options.progress && !options.progress("read", 1)) return k_cancelled;
     const BorderedCube cube(source);

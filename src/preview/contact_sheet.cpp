@@ -88,17 +88,15 @@ Ball make_ball(const PreviewMap& map, int size, bool chrome, int samples, int th
 FilteredMap irradiance_picture(std::span<const Vec3d> radiance) {
     const std::vector<Vec3d> sh = sh_irradiance_over_pi(radiance.first(std::min<std::size_t>(radiance.size(), 256)));
     const int n = sh.size() > 25 ? 64 : 32;
-    FilteredMap picture;
-    picture.cube = Cubemap(n);
-    for (int face = 0; face < 6; ++face)
-        for (int y = 0; y < n; ++y)
-            for (int x = 0; x < n; ++x) {
-                const Vec3d v = sh_evaluate(sh, normalize(cube_direction(face, {(x + 0.5) / n, (y + 0.5) / n})));
-                float* p = picture.cube.face(face).at(x, y);
-                p[0] = float(v.x);
-                p[1] = float(v.y);
-                p[2] = float(v.z);
-            }
+    FilteredMap picture = Cubemap(n);
+    for (int y = 0; y < picture.image.height(); ++y)
+        for (int x = 0; x < n; ++x) {
+            const Vec3d v = sh_evaluate(sh, map_direction(Layout::cube, n, n, x, y));
+            float* p = picture.image.at(x, y);
+            p[0] = float(v.x);
+            p[1] = float(v.y);
+            p[2] = float(v.z);
+        }
     return picture;
 }
 
@@ -149,15 +147,6 @@ class Sheet {
     std::vector<Panel> panels_;
     std::vector<Text> texts_;
 };
-
-int map_size(const FilteredMap& map) {
-    return map.cube.empty() ? map.latlong.height() : map.cube.size();
-}
-
-std::string size_text(const FilteredMap& map) {
-    return map.cube.empty() ? fmt::format("{} × {}", map.latlong.width(), map.latlong.height())
-                            : fmt::format("{}²", map.cube.size());
-}
 
 Sheet::Sheet(const PreviewInput& input) : in_(input), width_(std::max(input.width, 800)) {
     levels_.resize(in_.specular.size());
@@ -296,7 +285,7 @@ void Sheet::level_grid(const std::vector<PreviewLevel>& levels, const std::vecto
         const PreviewLevel& level = levels[std::size_t(i)];
         const PreviewMap& map = maps[std::size_t(i)];
         // If a rough lobe has smoothed the level, one lookup for each pixel is enough.
-        const bool fine = map_size(*level.map) > 64 && level.alpha < k_smooth_alpha;
+        const bool fine = level.map->height() > 64 && level.alpha < k_smooth_alpha;
         ball_panel(x, y, cell, map, true, fine ? 2 : 1);
         if (map.is_cube())
             cross_panel(x, y + cell + 10, cell, map);

@@ -2,6 +2,8 @@
 
 #include "domelight/projection/projection.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -47,16 +49,22 @@ void shrink(ImageView<const float> image, int width, int height, Texel4* block) 
 
 }  // namespace
 
+std::string size_text(const FilteredMap& map) {
+    return map.layout == Layout::cube ? fmt::format("{}²", map.width())
+                                      : fmt::format("{} × {}", map.width(), map.height());
+}
+
 MapPlace latlong_place(const Vec3f& d) {
     const UV uv = latlong_uv(Vec3d(d));
     return {0, float(uv.u), float(uv.v)};
 }
 
 PreviewMap::PreviewMap(const FilteredMap& map, int most) {
-    if (!map.cube.empty())
-        make_cube(map.cube, most);
-    else if (!map.latlong.empty())
-        make_latlong(map.latlong.view(), most);
+    if (map.empty()) return;
+    if (map.layout == Layout::cube)
+        make_cube(map, most);
+    else
+        make_latlong(map.image.view(), most);
 }
 
 PreviewMap::PreviewMap(ImageView<const float> latlong, int most, const Mat3& world_to_source)
@@ -64,9 +72,9 @@ PreviewMap::PreviewMap(ImageView<const float> latlong, int most, const Mat3& wor
     make_latlong(latlong, most);
 }
 
-void PreviewMap::make_cube(const Cubemap& cube, int most) {
+void PreviewMap::make_cube(const FilteredMap& cube, int most) {
     cube_ = true;
-    width_ = height_ = std::min(cube.size(), most);
+    width_ = height_ = std::min(cube.width(), most);
     const int n = width_, stride = n + 2;
     block_ = stride * stride;
     texels_.resize(std::size_t(block_) * 6);

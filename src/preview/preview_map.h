@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace domelight {
@@ -37,6 +38,9 @@ inline MapPlace cube_place(const Vec3f& d) {
 }
 
 MapPlace latlong_place(const Vec3f& d);
+
+/// "512²" of a cube, "1024 × 512" of a lat-long image.
+std::string size_text(const FilteredMap& map);
 
 /// A map reduced for fast lookups: faces of at most `most` texels (lat-long: 2 most rows), averaged over boxes, with a
 /// border taken from the neighbours so that bilinear look-ups go on across edges.
@@ -75,7 +79,7 @@ class PreviewMap {
     }
 
   private:
-    void make_cube(const Cubemap& cube, int most);
+    void make_cube(const FilteredMap& cube, int most);
     void make_latlong(ImageView<const float> image, int most);
 
     bool cube_ = false, turned_ = false;

@@ -136,7 +136,7 @@ Result<EnvironmentSurvey> survey_environment(const Environment& environment, int
     if (!result) return result.error();
     survey.mean_radiance = result->mean;
     for (int f = 0; f < 6; ++f) {
-        const float* e = result->irradiance_over_pi.cube.face(f).at(0, 0);
+        const float* e = result->irradiance_over_pi.face(f).at(0, 0);
         survey.irradiance[f] = Vec3d(e[0], e[1], e[2]) * k_pi;
     }
     survey.lights = find_lights(world);

@@ -38,26 +38,33 @@ EncodingReport report_from(const EncodeSums& sums, const LogScale& log_scale) {
     return report;
 }
 
+LogScale log_scale_in(const TexelOrder& order, const FilteredMap& map) {
+    if (order.keeps_places()) return log_scale_of(map.pixels());
+    LogScaleSums sums;
+    order.for_each_row(map, [&](std::span<const float> row) { sums.add(row); });
+    return sums.scale();
+}
+
 }  // namespace
 
 ChainEncoder::ChainEncoder(std::span<const FilteredMap> levels, Encoding encoding,
-                           std::map<std::string, std::string> metadata, EncodingQuality quality)
-    : quality_(quality) {
+                           std::map<std::string, std::string> metadata, EncodingQuality quality,
+                           const TexelOrder& order)
+    : quality_(quality), order_(order) {
     assert(!levels.empty());
-    const bool cube = !levels[0].cube.empty();
     head_.encoding = encoding;
     head_.metadata = std::move(metadata);
-    head_.width = cube ? levels[0].cube.size() : levels[0].latlong.width();
-    head_.height = cube ? levels[0].cube.size() : levels[0].latlong.height();
-    head_.faces = cube ? 6 : 1;
+    head_.width = levels[0].width();
+    head_.height = levels[0].height();
+    head_.faces = levels[0].faces();
     for (const FilteredMap& map : levels) {
         Level& level = levels_.emplace_back();
-        level.pixels = map.pixels().data();
-        level.width = cube ? map.cube.size() : map.latlong.width();
-        level.height = cube ? map.cube.size() : map.latlong.height();
-        level.log_scale = log_scale_of(map.pixels());
+        level.map = &map;
+        level.width = map.width();
+        level.height = map.height();
+        level.log_scale = log_scale_in(order, map);
         level.sums.resize(std::size_t(rows(level_count() - 1)) * head_.faces);
-        if (!cube) continue;
+        if (map.layout != Layout::cube) continue;
         const int half = (level.height + 1) / 2;
         level.weights.resize(std::size_t(half) * level.width);
         for (int y = 0; y < half; ++y)
@@ -82,6 +89,20 @@ const float* ChainEncoder::row_weights(const Level& level, int y, std::vector<fl
     return scratch.data();
 }
 
+const float* ChainEncoder::rows_in_order(const Level& level, int face, int y, int count,
+                                         std::vector<float>& scratch) const {
+    if (order_.keeps_places()) return level.map->face(face).row(y);
+    const std::size_t values = 3 * std::size_t(level.width);
+    scratch.resize(values * std::size_t(count));
+    if (count == 1) return order_.row(*level.map, face, y, scratch.data());
+    for (int i = 0; i < count; ++i) {
+        float* to = scratch.data() + values * std::size_t(i);
+        const float* row = order_.row(*level.map, face, y + i, to);
+        if (row != to) std::copy_n(row, values, to);
+    }
+    return scratch.data();
+}
+
 void ChainEncoder::encode(int level_index, int first, int count, std::uint8_t* out) {
     Level& level = levels_[level_index];
     constexpr int k_largest_block = 16;
@@ -89,11 +110,12 @@ void ChainEncoder::encode(int level_index, int first, int count, std::uint8_t* o
     assert(side <= k_largest_block);
     std::array<std::vector<float>, k_largest_block> scratch;
     std::array<const float*, k_largest_block> weight;
+    std::vector<float> texels;
     for (int row = first; row < first + count; ++row, out += row_bytes(level_index)) {
         const int face = row / face_rows, y = row % face_rows * side, texel_rows = std::min(side, level.height - y);
         for (int i = 0; i < texel_rows; ++i)
             weight[std::size_t(i)] = row_weights(level, y + i, scratch[std::size_t(i)]);
-        const float* rgb = level.pixels + 3 * std::size_t(level.width) * (std::size_t(level.height) * face + y);
+        const float* rgb = rows_in_order(level, face, y, texel_rows, texels);
         level.sums[row] =
             side == 1 ? simd::encode_row(head_.encoding, rgb, level.width, weight[0], level.log_scale.floor, out)
                       : encode_block_row(head_.encoding, quality_, rgb, level.width, texel_rows, weight.data(),
@@ -117,28 +139,27 @@ std::vector<EncodingReport> ChainEncoder::reports() const {
     return reports;
 }
 
-std::vector<EncodingReport> rgbe_reports(std::span<const FilteredMap> levels) {
+std::vector<EncodingReport> rgbe_reports(std::span<const FilteredMap> levels, const TexelOrder& order) {
     constexpr float k_top = 255 * 0x1p119f;
     std::vector<EncodingReport> reports;
     for (const FilteredMap& map : levels) {
-        const bool cube = !map.cube.empty();
-        const int width = cube ? map.cube.size() : map.latlong.width(),
-                  height = cube ? map.cube.size() : map.latlong.height(), rows = cube ? 6 * height : height;
-        const LogScale log_scale = log_scale_of(map.pixels());
+        const int width = map.width(), height = map.height();
+        const LogScale log_scale = log_scale_in(order, map);
         std::vector<float> weight(static_cast<std::size_t>(width)), stored(3 * weight.size());
         EncodeSums sums;
-        for (int row = 0; row < rows; ++row) {
-            if (cube)
+        int row = 0;
+        order.for_each_row(map, [&](std::span<const float> rgb) {
+            if (map.layout == Layout::cube)
                 cube_row_weights(width, row % height, weight.data());
             else
                 weight.assign(weight.size(), float(std::sin(k_pi * (row + 0.5) / height)));
-            const float* rgb = map.pixels().data() + stored.size() * std::size_t(row);
             for (std::size_t i = 0; i < stored.size(); i += 3) {
                 const auto rgbe = rgbe_from_rgb(rgb[i], rgb[i + 1], rgb[i + 2]);
                 for (std::size_t c = 0; c < 3; ++c) stored[i + c] = std::ldexp(float(rgbe[c]), int(rgbe[3]) - 136);
             }
-            sums += simd::compare_row(rgb, stored.data(), width, weight.data(), 0, k_top, log_scale.floor);
-        }
+            sums += simd::compare_row(rgb.data(), stored.data(), width, weight.data(), 0, k_top, log_scale.floor);
+            ++row;
+        });
         reports.push_back(report_from(sums, log_scale));
     }
     return reports;

@@ -3,6 +3,7 @@
 #include "domelight/texture/texture.h"
 
 #include "texture/texel/encode_row.h"
+#include "texture/texel_order.h"
 
 #include <cstdint>
 #include <map>
@@ -17,9 +18,11 @@ namespace domelight {
 /// texels, or of blocks if the encoding has them.
 class ChainEncoder {
   public:
-    /// `levels`: at least one. For a texture each must have half the size of the one before, rounded down.
+    /// `levels`: at least one. For a texture each must have half the size of the one before, rounded down. `order`:
+    /// where their texels go.
     ChainEncoder(std::span<const FilteredMap> levels, Encoding encoding,
-                 std::map<std::string, std::string> metadata = {}, EncodingQuality quality = EncodingQuality::standard);
+                 std::map<std::string, std::string> metadata = {}, EncodingQuality quality = EncodingQuality::standard,
+                 const TexelOrder& order = {});
 
     /// The texture that the levels make, its own levels left empty.
     const Texture& head() const { return head_; }
@@ -39,7 +42,7 @@ class ChainEncoder {
 
   private:
     struct Level {
-        const float* pixels = nullptr;
+        const FilteredMap* map = nullptr;
         int width = 0, height = 0;
         std::vector<float> weights;    ///< cube: of the upper half of a face's rows; the lower half is its reflection
         std::vector<EncodeSums> sums;  ///< of each row of each face
@@ -51,12 +54,20 @@ class ChainEncoder {
     /// Solid angles, up to a factor, of the texels in row `y` of a face.
     const float* row_weights(const Level& level, int y, std::vector<float>& scratch) const;
 
+    /// `count` rows of texels of a face from `y` on, one after the other; copied to `scratch` where the order asks for
+    /// it.
+    const float* rows_in_order(const Level& level, int face, int y, int count, std::vector<float>& scratch) const;
+
     Texture head_;
     EncodingQuality quality_;
+    TexelOrder order_;
     std::vector<Level> levels_;
 };
 
-/// The errors of levels stored as RGBE (.hdr pictures), one report for each level.
-std::vector<EncodingReport> rgbe_reports(std::span<const FilteredMap> levels);
+/// Encodes the whole chain in memory.
+Texture encode_in_memory(ChainEncoder& encoder, int threads);
+
+/// The errors of levels stored as RGBE (.hdr pictures) in an order, one report for each level.
+std::vector<EncodingReport> rgbe_reports(std::span<const FilteredMap> levels, const TexelOrder& order = {});
 
 }  // namespace domelight

@@ -27,13 +27,19 @@ Texture encode_texture(std::span<const FilteredMap> levels, Encoding encoding, i
         return texture;
     }
     ChainEncoder encoder(levels, encoding, {}, quality);
+    Texture texture = encode_in_memory(encoder, threads);
+    if (reports) *reports = encoder.reports();
+    return texture;
+}
+
+Texture encode_in_memory(ChainEncoder& encoder, int threads) {
     Texture texture = encoder.head();
     struct Piece {
         int level, first, rows;
     };
     std::vector<Piece> pieces;
     for (int l = 0; l < encoder.level_count(); ++l) {
-        const int rows = encoder.rows(l) * texture.faces, step = k_rows_a_piece / encoding_block(encoding);
+        const int rows = encoder.rows(l) * texture.faces, step = k_rows_a_piece / encoding_block(texture.encoding);
         texture.levels.emplace_back(encoder.row_bytes(l) * std::size_t(rows));
         for (int y = 0; y < rows; y += step) pieces.push_back({l, y, std::min(step, rows - y)});
     }
@@ -42,7 +48,6 @@ Texture encode_texture(std::span<const FilteredMap> levels, Encoding encoding, i
         encoder.encode(piece.level, piece.first, piece.rows,
                        texture.levels[piece.level].data() + encoder.row_bytes(piece.level) * std::size_t(piece.first));
     });
-    if (reports) *reports = encoder.reports();
     return texture;
 }
 

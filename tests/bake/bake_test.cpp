@@ -5,7 +5,6 @@
 #include "domelight/io/write_image.h"
 #include "domelight/projection/projection.h"
 
-#include "bake/mirror.h"
 #include "bake/sh_report.h"
 #include "bake/staging.h"
 #include "io/file/sha256.h"
@@ -97,28 +96,6 @@ TEST_CASE("sha256: the test vectors of FIPS 180-4, at once and in pieces") {
     CHECK(sha256_file(folder / "none").error().where == (folder / "none").string());
 }
 
-TEST_CASE("mirror_cube: texture(cube, M d) of the mirrored cube is texture(cube, d), and twice is nothing") {
-    for (const int size : {1, 4, 5})
-        for (const CubeMirror mirror : {CubeMirror::x, CubeMirror::z, CubeMirror::swap_yz}) {
-            Cubemap cube(size);
-            for (std::size_t i = 0; i < cube.pixels().size(); ++i) cube.pixels()[i] = float(i);
-            Cubemap mirrored = cube;
-            mirror_cube(mirrored, mirror);
-            for (int f = 0; f < 6; ++f)
-                for (int y = 0; y < size; ++y)
-                    for (int x = 0; x < size; ++x) {
-                        const Vec3d d = cube_direction(f, {(x + 0.5) / size, (y + 0.5) / size});
-                        const CubePoint p = cube_point(mirror == CubeMirror::x   ? Vec3d{-d.x, d.y, d.z}
-                                                       : mirror == CubeMirror::z ? Vec3d{d.x, d.y, -d.z}
-                                                                                 : Vec3d{d.x, d.z, d.y});
-                        CHECK(mirrored.face(p.face).at(int(p.uv.u * size), int(p.uv.v * size))[1] ==
-                              cube.face(f).at(x, y)[1]);
-                    }
-            mirror_cube(mirrored, mirror);
-            CHECK(std::equal(cube.pixels().begin(), cube.pixels().end(), mirrored.pixels().begin()));
-        }
-}
-
 TEST_CASE("staging: files appear together, and nothing stays of what was not committed") {
     const test::TemporaryFolder folder;
     {
@@ -172,13 +149,12 @@ TEST_CASE("sh report: three bands hold the irradiance of linear light exactly, t
     std::vector<Vec3d> radiance(9);
     radiance[0] = Vec3d(1, 1, 1) * (2 * std::sqrt(4 * k_pi));
     radiance[3] = Vec3d(1, 0, 0) * std::sqrt(4 * k_pi / 3);  // x in red
-    FilteredMap exact;
-    exact.cube = Cubemap(8);
+    FilteredMap exact = Cubemap(8);
     for (int f = 0; f < 6; ++f)
         for (int y = 0; y < 8; ++y)
             for (int x = 0; x < 8; ++x) {
                 const Vec3d d = normalize(cube_direction(f, {(x + 0.5) / 8, (y + 0.5) / 8}));
-                float* texel = exact.cube.face(f).at(x, y);
+                float* texel = exact.face(f).at(x, y);
                 texel[0] = float(2 + 2.0 / 3 * d.x);
                 texel[1] = texel[2] = 2;
             }

@@ -49,8 +49,8 @@ std::vector<CubeLevel> bake_levels(const ImageF& light, std::vector<LevelSpec> s
     REQUIRE(bool(result));
     std::vector<CubeLevel> levels;
     for (FilteredMap& map : result->specular) {
-        for (float& v : map.cube.pixels()) v *= scale;
-        levels.push_back({std::move(map.cube), {}});
+        for (float& v : map.pixels()) v *= scale;
+        levels.push_back({std::move(map).cube(), {}});
     }
     return levels;
 }

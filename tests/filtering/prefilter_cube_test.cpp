@@ -75,8 +75,8 @@ TEST_CASE("prefilter: a cube is filtered as the integral over its own reconstruc
     CHECK(std::abs(result->mean.x / mean.x - 1) < 1e-6);
     for (std::size_t l = 0; l <= options.specular.size(); ++l) {
         const bool irradiance = l == options.specular.size();
-        const Cubemap& map = irradiance ? result->irradiance_over_pi.cube : result->specular[l].cube;
-        const Cubemap& map1 = irradiance ? again->irradiance_over_pi.cube : again->specular[l].cube;
+        const FilteredMap& map = irradiance ? result->irradiance_over_pi : result->specular[l];
+        const FilteredMap& map1 = irradiance ? again->irradiance_over_pi : again->specular[l];
         CHECK(std::equal(map.pixels().begin(), map.pixels().end(), map1.pixels().begin()));
         double error2 = 0, truth2 = 0, worst = 0;
         for (int f = 0; f < 6; ++f)

@@ -152,7 +152,7 @@ TEST_CASE("prefilter: a turn of the world turns the maps") {
     REQUIRE(plain);
     REQUIRE(turned);
     for (std::size_t l = 1; l < 3; ++l) {
-        const auto a = plain->specular[l].cube.face(0), b = turned->specular[l].cube.face(4);
+        const auto a = plain->specular[l].face(0), b = turned->specular[l].face(4);
         for (int y = 0; y < a.height; ++y)
             for (int i = 0; i < a.width * 3; ++i) CHECK(std::abs(a.row(y)[i] - b.row(y)[i]) < 2e-6 * (1 + a.row(y)[i]));
     }
@@ -205,7 +205,7 @@ TEST_CASE("prefilter: no edge shows: steps across a cube's edges are the truth's
     const auto result = prefilter(source, options);
     REQUIRE(result);
     for (std::size_t l = 0; l < 2; ++l) {
-        const Cubemap& map = result->specular[l].cube;
+        const Cubemap map = result->specular[l].cube();
         const int n = map.size();
         std::vector<Vec3d> directions;
         for (int f = 0; f < 6; ++f)
@@ -245,7 +245,7 @@ TEST_CASE("prefilter: lat-long levels agree with the cube's at the same directio
     ImageRowSource source(image);
     const auto result = prefilter(source, options);
     REQUIRE(result);
-    const ImageF& map = result->specular[0].latlong;
+    const ImageF& map = result->specular[0].image;
     REQUIRE(map.width() == 32);
     std::vector<Vec3d> directions;
     for (int y = 0; y < 16; ++y)

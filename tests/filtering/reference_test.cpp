@@ -173,7 +173,7 @@ TEST_CASE("prefilter_reference: a constant environment stays constant by every m
             REQUIRE(result);
             REQUIRE(result->specular.size() == 4);
             CHECK(result->specular[0].pixels().size() == std::size_t(3 * 16 * (layout == Layout::cube ? 6 : 2)));
-            CHECK(result->specular[0].cube.empty() == (layout == Layout::latlong));
+            CHECK(result->specular[0].layout == layout);
             for (const FilteredMap& level : result->specular)
                 for (float v : level.pixels()) CHECK(v == doctest::Approx(3).epsilon(1e-6));
             for (float v : result->irradiance_over_pi.pixels()) CHECK(v == doctest::Approx(3).epsilon(1e-6));
@@ -264,9 +264,9 @@ TEST_CASE("prefilter_reference: the mirror level is the environment, turned as a
     double mean = 0, worst = 0;
     for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 64; ++x) {
-            mean += same->specular[0].latlong.at(x, y)[1] * latlong_solid_angle(y, 64, 32) / (4 * k_pi);
-            worst = std::max(worst, double(std::abs(turned->specular[0].latlong.at(x, y)[1] -
-                                                    same->specular[0].latlong.at((x + 5) % 64, y)[1])));
+            mean += same->specular[0].image.at(x, y)[1] * latlong_solid_angle(y, 64, 32) / (4 * k_pi);
+            worst = std::max(worst, double(std::abs(turned->specular[0].image.at(x, y)[1] -
+                                                    same->specular[0].image.at((x + 5) % 64, y)[1])));
         }
     CHECK(worst < 1e-6);
     CHECK(mean == doctest::Approx(same->mean.y).epsilon(1e-3));  // 8 x 8 midpoints

@@ -73,8 +73,7 @@ int write_everything(const TemporaryFolder& folder) {
            failed(write_ktx2(folder / "b", texture, Supercompression::zstd)) +
            failed(write_ktx1(folder / "c", texture)) + failed(write_dds(folder / "d", texture)) +
            failed([&]() -> Result<void> {
-               std::vector<FilteredMap> chain(1);
-               chain[0].latlong = image;
+               const std::vector<FilteredMap> chain{{Layout::latlong, image}};
                ChainEncoder encoder(chain, Encoding::rgba32f);
                const auto bytes = encoder.level_bytes();
                const auto hash = encode_to_file(folder / "h", encoder, *dds_layout(encoder.head(), bytes), 3, true);

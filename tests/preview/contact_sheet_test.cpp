@@ -16,15 +16,14 @@ using namespace domelight;
 namespace {
 
 FilteredMap cube_of(const ImageF& latlong, int size) {
-    FilteredMap map;
-    map.cube = Cubemap(size);
+    FilteredMap map = Cubemap(size);
     for (int f = 0; f < 6; ++f)
         for (int y = 0; y < size; ++y)
             for (int x = 0; x < size; ++x) {
                 const UV uv = latlong_uv(cube_direction(f, {(x + 0.5) / size, (y + 0.5) / size}));
                 std::copy_n(latlong.at(std::min(int(uv.u * latlong.width()), latlong.width() - 1),
                                        std::min(int(uv.v * latlong.height()), latlong.height() - 1)),
-                            3, map.cube.face(f).at(x, y));
+                            3, map.face(f).at(x, y));
             }
     return map;
 }
@@ -88,8 +87,7 @@ TEST_CASE("contact_sheet: the same bytes on any number of threads, with everythi
     REQUIRE(bool(source->read(sky.view())));
     std::vector<FilteredMap> maps;
     for (int size : {64, 32, 16, 8, 4, 2, 1}) maps.push_back(cube_of(sky, size));
-    FilteredMap latlong;
-    latlong.latlong = sky;
+    const FilteredMap latlong(Layout::latlong, sky);
     std::vector<Vec3d> sh(9, Vec3d(1, 2, 3));
     ImageF brdf(16, 16, 2, 0.4f);
     PreviewInput input;
@@ -125,8 +123,7 @@ TEST_CASE("contact_sheet: world_to_source turns the environment's picture") {
 TEST_CASE("contact_sheet: nothing, black and one-texel inputs still give a sheet") {
     CHECK(contact_sheet({}).width() == 1600);
     const ImageF black(4, 2, 3);
-    FilteredMap tiny;
-    tiny.cube = Cubemap(1);
+    FilteredMap tiny = Cubemap(1);
     const std::vector<Vec3d> sh(1);
     const ImageF brdf(1, 1, 2);
     PreviewInput input;
@@ -140,9 +137,8 @@ TEST_CASE("contact_sheet: nothing, black and one-texel inputs still give a sheet
 }
 
 TEST_CASE("PreviewMap: a constant stays constant across edges, and a direction finds its texel") {
-    FilteredMap map;
-    map.cube = Cubemap(5, 3);
-    std::fill(map.cube.pixels().begin(), map.cube.pixels().end(), 2.5f);
+    FilteredMap map = Cubemap(5, 3);
+    std::fill(map.pixels().begin(), map.pixels().end(), 2.5f);
     const PreviewMap constant(map, 4);
     for (const Vec3f& d : {Vec3f{1, 1, 1}, Vec3f{1, 1, 0}, Vec3f{-1, 0.999f, -1}, Vec3f{0, 0, 1}})
         CHECK(constant.sample(d).y == doctest::Approx(2.5));

@@ -120,7 +120,7 @@ std::vector<Vec3d> irradiance_of(const ImageF& image) {
     const auto filtered = prefilter(rows, options);
     REQUIRE(filtered);
     std::vector<Vec3d> out;
-    const ImageF& map = filtered->irradiance_over_pi.latlong;
+    const ImageF& map = filtered->irradiance_over_pi.image;
     for (int y = 0; y < map.height(); ++y)
         for (int x = 0; x < map.width(); ++x)
             out.push_back(Vec3d(map.at(x, y)[0], map.at(x, y)[1], map.at(x, y)[2]) * k_pi);

@@ -125,7 +125,7 @@ TEST_CASE("estimate_reflection: on a photograph the estimate is the bake's irrad
     REQUIRE(baked);
     for (const auto& [face, x, y] : {std::tuple{0, 1, 1}, {2, 2, 0}, {5, 3, 2}}) {
         const Vec3d normal = normalize(cube_direction(face, {(x + 0.5) / 4, (y + 0.5) / 4}));
-        const float* p = baked->irradiance_over_pi.cube.face(face).at(x, y);
+        const float* p = baked->irradiance_over_pi.face(face).at(x, y);
         EstimateOptions o;
         o.samples = 200000;
         const Estimate e =

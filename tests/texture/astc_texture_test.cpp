@@ -15,7 +15,7 @@ Texture sample(Encoding encoding) {
     std::vector<FilteredMap> chain(3);
     test::Noise noise;
     for (int l = 0; l < 3; ++l) {
-        chain[std::size_t(l)].cube = Cubemap(20 >> l);
+        chain[std::size_t(l)] = Cubemap(20 >> l);
         for (float& v : chain[std::size_t(l)].pixels()) v = noise.unit();
     }
     return encode_texture(chain, encoding, 1, nullptr, EncodingQuality::fast);

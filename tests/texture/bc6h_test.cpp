@@ -266,12 +266,12 @@ TEST_CASE("bc6h: a sun of one texel in the dark keeps its brightness") {
 TEST_CASE("bc6h: textures of any size, what is out of range clipped and counted") {
     for (const auto& [width, height] : {std::array{1, 1}, std::array{2, 2}, std::array{10, 5}, std::array{13, 7}}) {
         std::vector<FilteredMap> chain(1);
-        chain[0].latlong = ImageF(width, height, 3);
+        chain[0] = {Layout::latlong, ImageF(width, height, 3)};
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x)
                 for (int c = 0; c < 3; ++c)
-                    chain[0].latlong.at(x, y)[c] = std::exp2(0.1f * float(x) - 0.2f * float(y) + 0.3f * float(c));
-        float* corner = chain[0].latlong.at(width - 1, height - 1);
+                    chain[0].image.at(x, y)[c] = std::exp2(0.1f * float(x) - 0.2f * float(y) + 0.3f * float(c));
+        float* corner = chain[0].image.at(width - 1, height - 1);
         corner[0] = 1e6f;
         corner[1] = -1;
         corner[2] = std::numeric_limits<float>::quiet_NaN();
@@ -297,7 +297,7 @@ TEST_CASE("bc6h: real environments, the default within half a decibel of the exh
         const auto picture = read_picture(*data / name);
         REQUIRE(picture);
         std::vector<FilteredMap> strip(1);
-        strip[0].latlong = block_strip(picture->rgb, 557);
+        strip[0] = {Layout::latlong, block_strip(picture->rgb, 557)};
         std::vector<EncodingReport> reports;
         const auto psnr = [&](EncodingQuality quality) {
             encode_texture(strip, Encoding::bc6h, 1, &reports, quality);

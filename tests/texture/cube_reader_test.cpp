@@ -186,10 +186,10 @@ TEST_CASE("cube reader: faces that do not fit together are refused by name") {
 TEST_CASE("cube reader: a cube texture of ours is read back as the environment it holds") {
     TemporaryFolder folder;
     std::vector<FilteredMap> levels(1);
-    levels[0].cube = Cubemap(k_size);
+    levels[0] = Cubemap(k_size);
     for (int f = 0; f < 6; ++f) {
         const ImageF face = face_picture(f);
-        for (int y = 0; y < k_size; ++y) std::copy_n(face.row(y), 3 * k_size, levels[0].cube.face(f).row(y));
+        for (int y = 0; y < k_size; ++y) std::copy_n(face.row(y), 3 * k_size, levels[0].face(f).row(y));
     }
     const Texture texture = encode_texture(levels, Encoding::rgba32f, 1);
     REQUIRE(write_ktx2(folder / "c.ktx2", texture));

@@ -27,7 +27,7 @@ std::vector<FilteredMap> cube_chain(int size, int levels, float peak) {
     std::vector<FilteredMap> chain(static_cast<std::size_t>(levels));
     std::uint32_t state = 7;
     for (int l = 0; l < levels; ++l) {
-        chain[std::size_t(l)].cube = Cubemap(std::max(1, size >> l));
+        chain[std::size_t(l)] = Cubemap(std::max(1, size >> l));
         for (float& p : chain[std::size_t(l)].pixels()) p = std::exp2(8 * noise(state) - 4);
         chain[std::size_t(l)].pixels()[4] = peak;  // green of the second texel
     }
@@ -86,7 +86,7 @@ TEST_CASE("encode_texture: decoding gives back what the encoding can hold") {
             CHECK(reports[std::size_t(l)].rms_error <= tolerance(e, 1));
             for (int face = 0; face < 6; ++face) {
                 const ImageF back = decode_texture(texture, l, face);
-                const auto source = chain[std::size_t(l)].cube.face(face);
+                const auto source = chain[std::size_t(l)].face(face);
                 for (int y = 0; y < back.height(); ++y)
                     for (int x = 0; x < back.width(); ++x) {
                         const float* v = source.at(x, y);
@@ -107,10 +107,10 @@ TEST_CASE("encode_texture: decoding gives back what the encoding can hold") {
 TEST_CASE("encode_texture: what is clipped is counted and weighed by solid angle") {
     const int size = 32;
     std::vector<FilteredMap> chain(1);
-    chain[0].cube = Cubemap(size);
+    chain[0] = Cubemap(size);
     for (float& p : chain[0].pixels()) p = 1;
     // One texel in a corner, where solid angle is smallest, and one in a centre.
-    const auto face = chain[0].cube.face(2);
+    const auto face = chain[0].face(2);
     face.at(0, 0)[0] = 200000;
     face.at(15, 15)[1] = 100000;
     std::vector<EncodingReport> reports;
@@ -130,10 +130,10 @@ TEST_CASE("encode_texture: the PSNR of logarithms is as defined") {
     // of 0.7 beside red of 256 is stored as 1, in steps of 1.
     const int size = 16;
     std::vector<FilteredMap> chain(1);
-    chain[0].cube = Cubemap(size);
+    chain[0] = Cubemap(size);
     const auto pixels = chain[0].pixels();
     for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = i / 3 % 2 ? 256 : 1;
-    float* texel = chain[0].cube.face(4).at(3, 5);
+    float* texel = chain[0].face(4).at(3, 5);
     texel[0] = 256, texel[1] = 0.7f, texel[2] = 256;
     std::vector<EncodingReport> reports;
     encode_texture(chain, Encoding::rgb9e5, 1, &reports);
@@ -165,8 +165,8 @@ TEST_CASE("rgbe_reports: a mantissa's error, nothing clipped but what is negativ
 
 TEST_CASE("encode_texture: lat-long rows weigh by their solid angle") {
     std::vector<FilteredMap> chain(1);
-    chain[0].latlong = ImageF(32, 16, 3, 1.0f);
-    chain[0].latlong.at(3, 0)[1] = 1e6f;
+    chain[0] = {Layout::latlong, ImageF(32, 16, 3, 1.0f)};
+    chain[0].image.at(3, 0)[1] = 1e6f;
     std::vector<EncodingReport> reports;
     const Texture texture = encode_texture(chain, Encoding::rgb9e5, 1, &reports);
     CHECK(texture.faces == 1);

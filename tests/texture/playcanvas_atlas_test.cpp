@@ -99,13 +99,9 @@ TEST_CASE("resize_latlong: power is kept, a constant stays constant, means are t
 
 TEST_CASE("playcanvas_atlas: every level shows every direction where the shader looks, across all seams") {
     const ImageF image = direction_image(64);
+    const std::vector<FilteredMap> maps(7, FilteredMap(Layout::latlong, image));
     // PlayCanvas' convention: the centre is +Z, right of it -X.
-    ImageF turned(image.width(), image.height(), 3);
-    for (int y = 0; y < image.height(); ++y)
-        for (int x = 0; x < image.width(); ++x)
-            std::copy_n(image.at((x + image.width() / 4) % image.width(), y), 3, turned.at(x, y));
-    const std::vector<const ImageF*> maps(7, &turned);
-    const Image<std::uint8_t> atlas = make_playcanvas_atlas(maps, turned, 1);
+    const Image<std::uint8_t> atlas = make_playcanvas_atlas(maps, maps[0], TexelOrder::of_latlong(1), 1);
     for (const AtlasRect& r : all_rects()) {
         if (r.width < 16) continue;
         double worst = 0;

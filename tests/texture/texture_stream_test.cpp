@@ -22,9 +22,9 @@ std::vector<FilteredMap> noise_chain(bool cube, int size, int levels) {
     for (int l = 0; l < levels; ++l) {
         FilteredMap& map = chain[std::size_t(l)];
         if (cube)
-            map.cube = Cubemap(size >> l);
+            map = Cubemap(size >> l);
         else
-            map.latlong = ImageF(2 * (size >> l), size >> l, 3);
+            map = {Layout::latlong, ImageF(2 * (size >> l), size >> l, 3)};
         for (float& p : map.pixels()) {
             state = state * 1664525u + 1013904223u;
             p = std::exp2(float(state >> 8) * 0x1p-24f * 24 - 6);

@@ -199,7 +199,7 @@ TEST_CASE("uastc_hdr: the same bytes on any number of threads; the report names 
     std::vector<FilteredMap> chain(3);
     test::Noise noise;
     for (int l = 0; l < 3; ++l) {
-        chain[std::size_t(l)].cube = Cubemap(26 >> l);  // not whole blocks: 26, 13, 6
+        chain[std::size_t(l)] = Cubemap(26 >> l);  // not whole blocks: 26, 13, 6
         for (float& v : chain[std::size_t(l)].pixels()) v = std::exp2(3 * noise.unit());
     }
     chain[0].pixels()[100] = 1e6f;
@@ -214,7 +214,7 @@ TEST_CASE("uastc_hdr: the same bytes on any number of threads; the report names 
     CHECK(one.levels[1].size() == 6 * 4 * 4 * 16);
     const ImageF face = decode_texture(one, 1, 3);
     CHECK(face.width() == 13);
-    CHECK(octaves(face.pixels(), {chain[1].cube.face(3).row(0), face.pixels().size()}, 1e-7) <
+    CHECK(octaves(face.pixels(), {chain[1].face(3).row(0), face.pixels().size()}, 1e-7) <
           0.7);  // of noise over three octaves
 }
 
@@ -234,7 +234,7 @@ TEST_CASE("uastc_hdr: a photograph keeps 57 dB of log radiance") {
     ImageF image((*reader)->facts().width, (*reader)->facts().height, 3);
     REQUIRE((*reader)->read(image.view()));
     std::vector<FilteredMap> maps(1);
-    maps[0].latlong = image;
+    maps[0] = {Layout::latlong, image};
     const ImageF back = decode_texture(encode_texture(maps, Encoding::uastc_hdr, 0), 0, 0);
     double mean = 0;
     for (const float v : image.pixels()) mean += v / double(image.pixels().size());

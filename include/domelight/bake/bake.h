@@ -19,10 +19,6 @@
 
 namespace domelight {
 
-/// The least roughness of baked sheen; lower values are raised to it. Towards roughness 0 Charlie's lobe shrinks to the
-/// horizon and its integral to 0 (the Khronos viewer's own level for roughness 0 is black).
-inline constexpr double k_charlie_least_roughness = 0.1;
-
 /// How the filtering is done: exactly, or by one of the plain methods of reference.h.
 enum class BakeMethod { exact, bruteforce, riemann, montecarlo };
 std::string bake_method_name(BakeMethod method);

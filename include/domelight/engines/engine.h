@@ -1,6 +1,7 @@
 #pragma once
 
 #include "domelight/base/result.h"
+#include "domelight/base/vec.h"
 #include "domelight/filtering/prefilter.h"
 #include "domelight/texture/texture.h"
 
@@ -31,6 +32,7 @@ enum class CubeMirror {
     swap_yz,  ///< it reads texture(cube, (x, z, y))
 };
 std::string cube_mirror_direction(CubeMirror mirror);  ///< "d", "(-x, y, z)", ...
+Mat3 cube_mirror_matrix(CubeMirror mirror);            ///< M, where the engine reads texture(cube, M d)
 
 /// What a BRDF table's channels hold; brdf_table.h has the integrals.
 enum class BrdfForm { none, scale_bias, multiscatter, scale_bias_charlie };
@@ -80,6 +82,10 @@ struct Engine {
 std::span<const Engine> engines();
 /// The engine of that name. The error lists the names.
 Result<const Engine*> find_engine(const std::string& name);
+
+/// The least roughness of baked sheen; lower values are raised to it. Towards roughness 0 Charlie's lobe shrinks to the
+/// horizon and its integral to 0 (the Khronos viewer's own level for roughness 0 is black).
+inline constexpr double k_charlie_least_roughness = 0.1;
 
 /// roughness = level / (levels - 1); 0 for a single level.
 double linear_roughness(int level, int levels, int size);

@@ -10,11 +10,17 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace domelight {
 
 enum class Layout { cube, latlong };
+
+/// "cube", "latlong".
+inline const char* layout_name(Layout layout) {
+    return layout == Layout::cube ? "cube" : "latlong";
+}
 
 /// One level of a specular chain.
 struct LevelSpec {
@@ -36,13 +42,37 @@ struct FilterOptions {
     Progress progress;
 };
 
-/// A level of filtered light, in either layout (the other one is empty). RGB float32 radiance.
+/// A level of filtered light in either layout: RGB float32 radiance.
+///
+///     for (int f = 0; f < map.faces(); ++f)  // six of a cube, or the one lat-long image
+///         upload(map.face(f));
 struct FilteredMap {
-    Cubemap cube;
-    ImageF latlong;
-    std::span<float> pixels() { return cube.empty() ? latlong.pixels() : cube.pixels(); }
-    std::span<const float> pixels() const { return cube.empty() ? latlong.pixels() : cube.pixels(); }
+    Layout layout = Layout::cube;
+    /// The lat-long image in the default convention; or the faces of a cube in Cubemap's order and orientation, one
+    /// below the other.
+    ImageF image;
+
+    FilteredMap() = default;
+    FilteredMap(Layout layout_, ImageF image_) : layout(layout_), image(std::move(image_)) {}
+    FilteredMap(Cubemap cube) : image(std::move(cube).take_strip()) {}
+
+    bool empty() const { return image.empty(); }
+    int faces() const { return layout == Layout::cube ? 6 : 1; }
+    int width() const { return image.width(); }              ///< of a face
+    int height() const { return image.height() / faces(); }  ///< of a face
+    ImageView<float> face(int f) { return image.view().rows(f * height(), height()); }
+    ImageView<const float> face(int f) const { return image.view().rows(f * height(), height()); }
+    std::span<float> pixels() { return image.pixels(); }
+    std::span<const float> pixels() const { return image.pixels(); }
+    /// The map as a cube: a copy, or the pixels themselves where the map is given up. The layout must be `cube`.
+    Cubemap cube() const& { return Cubemap(image); }
+    Cubemap cube() && { return Cubemap(std::move(image)); }
 };
+
+/// World direction (unit length) of the centre of texel (x, y) of FilteredMap::image.
+///
+/// width, height   of one face
+Vec3d map_direction(Layout layout, int width, int height, int x, int y);
 
 struct FilterResult {
     std::vector<FilteredMap> specular;  ///< one for each LevelSpec

@@ -106,6 +106,8 @@ class Cubemap {
     ImageView<const float> strip() const { return faces_.view(); }
     std::span<float> pixels() { return faces_.pixels(); }
     std::span<const float> pixels() const { return faces_.pixels(); }
+    /// The pixels themselves, moved out of a cube that is no longer needed: size x 6 size.
+    ImageF take_strip() && { return std::move(faces_); }
 
   private:
     ImageF faces_;

@@ -256,12 +256,7 @@ class DirectSums::Level {
             p[2] = float(t.sum.b / t.sum.weight);
         }
         if (!split.empty()) add_lights(split, image);
-        FilteredMap map;
-        if (options_.layout == Layout::cube)
-            map.cube = Cubemap(std::move(image));
-        else
-            map.latlong = std::move(image);
-        return map;
+        return {options_.layout, std::move(image)};
     }
 
   private:
@@ -282,10 +277,7 @@ class DirectSums::Level {
 
     Vec3d direction(int index) const {
         const int size = spec_.size, width = options_.layout == Layout::cube ? size : 2 * size;
-        const int x = index % width, y = index / width;
-        return options_.layout == Layout::cube
-                   ? normalize(cube_direction(y / size, {(x + 0.5) / size, (y % size + 0.5) / size}))
-                   : latlong_direction({(x + 0.5) / width, (y + 0.5) / size});
+        return map_direction(options_.layout, width, size, index % width, index / width);
     }
 
     void place_texels() {

@@ -104,7 +104,7 @@ std::vector<double> phong_moments(double p, int band_limit) {
 }  // namespace
 
 KernelDensity::KernelDensity(const ZonalKernel& kernel) : lobe_(kernel.lobe), power_(lobe_power(kernel)) {
-    assert(kernel.lobe == Lobe::phong_brdf || kernel.lobe == Lobe::phong_plain ? kernel.width >= 0 : kernel.width <= 1);
+    assert(is_phong(kernel.lobe) ? kernel.width >= 0 : kernel.width <= 1);
     if (lobe_ == Lobe::ggx) {
         const double alpha = std::max(kernel.width, k_least_alpha), a2 = alpha * alpha;
         w_ = (1 - a2) / (1 + a2);

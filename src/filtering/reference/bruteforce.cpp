@@ -29,7 +29,7 @@ constexpr int k_deepest = 30;
 class Profile {
   public:
     explicit Profile(const ZonalKernel& kernel) : density_(kernel), width_(kernel.angular_width()) {
-        if (density_.lobe() == Lobe::phong_brdf || density_.lobe() == Lobe::phong_plain)
+        if (is_phong(density_.lobe()))
             if (density_.power() > 0) support_ = std::min(1.0, -std::log(k_negligible) / density_.power());
         if (density_.lobe() == Lobe::charlie) hole_ = std::pow(k_negligible, 1 / density_.power());
         if (density_.lobe() != Lobe::ggx) tabulate();

@@ -11,16 +11,12 @@ namespace {
 /// A level that is being computed: the direction of a point of a texel, and the position of the texel.
 class Grid {
   public:
-    Grid(Layout layout, int size) : layout_(layout), size_(size) {
-        if (layout == Layout::cube)
-            map_.cube = Cubemap(size);
-        else
-            map_.latlong = ImageF(2 * size, size, 3);
-    }
-    int width() const { return layout_ == Layout::cube ? size_ : 2 * size_; }
-    std::int64_t texels() const {
-        return layout_ == Layout::cube ? std::int64_t(6) * size_ * size_ : std::int64_t(2) * size_ * size_;
-    }
+    Grid(Layout layout, int size)
+        : layout_(layout),
+          size_(size),
+          map_(layout == Layout::cube ? FilteredMap(Cubemap(size)) : FilteredMap(layout, ImageF(2 * size, size, 3))) {}
+    int width() const { return map_.width(); }
+    std::int64_t texels() const { return std::int64_t(map_.pixels().size() / 3); }
     /// Direction (not normalised) at (s, t) in [0, 1]^2 of texel i, rows of faces from the first one down.
     Vec3d direction(std::int64_t i, double s, double t) const {
         const int x = int(i % width()), y = int(i / width());
@@ -110,7 +106,7 @@ bool fill(Grid& grid, ImageView<const float> latlong, const ReferenceSource& sou
 }
 
 bool valid(const ZonalKernel& kernel) {
-    const bool phong = kernel.lobe == Lobe::phong_brdf || kernel.lobe == Lobe::phong_plain;
+    const bool phong = is_phong(kernel.lobe);
     return kernel.width >= 0 && (phong ? std::isfinite(kernel.width) : kernel.width <= 1);
 }
 

@@ -2,10 +2,10 @@
 
 #include "domelight/texture/texture.h"
 
-#include "image/mirror_cube.h"
 #include "image/repair.h"
 #include "scene/gltf/gltf_image_light.h"
 #include "texture/container/texture_reading.h"
+#include "texture/texel_order.h"
 
 #include <fmt/format.h>
 
@@ -53,8 +53,8 @@ Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_
         }
     }
     if (info->container.starts_with("Babylon")) {
-        mirror_cube_x(cube);
-        return cube;
+        const TexelOrder mirrored = TexelOrder::of_cube({{Vec3d{-1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}});
+        return mirrored.apply(std::move(cube)).cube();
     }
     report.warnings.push_back("the faces are taken to be in OpenGL's orientation; some tools write them mirrored");
     if (info->eight_bits && texture->encoding == Encoding::rgba16f)

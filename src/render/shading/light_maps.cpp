@@ -6,6 +6,7 @@
 #include "domelight/render/shading/shading.h"
 #include "domelight/texture/texture.h"
 
+#include "engines/chain.h"
 #include "io/file/json.h"
 #include "projection/bilinear.h"
 
@@ -126,16 +127,13 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
 
 Result<LightMaps> LightMaps::bake(ImageView<const float> latlong, const Mat3& world_to_source, int threads, Lobe lobe) {
     const Engine& engine = engines().front();  // generic
-    const int levels = default_levels(engine, engine.size);
-    const auto exponents = default_phong_exponents(levels);
     LightMaps maps;
     maps.impl_->lobe = lobe;
     FilterOptions options;
-    for (int l = 0; l < levels; ++l) {
-        const double roughness = engine.roughness(l, levels, engine.size);
-        options.specular.push_back({engine.size >> l, l == 0,
-                                    lobe == Lobe::ggx ? ZonalKernel::ggx(roughness) : ZonalKernel{lobe, exponents[l]}});
-        maps.impl_->roughness.push_back(lobe == Lobe::ggx ? float(roughness) : matching_roughness(exponents[l]));
+    for (const LevelPlan& level : default_chain(engine, lobe)) {
+        options.specular.push_back(level.spec);
+        maps.impl_->roughness.push_back(
+            is_phong(lobe) ? matching_roughness(level.exponent) : float(level.roughness));
     }
     options.irradiance_size = engine.irradiance_size;
     options.sh_bands = 3;
@@ -144,8 +142,8 @@ Result<LightMaps> LightMaps::bake(ImageView<const float> latlong, const Mat3& wo
     ImageRowSource rows(latlong);
     auto filtered = prefilter(rows, options);
     if (!filtered) return filtered.error();
-    for (const FilteredMap& level : filtered->specular) maps.impl_->specular.emplace_back(level.cube);
-    maps.impl_->irradiance_over_pi.emplace_back(filtered->irradiance_over_pi.cube);
+    for (FilteredMap& level : filtered->specular) maps.impl_->specular.emplace_back(std::move(level).cube());
+    maps.impl_->irradiance_over_pi.emplace_back(filtered->irradiance_over_pi.cube());
     maps.impl_->sh_irradiance = sh_irradiance_over_pi(filtered->sh);
     maps.impl_->brdf = brdf_table_default();
     return maps;

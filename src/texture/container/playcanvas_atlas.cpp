@@ -37,8 +37,7 @@ ImageF with_seam(const ImageF& source, const AtlasRect& rect) {
 
 /// Encodes a map into its place.
 EncodingReport put(Image<std::uint8_t>& atlas, const AtlasRect& rect, const ImageF& source, int threads) {
-    FilteredMap map;
-    map.latlong = with_seam(source, rect);
+    const FilteredMap map(Layout::latlong, with_seam(source, rect));
     std::vector<EncodingReport> reports;
     const Texture texture = encode_texture({&map, 1}, Encoding::rgbp, threads, &reports);
     const std::uint8_t* from = texture.levels[0].data();
@@ -72,18 +71,21 @@ AtlasRect atlas_rough_rect(int level) {
     return {0, k_atlas_size - width, width, width / 2};
 }
 
-Image<std::uint8_t> make_playcanvas_atlas(std::span<const ImageF* const> maps, const ImageF& diffuse, int threads,
-                                          std::vector<EncodingReport>* reports) {
+Image<std::uint8_t> make_playcanvas_atlas(std::span<const FilteredMap> maps, const FilteredMap& diffuse,
+                                          const TexelOrder& order, int threads, std::vector<EncodingReport>* reports) {
     assert(maps.size() == 1 + k_atlas_rough_levels);
     Image<std::uint8_t> atlas(k_atlas_size, k_atlas_size, 4);
     std::vector<EncodingReport> all;
-    for (int l = 0; l < k_atlas_shiny_levels; ++l) {
-        const EncodingReport report = put(atlas, atlas_shiny_rect(l), *maps[0], threads);
-        if (l == 0) all.push_back(report);
+    {
+        const FilteredMap environment = order.apply(maps[0]);
+        for (int l = 0; l < k_atlas_shiny_levels; ++l) {
+            const EncodingReport report = put(atlas, atlas_shiny_rect(l), environment.image, threads);
+            if (l == 0) all.push_back(report);
+        }
     }
     for (int l = 1; l <= k_atlas_rough_levels; ++l)
-        all.push_back(put(atlas, atlas_rough_rect(l), *maps[std::size_t(l)], threads));
-    put(atlas, k_atlas_diffuse_rect, diffuse, threads);
+        all.push_back(put(atlas, atlas_rough_rect(l), order.apply(maps[std::size_t(l)]).image, threads));
+    put(atlas, k_atlas_diffuse_rect, order.apply(diffuse).image, threads);
     if (reports) *reports = std::move(all);
     return atlas;
 }

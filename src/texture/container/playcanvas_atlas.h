@@ -11,6 +11,7 @@
 #include "domelight/texture/texture.h"
 
 #include "io/file/byte_source.h"
+#include "texture/texel_order.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -29,9 +30,10 @@ AtlasRect atlas_shiny_rect(int level);  ///< 0 to k_atlas_shiny_levels - 1
 AtlasRect atlas_rough_rect(int level);  ///< 1 to k_atlas_rough_levels
 inline constexpr AtlasRect k_atlas_diffuse_rect{128, 384, 64, 32};
 
-/// RGBP bytes. `maps`: level 0 (the environment) and levels 1 to 6, lat-long in PlayCanvas' convention and at least as
-/// large as their places; `diffuse`: E / pi. `reports`: one for each of `maps`.
-Image<std::uint8_t> make_playcanvas_atlas(std::span<const ImageF* const> maps, const ImageF& diffuse, int threads,
+/// RGBP bytes. `maps`: level 0 (the environment) and levels 1 to 6, lat-long and at least as large as their places;
+/// `diffuse`: E / pi; `order` leads to PlayCanvas' convention. `reports`: one for each of `maps`.
+Image<std::uint8_t> make_playcanvas_atlas(std::span<const FilteredMap> maps, const FilteredMap& diffuse,
+                                          const TexelOrder& order, int threads,
                                           std::vector<EncodingReport>* reports = nullptr);
 Result<void> write_playcanvas_atlas(const std::filesystem::path& file, const Image<std::uint8_t>& atlas);
 

@@ -186,36 +186,57 @@ EncodeSums compare_row_scalar(const float* rgb, const float* stored, int count, 
 }
 
 LogScale log_scale_of(std::span<const float> rgb) {
+    LogScaleSums sums;
+    sums.add(rgb);
+    return sums.scale();
+}
+
+void LogScaleSums::add(std::span<const float> rgb) {
+    count_ += rgb.size();
+    if (begun_count_ > 0) {
+        const std::size_t taken = std::min(rgb.size(), k_chunk - begun_count_);
+        std::copy_n(rgb.begin(), taken, begun_.begin() + std::ptrdiff_t(begun_count_));
+        begun_count_ += taken;
+        rgb = rgb.subspan(taken);
+        if (begun_count_ < k_chunk) return;
+        add_chunk(begun_);
+        begun_count_ = 0;
+    }
+    for (; rgb.size() >= k_chunk; rgb = rgb.subspan(k_chunk)) add_chunk(rgb.first(k_chunk));
+    std::ranges::copy(rgb, begun_.begin());
+    begun_count_ = rgb.size();
+}
+
+void LogScaleSums::add_chunk(std::span<const float> rgb) {
     // Eight sums side by side: their order is part of the result's definition, and a vector has them at once.
     constexpr std::size_t k_texels_at_once = 8;
-    std::array<double, 3> sum{};
-    float low = std::numeric_limits<float>::max(), high = 0;
     const auto number = [](float v) { return v == v ? v : 0.0f; };
-    for (std::size_t begin = 0; begin < rgb.size();) {
-        const std::size_t end = std::min(rgb.size(), begin + 3 * 512);
-        float part[3 * k_texels_at_once] = {}, least[3 * k_texels_at_once], most[3 * k_texels_at_once];
-        std::fill(std::begin(least), std::end(least), low);
-        std::fill(std::begin(most), std::end(most), high);
-        for (; begin < end; begin += 3 * k_texels_at_once) {
-            const std::size_t lanes = std::min(end - begin, 3 * k_texels_at_once);
-            for (std::size_t i = 0; i < lanes; ++i) {
-                const float v = number(rgb[begin + i]);
-                part[i] += v;
-                least[i] = v < least[i] ? v : least[i];
-                most[i] = v > most[i] ? v : most[i];
-            }
+    float part[3 * k_texels_at_once] = {}, least[3 * k_texels_at_once], most[3 * k_texels_at_once];
+    std::fill(std::begin(least), std::end(least), low_);
+    std::fill(std::begin(most), std::end(most), high_);
+    for (std::size_t begin = 0; begin < rgb.size(); begin += 3 * k_texels_at_once) {
+        const std::size_t lanes = std::min(rgb.size() - begin, 3 * k_texels_at_once);
+        for (std::size_t i = 0; i < lanes; ++i) {
+            const float v = number(rgb[begin + i]);
+            part[i] += v;
+            least[i] = v < least[i] ? v : least[i];
+            most[i] = v > most[i] ? v : most[i];
         }
-        begin = end;
-        for (std::size_t i = 0; i < 3 * k_texels_at_once; ++i) sum[i % 3] += double(part[i]);
-        low = *std::min_element(std::begin(least), std::end(least));
-        high = *std::max_element(std::begin(most), std::end(most));
     }
+    for (std::size_t i = 0; i < 3 * k_texels_at_once; ++i) sum_[i % 3] += double(part[i]);
+    low_ = *std::min_element(std::begin(least), std::end(least));
+    high_ = *std::max_element(std::begin(most), std::end(most));
+}
+
+LogScale LogScaleSums::scale() {
+    add_chunk(std::span(begun_).first(begun_count_));
+    begun_count_ = 0;
     const double mean =
-        rgb.empty() ? 0 : (0.2126 * sum[0] + 0.7152 * sum[1] + 0.0722 * sum[2]) / (double(rgb.size()) / 3);
+        count_ == 0 ? 0 : (0.2126 * sum_[0] + 0.7152 * sum_[1] + 0.0722 * sum_[2]) / (double(count_) / 3);
     LogScale scale;
     if (mean > 0) scale.floor = float(1e-4 * mean);
     if (!(scale.floor > 0 && std::isfinite(scale.floor))) scale.floor = 1;
-    scale.range = std::log2((std::max(high, 0.0f) + scale.floor) / (std::max(low, 0.0f) + scale.floor));
+    scale.range = std::log2((std::max(high_, 0.0f) + scale.floor) / (std::max(low_, 0.0f) + scale.floor));
     return scale;
 }
 

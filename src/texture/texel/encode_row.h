@@ -4,8 +4,11 @@
 #include "domelight/base/vec.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 namespace domelight {
@@ -40,6 +43,24 @@ struct LogScale {
     double range = 0;  ///< of log2(channel + floor), channels below 0 counting as 0
 };
 LogScale log_scale_of(std::span<const float> rgb);
+
+/// The same of texels that come in pieces. The result does not depend on where the pieces end.
+class LogScaleSums {
+  public:
+    void add(std::span<const float> rgb);
+    /// After the last piece.
+    LogScale scale();
+
+  private:
+    static constexpr std::size_t k_chunk = 3 * 512;  ///< floats that are added in single precision
+    void add_chunk(std::span<const float> rgb);
+
+    std::array<double, 3> sum_{};
+    float low_ = std::numeric_limits<float>::max(), high_ = 0;
+    std::size_t count_ = 0;             ///< floats in all
+    std::array<float, k_chunk> begun_;  ///< the chunk that is not complete yet
+    std::size_t begun_count_ = 0;
+};
 
 /// NaN becomes 0.
 inline float limit_to(float v, float low, float high) {

@@ -13,6 +13,11 @@ enum class Lobe {
     phong_plain,  ///< plain Phong map: (n + 1) / 2 pi max(c, 0)^n
 };
 
+/// Whether a lobe's width is an exponent.
+inline bool is_phong(Lobe lobe) {
+    return lobe == Lobe::phong_brdf || lobe == Lobe::phong_plain;
+}
+
 /// A lobe with its width: a density over directions (per steradian) of c = cos of the angle to the lobe's axis,
 /// normalised to 1 over the sphere. docs/math/prefilter.md derives each one.
 struct ZonalKernel {
