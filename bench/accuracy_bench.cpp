@@ -1,5 +1,5 @@
-// How exact the exact filter is: every level of the chains that matter, on real environments and a hard sun, against
-// the kernel integrated in double over the bilinear reconstruction.
+// The error of the exact filter: every level of the usual chains, for real environments and a hard sun, against the
+// kernel integrated in double over the bilinear reconstruction.
 //
 //   accuracy_bench [--full] [--chain TEXT] [FILE.hdr ...]
 //
@@ -27,7 +27,7 @@ namespace {
 struct Chain {
     std::string name;
     FilterOptions options;
-    double rmse, largest;  ///< what it must reach
+    double rmse, largest;  ///< the largest error that is accepted
 };
 
 std::vector<Chain> chains() {
@@ -57,7 +57,7 @@ std::vector<Chain> chains() {
     return list;
 }
 
-/// Prints one environment's table; returns how many figures fall short.
+/// Prints the table of one environment. Returns how many errors are too large.
 int report(const std::string& name, const ImageF& image, const std::string& only, int random,
            std::map<std::string, std::pair<double, double>>& worst, int& figures) {
     fmt::print("\n{} ({} x {})\n", name, image.width(), image.height());

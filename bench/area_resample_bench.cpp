@@ -1,4 +1,4 @@
-// Level 0: milliseconds (CPU and wall) and the relative error of the light kept, by source size, face size and
+// Level 0: milliseconds (CPU and wall clock) and the relative error of the total light, by source size, face size and
 // orientation.
 #include "domelight/filtering/resample/area_resample.h"
 #include "domelight/projection/projection.h"
@@ -26,7 +26,7 @@ ImageF environment(int width, int height) {
     return image;
 }
 
-/// ∫ g dω of the green channel: the row tents' integrals against sin theta in closed form.
+/// ∫ g dω of the green channel: the tent of each row is integrated against sin θ in closed form.
 double light(ImageView<const float> image) {
     const double h = k_pi / image.height;
     double sum = 0;

@@ -5,7 +5,7 @@
 //   DOMELIGHT_DATA=... bc6h_bench [--step N] [FILE.hdr ...]
 //
 // PSNR: of log2(v + 1e-4 of the mean), channel by channel, against its range over the picture. The exhaustive search
-// sees every N-th block (257), as do the others where they are compared with it.
+// runs on every N-th block (257); for the comparison with it, so do the others.
 #include "domelight/compare/picture_reader.h"
 #include "domelight/texture/texture.h"
 
@@ -36,7 +36,7 @@ ImageF block_strip(const ImageF& picture, int step) {
     return strip;
 }
 
-/// CPU time of all threads: of the process, so that other programs on the machine do not count.
+/// CPU time of the process over all threads, so that other programs on the machine do not count.
 double median_seconds(const auto& work, int runs) {
     std::vector<double> seconds;
     for (int i = 0; i < runs; ++i) {

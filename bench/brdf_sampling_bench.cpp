@@ -1,6 +1,6 @@
 // Time to draw a direction with its density and weight, and to draw a point of each sequence; for BRDFs also the share
-// of draws that fall below the horizon, and the variance of the weight over views of every angle (0 would be a perfect
-// draw of an albedo that does not depend on the view).
+// of samples below the horizon, and the variance of the weight over all view angles (0 for perfect sampling of a BRDF
+// whose albedo does not depend on the view).
 #include "domelight/sampling/brdf.h"
 #include "domelight/sampling/sequences.h"
 
@@ -21,7 +21,7 @@ std::vector<UnitPoint> random_points() {
     return out;
 }
 
-/// Views of every angle, uniform in the cosine.
+/// Views at all angles, uniform in the cosine.
 std::vector<Vec3f> views() {
     std::vector<Vec3f> out;
     for (std::uint32_t i = 0; i < k_points; ++i) out.push_back(uniform_hemisphere(random_point(2, i)));
@@ -65,7 +65,7 @@ void ggx(benchmark::State& state) {
 }
 BENCHMARK(ggx)->ArgNames({"form", "alpha_percent"})->ArgsProduct({{0, 1, 2, 3}, {9, 36, 100}});
 
-/// The normals alone, as the papers time them.
+/// Only the normals, whose times the papers state.
 template <typename Draw>
 void normals(benchmark::State& state, const Draw& draw) {
     const std::vector<UnitPoint> u = random_points();

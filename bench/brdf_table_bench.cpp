@@ -1,4 +1,4 @@
-// The BRDF table: time beside the error against a far finer quadrature.
+// The BRDF table: its time, and its error against a much finer quadrature.
 #include "domelight/filtering/brdf/brdf_table.h"
 
 #include "filtering/brdf/brdf_quadrature.h"
@@ -14,7 +14,7 @@ using namespace domelight;
 
 constexpr int k_size = 128;
 
-/// Largest error of scale and bias over every seventh texel each way.
+/// Largest error of scale and bias, over every seventh texel in both directions.
 double worst_error(const ImageF& table) {
     double worst = 0;
     for (int y = 0; y < k_size; y += 7)
@@ -27,7 +27,7 @@ double worst_error(const ImageF& table) {
     return worst;
 }
 
-// Smith's separable form, so that the embedded table does not answer.
+// Smith's separable form: for the default form the embedded table would be returned.
 void quadrature(benchmark::State& state) {
     ImageF table;
     for (auto _ : state) table = brdf_table({k_size, BrdfG::smith, 1});

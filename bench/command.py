@@ -1,17 +1,15 @@
 #!/usr/bin/env python3
-"""The whole bake command beside the least it could cost: decoding its source and writing its files.
+"""The time of the whole bake command beside a lower bound: decoding its source and writing its files.
 
     bench/command.py [SOURCE_4K.hdr] [SOURCE_2K.hdr] [--runs 9] [--threads 2] [--folder DIR] [--json FILE]
 
-Two jobs: 4096 x 2048 to 1024^2 with 11 levels (RGBA16F), and 2048 x 1024 to 256^2 as bench/peers.py gives it to cmgen. For each, one round after the
-other, so that what else the machine does meets all alike:
+Two jobs: 4096 x 2048 to 1024^2 with 11 levels (RGBA16F), and 2048 x 1024 to 256^2 as bench/peers.py gives it to cmgen. For each, one round after the other, so that other work of the machine affects all alike:
 
     decode + write   the library's reader over the source, and its atomic writer over the bytes of the finished bake (bench/decode_and_write.cpp)
     bare             `domelight bake ... --no-preview --no-hashes`
     whole            `domelight bake ...`
 
-Figures are medians: seconds by the clock, and user and system CPU seconds of the whole process. All write to one folder (--folder; else a temporary one),
-over the files of the round before, whose pages the system must then free. A first round that is not counted fills the page cache with the sources. Without
+Figures are medians: seconds by the clock, and user and system CPU seconds of the whole process. All write to one folder (--folder, or a temporary one), over the files of the round before. A first round that is not counted fills the page cache with the sources. Without
 SOURCES: spruit_sunrise_4k_from_ultrahdr.hdr of $DOMELIGHT_DATA for the first where it is there, and `domelight sky` for what is missing.
 """
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`domelight convert` of a 4096 x 2048 lat-long map to 1024^2 faces beside the least it could cost: decoding its source and writing its files.
+"""`domelight convert` of a 4096 x 2048 lat-long map to 1024^2 faces beside a lower bound: decoding its source and writing its files.
 
     bench/convert.py [SOURCE_4K.hdr] [--runs 9] [--threads 1] [--json FILE]
 

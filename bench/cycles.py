@@ -5,8 +5,7 @@
     bench/cycles.py speed
 
 The scenes: a sphere, and a knot over a floor, each Lambert 0.8 and as a GGX metal (F = 1) of roughness 0.3 and 0.6, under a sun and a sky:
-sphere_l.glb, knot_l.glb and sunsky_2048.exr of the folder $DOMELIGHT_DATA/bench (or --data). agree: several pictures with different seeds from both; object
-means, and how the differences of pixels lie beside their own standard errors. Cycles up to 3.4 multiplies Smith's masking and shadowing, where glTF and later
+sphere_l.glb, knot_l.glb and sunsky_2048.exr of the folder $DOMELIGHT_DATA/bench (or --data). agree: several pictures with different seeds from both; the means of objects, and the differences of pixels relative to their standard errors. Cycles up to 3.4 multiplies Smith's masking and shadowing, where glTF and later
 versions correlate them: at roughness 0.6 that is 0.2 % of the light, so a second line of each metal has the same model in both. speed: one thread, tone-mapped RMSE, each against its own converged
 picture; scene and tables are built before the clock starts, on both sides.
 
@@ -37,7 +36,7 @@ def run(command, **options):
 
 def cycles(model, environment, out, material, samples, seeds, bounces):
     """CPU seconds by (samples, seed)."""
-    # Debian's blender wants Debian's python and numpy, whatever else is on the path.
+    # Debian's blender needs Debian's python and numpy, even if others come first on the path.
     system = dict(os.environ, PATH="/usr/bin:/bin")
     text = run(["blender", "-b", "--factory-startup", "-P", ROOT / "bench/cycles_scene.py", "--", model, environment, out, "--material", material, "--samples",
                 ",".join(map(str, samples)), "--seeds", ",".join(map(str, seeds)), "--bounces", bounces], env=system)
@@ -74,7 +73,7 @@ def agree(words, folder):
 
 
 def to_error(rows, error):
-    """CPU seconds at which the error is met, between the sample counts on either side (a power law through both)."""
+    """CPU seconds at which the error is reached, interpolated by a power law between two sample counts."""
     for (t0, e0), (t1, e1) in zip(rows, rows[1:]):
         if e1 <= error <= e0:
             return t0 * (t1 / t0) ** (math.log(e0 / error) / math.log(e0 / e1))
@@ -92,7 +91,7 @@ def speed(words, folder):
     for scene, material in SCENES:
         model, environment = words.data / f"{scene}_l.glb", words.data / "sunsky_2048.exr"
         pattern = f"{folder}/{scene}_{material.replace(':', '')}_%d_%d.exr"
-        # The first picture carries the scene's set-up and is not counted; of the others the median of three seeds.
+        # The time of the first picture includes the set-up of the scene and is not counted; of the others, the median over three seeds.
         counts = [4, 8, 16, 32, 64]
         time = cycles(model, environment, pattern, material, [1] + counts, [0, 1, 2], 0)
         cycles(model, environment, pattern, material, [1024], [77], 0)

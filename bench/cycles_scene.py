@@ -18,7 +18,7 @@ import mathutils
 import numpy
 
 if not hasattr(numpy, "bool"):
-    numpy.bool = bool  # Blender 3.4's glTF reader wants the name that NumPy 1.24 dropped
+    numpy.bool = bool  # Blender 3.4's glTF reader uses this name, which NumPy 1.24 has removed
 
 
 def material_of(spec):

@@ -1,5 +1,5 @@
-// The least a bake could cost: decoding its source, and writing the bytes it wrote. Run beside the program by
-// bench/command.py.
+// A lower bound of the time of a bake: decoding its source, and writing the bytes that it wrote. bench/command.py runs
+// this beside the program.
 //
 //     decode_and_write SOURCE BAKED SCRATCH [THREADS] [encode]
 //
@@ -64,13 +64,13 @@ struct File {
     ImageF picture;  ///< with `encode`
 };
 
-/// Six faces of a cube, as a picture each.
+/// Six faces of a cube, each as a picture.
 Result<void> decode_faces(std::vector<File>& files, const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> paths;
     for (const File& file : files) paths.push_back(folder / file.name);
     auto environment = open_environment(paths);
     if (!environment) return environment.error();
-    // Which face is which does not matter here: all are written.
+    // The order of the faces does not matter here: all are written.
     for (std::size_t f = 0; f < files.size(); ++f) {
         const ImageView<const float> face = environment->cube()->face(int(f));
         files[f].picture = ImageF(face.width, face.height, 3);

@@ -1,6 +1,6 @@
-// Drawing from an environment: million samples a second, densities included, by method, on random and on stratified
-// points, and as a ratio to plain binary search in the same run; table time and memory; the error of an estimate with
-// 4096 low-discrepancy points.
+// Sampling an environment, by method: millions of samples a second including their densities, with random and with
+// stratified points, also relative to plain binary search in the same run; the time and memory of the tables; the error
+// of an estimate with 4096 low-discrepancy points.
 //
 //   distribution_bench [--quick] [--set AVX2|SSE4|SCALAR] [FILE.hdr]
 //
@@ -32,8 +32,8 @@ using namespace domelight;
 
 namespace {
 
-/// Luminance x sin theta of an environment brought to `height` rows: means of blocks, or neighbours' bilinear mix where
-/// it must grow.
+/// Luminance times sin θ of an environment resized to `height` rows: means of blocks where it is reduced, bilinear
+/// interpolation where it is enlarged.
 ImageF weights_of(const ImageF& rgb, int height) {
     ImageF weights(2 * height, height, 1);
     const auto luminance = [&](int x, int y) {
@@ -86,7 +86,7 @@ std::vector<UnitPoint> random_points(int count) {
     return points;
 }
 
-/// One point in each cell of a square grid, row by row: what a renderer's stratified sampler hands out.
+/// One point in each cell of a square grid, row by row, as a renderer's stratified sampler gives them.
 std::vector<UnitPoint> stratified_points(int count) {
     const int n = int(std::lround(std::sqrt(count)));
     std::mt19937_64 random(2);
@@ -112,8 +112,9 @@ std::vector<UnitPoint> hammersley(int count, UnitPoint shift) {
     return points;
 }
 
-/// Root mean square of the relative error of an integral over the square by 4096 points, over 32 shifts of them: weight
-/// x a smooth function (a cosine lobe's), with the weight read as the density is, texel by texel or bilinear.
+/// Root mean square of the relative error of an integral over the square by 4096 points, over 32 shifts of them: the
+/// integrand is the weight times a smooth function (a cosine lobe), and the weight is read as the density is, constant
+/// in each texel or bilinear.
 double relative_error(const Distribution2D& d, const Distribution2D& exact, bool random) {
     const auto integrand = [&](double u, double v) {
         return exact.pdf_uv(u, v) *
@@ -152,9 +153,9 @@ struct Figures {
            error_random = 0;
 };
 
-/// Seconds a point: batched, and one at a time.
+/// Seconds for each point: in batches, and one at a time.
 double seconds_batched(const Distribution2D& d, std::span<const UnitPoint> points, std::vector<float>* out) {
-    const std::size_t chunk = 4096;  // as a renderer would: results stay in the cache
+    const std::size_t chunk = 4096;  // as in a renderer, where results stay in the cache
     const double start = cpu_seconds();
     for (std::size_t i = 0; i < points.size(); i += chunk) {
         const std::size_t n = std::min(chunk, points.size() - i);
@@ -172,7 +173,7 @@ double seconds_single(const Distribution2D& d, std::span<const UnitPoint> points
 }
 
 int g_short = 0;
-/// " short" where a figure that is asked of 4096 x 2048 misses.
+/// " short" after a figure for 4096 x 2048 that misses its target.
 const char* judge(bool asked, bool reached) {
     g_short += asked && !reached;
     return asked ? reached ? "  ok" : "  short" : "";
@@ -197,7 +198,7 @@ void run(const ImageF& weights, int rounds, int count) {
         figures[method].megabytes = all[method]->memory_bytes() * 1e-6;
     }
 
-    // Each round measures every method, so that a slower moment of the machine falls on all.
+    // Each round measures every method, so that a slow moment of the machine affects all of them.
     const auto random = random_points(count), stratified = stratified_points(count);
     std::map<DistributionMethod, std::vector<double>> times[4];
     std::vector<float> out[3];
@@ -237,7 +238,7 @@ void run(const ImageF& weights, int rounds, int count) {
             method_name(method), f.random, f.random_one, f.stratified, f.stratified_one, f.random / plain.random,
             f.stratified / plain.stratified, f.build_ms, f.megabytes, f.error, f.error_random);
     }
-    // The yardstick is the faster of its two forms.
+    // The reference is the faster of the two forms of binary search.
     const double binary_random = std::max(plain.random, plain.random_one),
                  binary_stratified = std::max(plain.stratified, plain.stratified_one);
     const Figures guided = figures[DistributionMethod::guided], alias = figures[DistributionMethod::alias],

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Block encoders beside each other on the same pictures, one thread each, in one run: speed, and PSNR of log radiance by one decoder.
+"""Compares block encoders on the same pictures in one run, one thread each: speed, and PSNR of log radiance by the same decoder.
 
     bench/encoders.py [PICTURE.hdr...]      (sides that are multiples of 4 texels; without any, those under DOMELIGHT_DATA)
 

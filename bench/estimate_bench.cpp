@@ -1,5 +1,5 @@
 // CPU time until an estimate of the reflection integral is within 1 % (one standard deviation), for each strategy and
-// surface: what a sampler is for.
+// surface.
 //
 //   estimate_bench [ENVIRONMENT ...]
 //
@@ -79,12 +79,12 @@ void report(const Surface& surface, const std::string& name, const Samplers& sam
             const Estimate e = estimate_reflection(surface, sampler, row.strategy, o);
             times.push_back((cpu_seconds() - start) / e.samples);
             const double error =
-                luminance(e.standard_error) / truth;  // of the channels together: they move as one, nearly
+                luminance(e.standard_error) / truth;  // of the sum of the channels, which vary almost alike
             square += error * error * e.samples / 5;
         }
         std::nth_element(times.begin(), times.begin() + 2, times.end());
         const double samples = square / 1e-4;
-        // Doubling until the Sobol points' own error, over randomisations, is there.
+        // The number of points is doubled until the error over the randomisations is small enough.
         o.sequence = Sequence::sobol;
         int n = 16;
         for (; n < 1 << 18; n *= 2) {

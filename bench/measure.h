@@ -1,5 +1,5 @@
 #pragma once
-// What the benchmarks measure with: CPU time, and medians of it.
+// How the benchmarks measure: CPU times and their medians.
 
 #include <algorithm>
 #include <cstddef>
@@ -13,7 +13,7 @@ inline double cpu_seconds() {
     return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-/// Seconds of a clock on the wall.
+/// Seconds by the wall clock.
 inline double wall_seconds() {
     timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);

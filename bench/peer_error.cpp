@@ -1,11 +1,11 @@
-// Error of a specular chain against the truth, whoever made it: for bench/peers.py.
+// The error of a specular chain made by any tool, against the truth. Used by bench/peers.py.
 //
 //     peer_error SOURCE.hdr ROUGHNESS,ROUGHNESS,... CHAIN [TEXELS]
 //
 // CHAIN is a KTX2, KTX1 or DDS cube with levels, or a folder of faces m<level>_<px|nx|...>.exr as cmgen writes them.
-// Tools differ in how they turn and mirror the light, so the orientation (of the 48 that permute and mirror axes) is
-// found by trying; it is printed, not judged. Prints one JSON object: for each level the relative RMS error and the
-// largest relative error as docs/math/prefilter.md defines them, over random texels.
+// Tools differ in how they turn and mirror the light, so all 48 orientations that permute and mirror the axes are
+// tried, and the best one is printed. Prints one JSON object: for each level the relative RMS error and the largest
+// relative error as docs/math/prefilter.md defines them, over random texels.
 
 #include "domelight/domelight.h"
 
@@ -128,7 +128,8 @@ std::vector<Vec3d> truth_for(const ImageF& source, double roughness, const std::
     return convolve_exactly(source, ZonalKernel::ggx(roughness), turned);
 }
 
-/// How the chain's directions lie in the source: what makes its roughest level, which is smooth, agree best with ours.
+/// The orientation of the chain relative to the source: the one in which its roughest level, which is smooth, agrees
+/// best with ours.
 Mat3 orientation_of(const Cubemap& roughest, const ImageF& source, double roughness) {
     FilterOptions options;
     options.specular.push_back({32, false, ZonalKernel::ggx(roughness)});
@@ -180,7 +181,7 @@ int main(int argc, char** argv) {
     const Mat3 turn = environment.world_to_source * orientation_of(chain.back(), source, roughness.back());
     nlohmann::ordered_json out{{"orientation", matrix_name(turn)}, {"levels", nlohmann::ordered_json::array()}};
     for (std::size_t l = 0; l < chain.size(); ++l) {
-        if (roughness[l] <= 0) continue;  // a mirror: nothing is filtered
+        if (roughness[l] <= 0) continue;  // a mirror level is not filtered
         const Texels t = pick_texels(chain[l], texels, unsigned(l) + 2);
         const ErrorMeasure m = measure(t, truth_for(source, roughness[l], t.directions, turn));
         out["levels"].push_back({{"level", l}, {"roughness", roughness[l]}, {"rms", m.rms}, {"max", m.max}});

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""cmgen beside domelight on the same job, in one run: CPU time of each, and the error of each against the truth.
+"""Compares cmgen and domelight on the same job in one run: the CPU time of each, and the error of each against the truth.
 
     bench/peers.py [SOURCE.hdr] [--size 256] [--runs 3] [--samples 1024] [--texels 100] [--json FILE]
 
 The job: a lat-long .hdr in; out a specular cube chain at cmgen's roughness of each level (perceptual 1 - sqrt(1 - l / M)), its skybox and spherical
 harmonics, as Filament loads them (KTX1, R11F_G11F_B10F). Time is user and system CPU seconds of the whole process, the best of several runs for
-domelight and of one or more for cmgen. Error is of a second pair of runs that stores floats (domelight) and halves (cmgen's EXR), so that the filters are
-compared and not the encoding. Without SOURCE the built-in sky serves, at 2048 x 1024.
+domelight and of one or more for cmgen. The error is that of a second pair of runs that stores floats (domelight) and halves (cmgen's EXR), so that the filters are
+compared and not the encoding. Without SOURCE: the built-in sky at 2048 x 1024.
 
 cmgen comes with Debian's libfilament-tools; the programs come from `cmake --build --preset dev`.
 """

@@ -2,7 +2,7 @@
 //
 //   render_bench converge [SCENE...]   CPU seconds to a tone-mapped RMSE of 0.01, one thread, against its own converged
 //                                      picture; one JSON line a sample count
-//   render_bench rays [SCENE...]       rays a second of the render loop beside the same rays traced bare, one by one;
+//   render_bench rays [SCENE...]       rays a second of the render loop, and of the same rays traced by Embree alone;
 //                                      two threads beside one
 //   render_bench agree [SCENE...] --theirs A.exr B.exr ...
 //                                      object means and z-test per pixel against pictures of one scene, each with a
@@ -113,7 +113,7 @@ ImageF make_environment(const Words& w) {
     return std::move(*image);
 }
 
-/// All that the three measurements share.
+/// What the three measurements have in common.
 struct Bench {
     explicit Bench(const Words& w)
         : image(make_environment(w)),
@@ -157,8 +157,8 @@ void converge(const Words& w) {
     }
 }
 
-/// The rays of a picture with direct light: the camera's, and from what they meet one to the environment and one by the
-/// BRDF.
+/// The rays of a picture with direct light: those of the camera, and from each point that they hit one ray to the
+/// environment and one by the BRDF.
 struct Rays {
     std::vector<Ray> camera, shadow;
 };
@@ -206,7 +206,7 @@ void measure_rays(const Words& w) {
         loop.push_back(cpu_seconds() - start);
         const double bare = double(rays.camera.size() + rays.shadow.size()) / (bare_camera.back() + bare_shadow.back());
         shares.push_back(double(traced) / loop.back() / bare);
-        // By the clock: threads cost the same CPU time.
+        // By the wall clock, because several threads take the same CPU time as one.
         RenderOptions more = b.options;
         more.width = more.height = 2 * more.width;
         double wall[2];

@@ -1,5 +1,5 @@
-// Loading a million triangles with normals and texture coordinates, from .glb, .ply and .obj; and from the file to a
-// scene that rays can be traced in, with the memory that this takes.
+// Loading a million triangles with normals and texture coordinates from .glb, .ply and .obj; and the time and memory
+// from the file to a scene in which rays can be traced.
 
 #include "domelight/render/render.h"
 
@@ -118,14 +118,14 @@ void load(benchmark::State& state, std::string (*make)(const Wavy&), const char*
     std::filesystem::remove(file);
 }
 
-/// Bytes of memory that the process has held at most.
+/// The largest memory of the process so far, in bytes.
 double most_memory() {
     rusage used;
     getrusage(RUSAGE_SELF, &used);
     return 1024.0 * double(used.ru_maxrss);
 }
 
-/// All cores, by the clock: Embree builds on its own threads.
+/// All cores, by the wall clock, because Embree builds on threads of its own.
 void load_and_build(benchmark::State& state) {
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / fmt::format("domelight-bench-{}.glb", std::rand());

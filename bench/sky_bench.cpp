@@ -1,4 +1,5 @@
-// The sky: milliseconds to set it up, texels a second, and what it measures; the contact sheet's milliseconds.
+// The sky: milliseconds to set it up, texels a second, and its photometric figures; and the milliseconds of the contact
+// sheet.
 #include "domelight/preview/preview.h"
 #include "domelight/environment/sky/sky.h"
 

@@ -1,10 +1,10 @@
-// What split-sum's round lobe costs and what the stretched one leaves of it: RMSE of L / (1 + L) against the reflection
-// integral, without occlusion, by roughness and viewing angle, under real environments.
+// The errors of split-sum's round lobe and of the stretched lobe: RMSE of L / (1 + L) against the reflection integral,
+// without occlusion, by roughness and viewing angle, under real environments.
 //
 //   stretched_bench [--f0 X] [--directions N] [--samples N] [--brief] [FILE ...]
 //
-// Without files: five under DOMELIGHT_DATA. Fails where the stretched lobe is over 5 % worse than split-sum, or, with
-// F0 = 1, not at least twice as good over roughness 0.1 to 0.6 and NdotV < 0.4.
+// Without files: five under DOMELIGHT_DATA. Fails if the stretched lobe is more than 5 % worse than split-sum anywhere,
+// or, with F0 = 1, not at least twice as good over roughness 0.1 to 0.6 and NdotV < 0.4.
 
 #include "domelight/io/environment/open_environment.h"
 
@@ -27,8 +27,8 @@ constexpr double k_grazing = 0.4;
 
 struct Summary {
     SquareErrors grazing;
-    double worst = 0;        ///< ratio of a cell at grazing angles
-    double worst_above = 0;  ///< and elsewhere
+    double worst = 0;        ///< largest ratio of a cell at grazing angles
+    double worst_above = 0;  ///< and at other angles
 };
 
 Result<Summary> report(const std::filesystem::path& file, LobeQuestion q, bool brief) {

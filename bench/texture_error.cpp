@@ -1,5 +1,6 @@
-// texture_error PICTURE TEXTURE...: how far textures of one face are from the picture they were made from, as JSON.
-// texture_error --encode ENCODING QUALITY PICTURE OUT.ktx2: makes one, on one thread, and says in how much CPU time.
+// texture_error PICTURE TEXTURE...: the errors of textures of one face against the picture that they were made from, as
+//     JSON.
+// texture_error --encode ENCODING QUALITY PICTURE OUT.ktx2: makes a texture on one thread and prints the CPU time.
 //
 // The figure is the PSNR of log radiance: log2(v + 1e-4 mean) of every channel, the picture's own range as the peak.
 #include "domelight/texture/texture.h"
@@ -90,7 +91,7 @@ Json encode(char** args) {
     const std::vector<FilteredMap> maps{{Layout::latlong, read_picture(args[2])}};
     std::vector<double> seconds;
     Texture texture;
-    for (int k = 0; k < 4; ++k) {  // the first warms up
+    for (int k = 0; k < 4; ++k) {  // the first is a warm-up
         const double before = cpu_seconds();
         texture = encode_texture(maps, encoding, 1, nullptr, quality);
         seconds.push_back(cpu_seconds() - before);

@@ -1,5 +1,5 @@
 #pragma once
-// How far a filtered map is from the truth: what the tests assert and `accuracy_bench` prints.
+// The error of a filtered map against the truth, which the tests check and `accuracy_bench` prints.
 
 #include "domelight/filtering/prefilter.h"
 #include "domelight/projection/projection.h"
@@ -16,8 +16,8 @@ namespace domelight::test {
 struct Accuracy {
     std::string name;
     int size = 0;
-    double width = 0;    ///< alpha or exponent
-    double rmse = 0;     ///< sqrt(sum omega |error|^2 / sum omega |truth|^2), all channels
+    double width = 0;    ///< α or exponent
+    double rmse = 0;     ///< √(∑ ω |error|² / ∑ ω |truth|²), all channels
     double largest = 0;  ///< max |error| / max(truth, 0.01 mean), per channel
     Vec3d where;         ///< direction of the largest error
 };
@@ -40,8 +40,8 @@ struct CubeTexel {
     Vec3d direction;
 };
 
-/// Texels to look at: `random` anywhere, and as many where a strong light shows every weakness: near it, opposite it
-/// and on the ring 90 degrees from it; then the poles, and texels along the faces' edges.
+/// Texels to compare: `random` of them anywhere, and as many near the strongest light, opposite it and on the ring 90
+/// degrees from it, where errors are largest; then the poles, and texels along the faces' edges.
 inline std::vector<CubeTexel> texels_to_test(int size, const Vec3d& light, int random, unsigned seed = 1) {
     std::mt19937 engine(seed);
     std::normal_distribution<double> normal;
@@ -75,7 +75,7 @@ inline std::vector<CubeTexel> texels_to_test(int size, const Vec3d& light, int r
     return texels;
 }
 
-/// Holds one map (a cube, in the source's frame) against the kernel integrated over the image.
+/// Compares one map (a cube, in the source's frame) with the kernel integrated over the image.
 inline Accuracy measure(const std::string& name, const Cubemap& map, const ZonalKernel& kernel,
                         ImageView<const float> image, const Vec3d& mean, const std::vector<CubeTexel>& texels) {
     std::vector<Vec3d> directions;
@@ -100,8 +100,8 @@ inline Accuracy measure(const std::string& name, const Cubemap& map, const Zonal
     return result;
 }
 
-/// The exact filter's maps of an image, each held against the truth at about 2 `random` texels. Mirror levels are left
-/// out.
+/// The exact filter's maps of an image, each compared with the truth at about 2 · `random` texels. Mirror levels are
+/// left out.
 inline std::vector<Accuracy> measure_levels(ImageView<const float> image, FilterOptions options, int random) {
     std::vector<Accuracy> rows;
     ImageRowSource source(image);

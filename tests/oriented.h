@@ -1,5 +1,5 @@
 #pragma once
-// An environment that says of every direction which one it is: radiance 2 + (x, y, z).
+// An environment whose radiance states its direction: 2 + (x, y, z).
 
 #include "domelight/image/row_source.h"
 #include "domelight/image/repair_report.h"
@@ -28,7 +28,7 @@ inline Environment environment_of(const ImageF& image) {
     return environment;
 }
 
-/// The direction that a texel speaks of, not normalised.
+/// The direction that a texel's radiance states, not normalised.
 inline Vec3d direction_of(const float* texel) {
     return {texel[0] - 2.0, texel[1] - 2.0, texel[2] - 2.0};
 }
@@ -39,8 +39,8 @@ inline const float* texel_at(const ImageF& image, double u, double v) {
                     std::clamp(int(v * image.height()), 0, image.height() - 1));
 }
 
-/// The largest distance between what a cube shows in a direction and that direction, over all its texels.
-/// `seen(d)` : the direction whose light a lookup of d is to give.
+/// The largest distance between what a cube shows in a direction and that direction, over all its texels. `seen(d)`:
+/// the direction whose light a lookup of d should give.
 template <typename Seen>
 double worst_direction(const Cubemap& cube, Seen seen) {
     double worst = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// How far the real-time specular lobes are from the reflection integral: what the tests assert and `stretched_bench`
-// prints.
+// The errors of the real-time specular lobes against the reflection integral, which the tests check and
+// `stretched_bench` prints.
 
 #include "domelight/base/parallel.h"
 #include "domelight/sampling/reflection_estimate.h"
@@ -31,7 +31,7 @@ struct SquareErrors {
     SquareErrors operator/(double n) const { return {split_sum / n, stretched / n, truth / n}; }
 };
 
-/// What of a GGX lobe is measured.
+/// Which GGX lobe is measured, and how.
 struct LobeQuestion {
     double roughness = 0.5, NdotV = 0.5;
     float f0 = 1;
@@ -40,7 +40,7 @@ struct LobeQuestion {
 };
 
 /// Shades points that look in all directions with both models, without occlusion, and compares with the integral
-/// estimated by MIS: the mean of two halves, whose difference says what noise is left.
+/// estimated by MIS: the mean of two halves, whose difference gives the remaining noise.
 inline SquareErrors lobe_errors(const LightMaps& maps, const EnvironmentSampler& sampler, const LobeQuestion& q) {
     SurfacePoint point;
     point.bsdf.kind = Bsdf::Kind::metallic_roughness;

@@ -1,5 +1,5 @@
 #pragma once
-// What every test file includes: doctest, the shared test data's folder and temporary folders.
+// Included by every test file: doctest, the folder of shared test data, and temporary folders.
 
 #include <doctest/doctest.h>
 
@@ -10,7 +10,7 @@
 
 namespace domelight::test {
 
-/// Records that the running test case cannot do its work here, and why.
+/// Records that the running test case is skipped, and why.
 void note_skip(const char* why);
 
 /// The folder of shared test data that the environment variable DOMELIGHT_DATA names, if any.
@@ -42,7 +42,7 @@ class TemporaryFolder {
 
 }  // namespace domelight::test
 
-/// Leaves the test case as skipped unless the file under DOMELIGHT_DATA is there; defines `name` as its path.
+/// Skips the test case if the file does not exist under DOMELIGHT_DATA; otherwise defines `name` as its path.
 #define DOMELIGHT_DATA_FILE(name, relative)                                        \
     const auto name##_folder = ::domelight::test::data_folder();                   \
     if (!name##_folder || !std::filesystem::exists(*name##_folder / (relative))) { \

@@ -116,7 +116,7 @@ void print_result(const RenderWords& w, const Scene& scene, const RenderResult& 
     }
 }
 
-/// One picture, with --save-every also on the way.
+/// One picture; with --save-every it is also written while it is being rendered.
 int run_picture(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler, const LightMaps* maps,
                 RenderOptions options) {
     using Clock = std::chrono::steady_clock;
@@ -164,7 +164,7 @@ int run_picture(const RenderWords& w, const RayScene& scene, const EnvironmentSa
 
 }  // namespace
 
-/// For all but "reference".
+/// For every shading except "reference".
 ShadingModel shading_model(const RenderWords& w) {
     for (const ShadingModel m :
          {ShadingModel::stretched, ShadingModel::phong, ShadingModel::mirror, ShadingModel::refract})

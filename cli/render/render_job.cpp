@@ -33,7 +33,7 @@ std::vector<std::string> non_finite_warning(std::int64_t samples) {
 }
 
 RenderOptions tracing_options(const RenderWords& w, RenderOptions o) {
-    // A colour is for the display as it is: it goes behind the picture after the tone map.
+    // A background colour is a colour on the display: it is put behind the picture after the tone map.
     if (w.shadow_catcher || o.background == Background::colour) o.background = Background::transparent;
     return o;
 }

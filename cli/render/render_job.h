@@ -9,10 +9,10 @@
 
 namespace domelight::cli {
 
-/// The maps that the words ask for: read from --maps, baked, or none where nothing would read them.
+/// The maps that the command line asks for: read from --maps, or baked; none if the shading does not use any.
 Result<std::optional<LightMaps>> maps_for(const RenderWords& words, const EnvironmentSampler& sampler);
 
-/// One picture without its shadow catcher, by the shading that was asked for. `maps` may be null where maps_for() gives
+/// One picture without its shadow catcher, by the shading that was asked for. `maps` may be null if maps_for() gives
 /// none.
 Result<RenderResult> draw(const RenderWords& words, const RayScene& scene, const EnvironmentSampler& sampler,
                           const LightMaps* maps, const RenderOptions& options);
@@ -20,7 +20,7 @@ Result<RenderResult> draw(const RenderWords& words, const RayScene& scene, const
 /// A light of the environment after the environment has been turned about the origin.
 PunctualLight turned_light(PunctualLight light, const Mat3& turn);
 
-/// A warning where samples were lost because their radiance was not finite, and else nothing.
+/// A warning if samples were lost because their radiance was not finite; otherwise nothing.
 std::vector<std::string> non_finite_warning(std::int64_t samples);
 
 /// A picture as it is written: with the shadow, and the stops for a display.
@@ -28,13 +28,13 @@ struct FinishedPicture {
     RenderResult result;
     double ev = 0;
 };
-/// Draws with `options` (whose background is the one that will show). `ev`: NaN for what the picture asks for.
+/// Draws with `options`, whose background is the one that is shown. `ev`: NaN for an exposure that suits the picture.
 Result<FinishedPicture> draw_finished(const RenderWords& words, const RayScene& scene,
                                       const EnvironmentSampler& sampler, const LightMaps* maps,
                                       const RenderOptions& options, double ev);
-/// The options with which the tracing itself runs: what is put behind the scene afterwards is left out.
+/// The options for the tracing itself, without the background that is put behind the scene afterwards.
 RenderOptions tracing_options(const RenderWords& words, RenderOptions options);
-/// Adds the shadow where it was asked for.
+/// Adds the shadow if it was asked for.
 Result<FinishedPicture> finish(const RenderWords& words, const RayScene& scene, const EnvironmentSampler& sampler,
                                const RenderOptions& options, RenderResult traced, double ev);
 

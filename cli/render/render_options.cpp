@@ -86,7 +86,7 @@ Result<void> check_company(const RenderWords& w, const Arguments& a) {
                  {"--diffuse-weight", w.shading == "split-sum" || w.shading == "stretched",
                   "--shading split-sum or stretched"},
                  {"--save-every", w.reference() && !w.frames && !w.study, "a single picture of --shading reference"}};
-    // (Its first spelling is not what Arguments::given looks for.)
+    // Arguments::given does not look for this spelling of the option.
     if (!w.background_color.empty() && !colour)
         return Error{"goes with --background colour only", "--background-color", ""};
     for (const auto& rule : rules)
@@ -164,7 +164,7 @@ std::string camera_list(const Scene& scene) {
 
 namespace {
 
-/// By number from 1 on, or by name.
+/// Finds a camera by its number, counted from 1, or by its name.
 Result<const Camera*> find_camera(const std::string& word, const Scene& scene) {
     for (const Camera& c : scene.cameras)
         if (c.name == word) return &c;

@@ -38,7 +38,7 @@ struct RenderWords {
 
     bool study = false;
 
-    // What check_words makes of them.
+    // Set by check_words().
     Background backdrop = Background::environment;
     Vec3f backdrop_colour;  ///< linear
 
@@ -47,11 +47,11 @@ struct RenderWords {
     std::string scene_name() const { return scenes.empty() ? "" : scenes.front(); }
 };
 
-/// Options that are wrong, or do not go together. Splits outputs at commas, and settles the background.
+/// Checks the options and their combinations, splits the outputs at commas, and sets the background.
 Result<void> check_words(RenderWords& words, const Arguments& arguments);
 
-/// The camera that was asked for, and how many pixels: the scene's camera says how high a picture of its width is.
-/// Errors: a camera that is not there.
+/// The camera that was asked for, and the size in pixels: a camera of the scene determines the height for a given
+/// width. Errors: the scene has no such camera.
 Result<RenderOptions> render_options(const RenderWords& words, const Scene& scene);
 
 /// "1 \"front\", 2" for a message.

@@ -32,13 +32,13 @@ ImageF over_colour(const RenderResult& r, const Vec3f& colour) {
     return out;
 }
 
-/// As a display shows it, before a colour that exposure and tone map leave as it is.
+/// The picture as a display shows it, before a background colour that exposure and tone map do not change.
 Image<std::uint8_t> over_display_colour(const RenderResult& r, const Vec3f& colour, const Display& display) {
     Image<std::uint8_t> pixels(r.radiance.width(), r.radiance.height(), 3);
     for (int y = 0; y < pixels.height(); ++y)
         for (int x = 0; x < pixels.width(); ++x) {
             const float *p = r.radiance.at(x, y), opacity = std::clamp(*r.opacity.at(x, y), 0.f, 1.f);
-            // The radiance is that of the covered part of the pixel only.
+            // The radiance comes only from the covered part of the pixel.
             Vec3f c{p[0], p[1], p[2]};
             if (opacity > 0) c = c / opacity;
             const Vec3f shown = tonemap(c * display.exposure, display.method) * opacity + colour * (1 - opacity);
@@ -54,7 +54,7 @@ Result<void> write_layers(const std::string& file, const RenderResult& r, ImageV
                                {"indirect", r.indirect, ""}, {"diffuse", r.diffuse, ""},   {"specular", r.specular, ""},
                                {"albedo", r.albedo, ""},     {"normal", r.normal, ""},     {"depth", r.depth, "Z"},
                                {"object", r.object, "Y"},    {"variance", r.variance, ""}, {"samples", r.samples, "Y"}};
-    // `compare` names the objects of its table by it: one a line, from object 1 on.
+    // `compare` takes the names in its table of objects from this attribute: one name a line, from object 1 on.
     ExrWriteOptions options;
     std::string& names = options.attributes["objects"];
     for (const Instance& instance : scene.instances) names += escaped(instance.name) + "\n";

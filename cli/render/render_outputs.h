@@ -9,16 +9,16 @@
 
 namespace domelight::cli {
 
-/// ", exposure +1.25 EV" where a picture for a screen is written, and else nothing.
+/// ", exposure +1.25 EV" if a picture for a screen is written; otherwise nothing.
 std::string exposure_text(const RenderWords& words, double ev);
 
 /// The picture as a display shows it: 3 channels, 4 with --background transparent.
 Image<std::uint8_t> display_picture(const RenderResult& picture, const RenderWords& words, double ev);
 
-/// Writes it as the file's ending says: .png (tone mapped), .hdr, .exr (all layers).
+/// Writes the picture in the format of the file's ending: .png and .jpg (tone mapped), .hdr, .exr (all layers).
 Result<void> write_picture(const std::string& file, const FinishedPicture& picture, const Scene& scene,
                            const RenderWords& words);
-/// To all of them; the error names the file.
+/// Writes the picture to all files. An error names the file.
 Result<void> write_pictures(const std::vector<std::string>& files, const FinishedPicture& picture, const Scene& scene,
                             const RenderWords& words);
 

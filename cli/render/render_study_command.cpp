@@ -49,7 +49,7 @@ Json json_of(const NoiseFigure& f) {
     return {{"roughness", f.roughness}, {"reference_samples", f.reference_samples}, {"lines", std::move(lines)}};
 }
 
-/// Rows by roughness of what each bin holds; null where no pixel is.
+/// The values of the bins, a row for each roughness; null for a bin without pixels.
 Json rows_of(const ImageF& table) {
     Json rows = Json::array();
     for (int y = 0; y < table.height(); ++y) {
@@ -78,7 +78,7 @@ Json json_of(const SplitSumFigure& f) {
             {"parts", std::move(parts)}};
 }
 
-/// Writes the figures into the folder as they come, or keeps them for the sheet.
+/// Writes each figure into the folder as soon as it is made, or keeps it for the sheet.
 class Output {
   public:
     explicit Output(const std::string& place) : place_(place), sheet_(is_screen_picture(place)) {}
@@ -99,7 +99,7 @@ class Output {
         files_.push_back(file);
         return {};
     }
-    /// The numbers, or the sheet.
+    /// Writes the numbers, or the sheet.
     Result<void> end(const Json& json) {
         if (sheet_) {
             files_ = {place_};
@@ -133,7 +133,7 @@ Result<Json> study(const RenderWords& w, const StudyScene& scene, const StudyLig
         };
     };
     Json json{{"version", version()}, {"scene", scene.name}, {"environment", light.name}};
-    // Parts by how long they take.
+    // The parts of the progress are in proportion to the time that they take.
     o.progress = progress(0, 0.45);
     const auto strategies = study_light_strategies(scene, light, o);
     if (!strategies) return strategies.error();

@@ -55,8 +55,8 @@ class Turntable {
         return std::all_of(names.begin(), names.end(), [](const auto& f) { return fs::is_regular_file(f); });
     }
 
-    /// One exposure for all frames, whichever of them exist already: the one that suits four small views together, so
-    /// that a view of the dark side does not burn the others.
+    /// One exposure for all frames, independent of which exist already: the one that suits four small views together,
+    /// so that a view of the dark side does not overexpose the others.
     Result<double> exposure() const {
         if (!std::isnan(words_.ev)) return words_.ev;
         RenderOptions o = options_;
@@ -82,7 +82,7 @@ class Turntable {
     }
 
   private:
-    /// `part`: of a whole turn.
+    /// `part`: the share of a whole turn, 0 to 1.
     Result<FinishedPicture> draw_at(const RenderWords& words, RenderOptions o, double part, double ev) const {
         const double angle = 2 * k_pi * part;
         if (words_.turn == "camera") {
@@ -123,7 +123,7 @@ Result<Image<std::uint8_t>> read_frame(const std::string& file, bool transparent
     return pixels;
 }
 
-/// Runs of frames whose files exist: "1-12, 30".
+/// The frames whose files exist, as ranges: "1-12, 30".
 std::string existing(const Turntable& turntable) {
     std::string text;
     for (int i = 1; i <= turntable.frames(); ++i) {
@@ -219,7 +219,7 @@ int run_turntable(const RenderWords& w, const RayScene& scene, const Environment
     for (const std::string& o : w.outputs) {
         if (!is_screen_picture(o)) continue;
         const std::string file = fs::path(o).replace_extension(".webp").string();
-        // turn.png and turn.jpg have one animation.
+        // turn.png and turn.jpg share one animation.
         if (std::find(animations.begin(), animations.end(), file) != animations.end()) continue;
         ProgressBar bar(w.scene_name(), w.common);
         const auto frame = [&](int i) -> Result<Image<std::uint8_t>> {

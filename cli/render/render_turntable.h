@@ -10,8 +10,8 @@ namespace domelight::cli {
 /// "picture.png" to "picture_0001.png", frames counted from 1.
 std::string frame_file(const std::string& file, int frame);
 
-/// Draws --frames pictures, the camera once round the scene (or the environment once round), each into numbered files,
-/// and an animation beside those that end in .png. Prints what was done; the exit code.
+/// Draws --frames pictures while the camera, or the environment, goes once around the scene. Writes each into numbered
+/// files, and an animation beside pictures for a screen. Prints what was done and returns the exit code.
 int run_turntable(const RenderWords& words, const RayScene& scene, const EnvironmentSampler& sampler,
                   const LightMaps* maps, const RenderOptions& options);
 

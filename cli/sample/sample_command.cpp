@@ -57,7 +57,7 @@ Result<void> write_pictures(const SampleWords& w, const EnvironmentSampler& samp
     return {};
 }
 
-/// The parts of the work in turn; `json` collects what they have to say.
+/// Does the parts of the work one after the other. `json` collects their results.
 Result<void> work(const SampleWords& w, const EnvironmentSampler& sampler, Json& json) {
     const bool only_samples =
         w.picture.empty() && w.heat.empty() && w.tables.empty() && !w.estimate && w.explain.empty();

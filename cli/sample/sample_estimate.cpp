@@ -17,7 +17,7 @@
 namespace domelight::cli {
 namespace {
 
-/// JSON has no infinity: null, as everywhere where there is no number.
+/// Infinity as null, because JSON has no infinity.
 Json number_json(double v) {
     return std::isfinite(v) ? Json(v) : Json(nullptr);
 }
@@ -121,7 +121,8 @@ Json document(const SampleWords& w, const StrategyStudy& study) {
             {"strategies", std::move(strategies)}};
 }
 
-/// Measured errors as dots; where the variance is known and says that the runs missed most of it, its own line too.
+/// Measured errors are dots. If the variance is known and shows that the runs missed most of it, the error that follows
+/// from it is drawn as a line as well.
 Plot convergence_plot(const SampleWords& w, const StrategyStudy& study) {
     Plot plot;
     plot.title = std::filesystem::path(w.environment_name()).filename().string();
@@ -136,10 +137,10 @@ Plot convergence_plot(const SampleWords& w, const StrategyStudy& study) {
         s.name = fmt::format("{}  {}{}", r.name, r.slope < 0 ? "−" : "", slope_text(std::abs(r.slope)));
         s.points = r.curve;
         s.marks = true;
-        // Some lie on top of others: with a Lambert surface brdf is cosine, and the two heuristics are seldom far
-        // apart.
+        // Some lines lie on top of others: on a Lambert surface "brdf" equals "cosine", and the two heuristics seldom
+        // differ much.
         s.line = r.name == "brdf" || r.name == "mis-power" || r.name == "product" ? PlotLine::dashed : PlotLine::solid;
-        // A strategy keeps its colour whatever it is compared with.
+        // A strategy has the same colour in every plot.
         s.colour = plot_colour(std::size_t(std::find(names.begin(), names.end(), r.name) - names.begin()));
         plot.series.push_back(s);
         if (!r.missed()) continue;

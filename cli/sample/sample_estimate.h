@@ -10,13 +10,13 @@
 
 namespace domelight::cli {
 
-/// What a part of `domelight sample` has to say, in both forms.
+/// The result of one part of `domelight sample`, as text and as JSON.
 struct Told {
     std::string text;
     Json json;
 };
 
-/// The table of all strategies; writes --plot where it is asked for.
+/// The table of all strategies. Also writes the file of --plot if there is one.
 Result<Told> estimate_by_all_strategies(const SampleWords& words, const EnvironmentSampler& sampler,
                                         const Progress& progress);
 

@@ -14,7 +14,7 @@
 namespace domelight::cli {
 namespace {
 
-/// The pieces around the one found, with an arrow at it.
+/// The pieces around the one that was found, which is marked by an arrow.
 std::string neighbours(const CumulativeSearch& f, const char* piece, const char* axis) {
     const int n = int(f.cumulative.size()) - 1;
     std::string text = fmt::format("   {:>8}{:>16}{:>16}{:>14}\n", piece, "C at its begin", "C at its end",

@@ -1,5 +1,5 @@
-// The board picture of --explain: the two cumulative functions drawn along the image's edges, so that the lines from xi
-// to the sample can be followed.
+// The picture of --explain: the two cumulative functions are drawn along the image's edges, so that the lines from ξ to
+// the sample can be followed.
 
 #include "preview/sample_picture.h"
 #include "preview/strokes.h"
@@ -18,10 +18,10 @@ constexpr Colour8 k_page{255, 255, 255}, k_ink{30, 34, 40}, k_quiet{110, 116, 12
     k_row{0, 114, 178}, k_column{213, 94, 0}, k_point{255, 226, 40};
 constexpr Rect k_image{24, 70, 900, 450}, k_marginal{948, 70, 310, 450}, k_conditional{24, 574, 900, 220};
 
-/// Pixels of a panel's value: places along the image's edge, the cumulative function across it.
+/// Maps a value of a panel to pixels: places run along the image's edge, the cumulative function across it.
 struct Panel {
     Rect where;
-    bool vertical;  ///< the place runs down, the function to the right; else right and up
+    bool vertical;  ///< true: the place runs down and the function to the right; false: to the right and up
     std::array<double, 2> at(double place, double value) const {
         if (vertical) return {where.x + value * where.width, where.y + place * where.height};
         return {where.x + place * where.width, where.y + (1 - value) * where.height};
@@ -45,10 +45,12 @@ void arrow(ImageView<std::uint8_t> image, const std::array<double, 2>& a, const 
 
 void draw_cumulative(ImageView<std::uint8_t> image, const Panel& p, const CumulativeSearch& f, Colour8 colour) {
     for (int k = 0; k <= 4; ++k) line(image, p.at(0, k / 4.0), p.at(1, k / 4.0), 1, k_grid);
-    // The density behind it, scaled to its largest value: where light is, the cumulative function is steep.
+    // The density is drawn behind, scaled to its largest value: the cumulative function is steep where the density is
+    // large.
     const int n = int(f.places.size()) - 1, pixels = p.vertical ? p.where.height : p.where.width;
     std::vector<double> bins(pixels);
-    // C at a place, of which the pieces may go around; linear within one is near enough for a picture.
+    // The cumulative function at a place. The pieces may wrap around. It is taken as linear within a piece, which is
+    // accurate enough for a picture.
     const auto below = [&](double x) {
         const double y = x < f.places[0] ? x + 1 : x;
         const int i =
@@ -93,8 +95,8 @@ Image<std::uint8_t> explanation_picture(const EnvironmentSampler& sampler, const
     draw_cumulative(image, marginal, e.row, k_row);
     draw_cumulative(image, conditional, e.column, k_column);
 
-    // From xi on the upper edge down to the curve, from there to the row; from xi on the left edge to the curve, and up
-    // to the point.
+    // A line from ξ on the upper edge down to the curve and from there to the row; another from ξ on the left edge to
+    // the curve and up to the sample.
     const double u = e.column.position, v = e.row.position;
     const std::array<double, 2> on_marginal = marginal.at(v, e.row.xi), on_conditional = conditional.at(u, e.column.xi);
     const std::array<double, 2> point{k_image.x + u * k_image.width, k_image.y + v * k_image.height};

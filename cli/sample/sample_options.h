@@ -11,7 +11,7 @@
 
 namespace domelight::cli {
 
-/// What was asked of `domelight sample`.
+/// The options of `domelight sample`.
 struct SampleWords {
     CommonOptions common;
     std::vector<std::string> inputs;
@@ -35,7 +35,7 @@ struct SampleWords {
     std::vector<double> explain;
     std::string explain_picture;
 
-    // Read off the words by check_sample_options().
+    // Set by check_sample_options() from the words.
     EnvironmentSamplerOptions sampler;
     Sequence points = Sequence::sobol;
     std::uint64_t seed_number = 1;
@@ -46,7 +46,7 @@ struct SampleWords {
 };
 
 void declare_sample_options(Arguments& arguments, SampleWords& words);
-/// Checks the values and how they go together, and fills in what is read off them. Errors name the option.
+/// Checks the values and their combinations, and sets the members that follow from them. Errors name the option.
 Result<void> check_sample_options(const Arguments& arguments, SampleWords& words);
 
 /// "bilinear-plain" for DistributionMethod::bilinear_plain: names on the command line have dashes.

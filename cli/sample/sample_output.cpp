@@ -21,10 +21,10 @@
 namespace domelight::cli {
 namespace {
 
-/// Where pieces of text go: false when they cannot.
+/// Takes pieces of text; returns false if one could not be written.
 using Sink = std::function<bool(const std::string&)>;
 
-// {} of a float is the shortest text that reads back as the same float.
+// {} prints a float as the shortest text that is read back as the same float.
 void add_csv(std::string& out, const LightSample& s) {
     fmt::format_to(std::back_inserter(out), "{},{},{},{},{},{},{},{},{}\n", s.u, s.v, s.direction.x, s.direction.y,
                    s.direction.z, s.radiance.x, s.radiance.y, s.radiance.z, s.pdf_solid_angle);
@@ -54,7 +54,7 @@ std::string json_head(const SampleWords& w, const EnvironmentSampler& sampler, i
     return text + ",\n  \"samples\": [\n";
 }
 
-/// False when the sink refused or the work was cancelled.
+/// Returns false if a write failed or the work was cancelled.
 bool put_samples(const SampleWords& w, const EnvironmentSampler& sampler, bool json, const Sink& sink,
                  const Progress& progress) {
     const int count = w.count.value_or(1024);

@@ -9,8 +9,8 @@
 
 namespace domelight::cli {
 
-/// Writes the samples to --output, as its ending says; where there is none, to stdout, as CSV or with --json as one
-/// document. Drawn one by one as they are written, so that any number fits.
+/// Writes the samples to --output in the format of its ending; without --output to stdout, as CSV, or as one document
+/// with --json. Each sample is drawn when it is written, so the memory does not limit their number.
 Result<void> write_samples(const SampleWords& words, const EnvironmentSampler& sampler, const Progress& progress);
 
 /// What write_tables() wrote.
@@ -19,7 +19,8 @@ struct SamplingTables {
     double total_average = 0;             ///< SamplingTextures::total_average
 };
 
-/// The tables for shaders, rows.*, columns.* and row_averages.* in the folder of --tables: all appear or none.
+/// The tables for shaders, rows.*, columns.* and row_averages.* in the folder of --tables: either all of them appear or
+/// none.
 Result<SamplingTables> write_tables(const SampleWords& words, const EnvironmentSampler& sampler);
 
 }  // namespace domelight::cli

@@ -16,7 +16,7 @@ namespace {
 
 /// The ladder: roughnesses at which the source is filtered when a level states none that fits. 0 comes before these.
 constexpr double k_ladder[] = {0.18, 0.24, 0.31, 0.39, 0.48, 0.58, 0.69, 0.8, 0.9, 1};
-/// The same for Charlie, whose ladder has no 0.
+/// The same for Charlie's lobe, for which 0 is not a mirror.
 constexpr double k_charlie_ladder[] = {0.1, 0.14, 0.18, 0.24, 0.31, 0.39, 0.48, 0.58, 0.69, 0.8, 0.9, 1};
 /// Between 0 and the ladder's first, for levels that fit best there, because filtering with a narrow lobe takes long.
 constexpr double k_narrow_rung = 0.13;
@@ -284,8 +284,8 @@ class Audit {
         return judged(std::move(audit), source_, options_);
     }
 
-    /// Filters the source at these levels and calls `use(index, cube)` for each. The run is taken to be `share` of the
-    /// work that is left.
+    /// Filters the source at these levels and calls `use(index, cube)` for each. For the progress, the run counts as
+    /// `share` of the work that is left.
     Result<void> filter(std::span<const ExactLevel> wanted, double share,
                         const std::function<void(std::size_t, Cubemap)>& use) {
         if (wanted.empty()) return {};

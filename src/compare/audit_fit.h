@@ -15,14 +15,14 @@ const std::vector<Mat3>& cube_orientations();
 /// The texels of a level that are compared.
 struct TexelSample {
     int size = 0;
-    std::vector<int> texels;       ///< indices into the strip, y size + x
-    std::vector<double> weights;   ///< solid angle over the share of texels taken: they add up to about 4 pi
-    std::vector<Vec3f> values;     ///< theirs; all finite and >= 0
+    std::vector<int> texels;       ///< indices into the strip of faces, y · size + x
+    std::vector<double> weights;   ///< solid angle divided by the share of texels taken; the sum is about 4π
+    std::vector<Vec3f> values;     ///< of the level that is audited; all finite and ≥ 0
     std::vector<float> luminance;  ///< of values
     double mean = 0;               ///< luminance over the sphere, of every finite texel
 };
-/// All finite texels, or about `most` of them: the brightest, which are a quarter, and of the others one from each of
-/// as many pieces of the strip as the rest allows.
+/// All finite texels, or about `most` of them: a quarter are the brightest; for the rest the strip is cut into equal
+/// pieces, and one of the other texels is taken from each.
 TexelSample sample_texels(const Cubemap& cube, int most, int threads = 0);
 
 /// The same for a cube that is first averaged to faces of at most k_broad_size^2.
@@ -35,7 +35,7 @@ Cubemap averaged_to(const Cubemap& cube, int size, int threads);
 /// Mean luminance over the sphere, of the finite texels.
 double mean_luminance(const Cubemap& cube, int threads = 0);
 
-/// For each sampled texel, the one of a cube of the same size that lies in direction `m` d.
+/// For each sampled texel, in direction d, the texel of a cube of the same size in direction `m` d.
 std::vector<int> turned_texels(const TexelSample& sample, const Mat3& m);
 
 /// The values of these texels of a cube.

@@ -1,5 +1,5 @@
 #pragma once
-// The width of any lobe as a roughness, the number by which an audit searches.
+// The width of any lobe, expressed as a roughness. An audit searches over this number.
 
 #include "domelight/filtering/kernel/zonal_kernel.h"
 

@@ -24,7 +24,7 @@ void OrientationSearch::add(const Cubemap& exact, int threads) {
 CubeOrientation OrientationSearch::found() const {
     const auto best = std::min_element(errors_.begin(), errors_.end());
     std::size_t chosen = std::size_t(best - errors_.begin());
-    // Where symmetric light leaves a tie, "as ours" is the likeliest answer.
+    // If the light is symmetric and several orientations fit alike, "as ours" is the likeliest.
     if (errors_[0] <= 1.02 * *best + 1e-4) chosen = 0;
     CubeOrientation found;
     found.ours_from_theirs = cube_orientations()[chosen];

@@ -9,10 +9,10 @@
 namespace domelight {
 namespace {
 
-/// Distance of neighbours, as a share of the roughness. Over it the squared error is a parabola, and filtered light can
-/// be interpolated to 1e-4.
+/// Distance of neighbours, as a share of the roughness. Over this distance the squared error is close to a parabola,
+/// and filtered light can be interpolated to 1e-4.
 constexpr double k_spacing = 0.04;
-/// Filtering with a narrower lobe takes as long as a whole bake, so that it is done only at a stated roughness.
+/// Filtering with a narrower lobe takes as long as a whole bake, so it is done only at a stated roughness.
 constexpr double k_least_searched = 0.08;
 /// An error that the rounding of half floats explains.
 constexpr double k_exact_fit = 0.001;
@@ -113,8 +113,8 @@ std::vector<double> LevelSearch::near(double roughness) const {
     return values;
 }
 
-/// Whether a smaller roughness than the best fit's was tried, or none is allowed. 0 is no neighbour: the error is not a
-/// parabola that far.
+/// Whether a smaller roughness than the best fit's was tried, or none is allowed. 0 does not count as a neighbour: the
+/// error is not a parabola over so large a distance.
 bool LevelSearch::neighbour_below() const {
     const std::size_t b = best();
     const double at = tried_[b].roughness;

@@ -8,7 +8,7 @@
 
 namespace domelight {
 
-/// The least roughness that differs visibly from 0 on faces of `size`^2: its lobe, 2 alpha wide, is as wide as a texel.
+/// The least roughness that differs visibly from 0 on faces of `size`^2: its lobe, 2 α wide, is as wide as a texel.
 double least_roughness(int size);
 
 /// The roughnesses that a search may try.
@@ -42,8 +42,8 @@ class LevelSearch {
     double best_roughness() const { return tried_[best()].roughness; }
     double error_at(double roughness) const;  ///< 1 where it was not added
 
-    /// Roughnesses to add next: the guess with a neighbour on either side; then further out, while the best fit is the
-    /// outermost; then close neighbours of the best fit.
+    /// Roughnesses to add next: the guess with a neighbour on either side; then roughnesses further out, as long as the
+    /// best fit is the outermost one; then close neighbours of the best fit.
     std::vector<double> wanted() const;
 
     struct Found {

@@ -33,7 +33,7 @@ std::string verdict_on_another(const BakeAudit& audit, double same) {
                        percent(audit.levels[l].broad_error));
 }
 
-/// "as ours", and how bright where that differs.
+/// "as ours", followed by the brightness if that differs.
 std::string how_baked(const BakeAudit& audit) {
     std::vector<double> scales;
     for (const LevelAudit& level : audit.levels) scales.push_back(level.scale);

@@ -29,7 +29,7 @@ Colour8 colour_of(const HeatMap& map, float value) {
     return map.is_signed ? signed_colour(t) : heat_colour(t);
 }
 
-/// How a picture is put into a rectangle: enlarged by a whole number, or reduced by averaging boxes.
+/// How a picture is fitted into a rectangle: enlarged by a whole number, or reduced by averaging boxes of pixels.
 struct Fit {
     int width = 0, height = 0;
     Fit(int w, int h, int room) {
@@ -67,7 +67,7 @@ void draw_boxes(ImageView<std::uint8_t> image, int left, int top, const Fit& fit
     });
 }
 
-/// Radiance is averaged before the tone map, as by a camera further away.
+/// Radiance is averaged before the tone map is applied, as a camera further away would do.
 void draw_picture(ImageView<std::uint8_t> image, int left, int top, const Fit& fit, ImageView<const float> picture,
                   const Display& display, int threads) {
     draw_boxes(image, left, top, fit, picture.width, picture.height, threads, [&](const Box& b) -> Colour8 {

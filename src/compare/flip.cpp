@@ -29,7 +29,7 @@ constexpr double white(int i) {
     return k_xyz[i][0] + k_xyz[i][1] + k_xyz[i][2];
 }
 
-/// XYZ over the white's.
+/// XYZ divided by the white's.
 Vec3f relative_xyz(const Vec3f& rgb) {
     const auto row = [&](int i) {
         return (float(k_xyz[i][0] / white(i)) * rgb.x + float(k_xyz[i][1] / white(i)) * rgb.y) +
@@ -68,7 +68,7 @@ Vec3f rgb_of_ycxcz(const Vec3f& v) {
     return {row(0), row(1), row(2)};
 }
 
-/// CIELAB's cube root with its straight start.
+/// CIELAB's cube root, which is linear near 0.
 float lab_curve(float t) {
     constexpr float delta = 6.0f / 29;
     return t > delta * delta * delta ? std::cbrt(t) : t / (3 * delta * delta) + 4.0f / 29;
@@ -96,8 +96,8 @@ float redistribute(float difference) {
 
 // --- filters ---
 
-/// A Gaussian's taps, a sqrt(pi / b) exp(-pi^2 x^2 / b) in the paper's terms (table 1): only b matters once it is
-/// normalised.
+/// The taps of a Gaussian, a √(π / b) exp(−π² x² / b) in the paper's notation (table 1). They are normalised, so only b
+/// matters.
 Taps gaussian(double pixels_per_degree, double b, int radius) {
     Taps taps;
     for (int i = -radius; i <= radius; ++i) {
@@ -128,8 +128,8 @@ struct SensitivityFilters {
         cz2 = gaussian(ppd, 0.025, radius);
         y = scaled(y, 1 / sum(y));
         cx = scaled(cx, 1 / sum(cx));
-        // In two dimensions a sqrt(pi / b) weighs the first Gaussian against the second; sums of the squares are the
-        // sums of the 2D kernels.
+        // In two dimensions the Gaussians are weighted by a √(π / b); the sum of a 2D kernel is the square of the sum
+        // of its taps.
         const double w1 = 34.1 * std::sqrt(k_pi / 0.04), w2 = 13.5 * std::sqrt(k_pi / 0.025);
         const double total = w1 * sum(cz1) * sum(cz1) + w2 * sum(cz2) * sum(cz2);
         cz1 = scaled(cz1, std::sqrt(w1 / total));
@@ -137,7 +137,7 @@ struct SensitivityFilters {
     }
 };
 
-/// First and second derivatives of a Gaussian, their positive and their negative taps each adding up to one
+/// First and second derivatives of a Gaussian, scaled so that the positive taps add up to 1 and the negative ones to −1
 /// (section 4.2).
 struct FeatureFilters {
     Taps smooth, edge, point;
@@ -169,7 +169,7 @@ struct Seen {
     ImageF edge, point;  ///< magnitudes of the feature filters, one channel
 };
 
-/// sqrt(h^2 + v^2).
+/// √(h^2 + v^2).
 ImageF magnitude(const ImageF& h, const ImageF& v) {
     ImageF out(h.width(), h.height(), 1);
     for (std::size_t i = 0; i < out.pixels().size(); ++i)

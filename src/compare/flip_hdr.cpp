@@ -12,10 +12,10 @@
 namespace domelight {
 namespace {
 
-// ACES's filmic curve by Narkowicz's fit, its input times 0.6 (section 3.2): (k0 x^2 + k1 x + k2) / (k3 x^2 + k4 x +
-// k5).
+// The filmic curve of ACES in Narkowicz's fit, with the input multiplied by 0.6 (section 3.2): (k0 x^2 + k1 x + k2) /
+// (k3 x^2 + k4 x + k5).
 constexpr double k0 = 0.36 * 2.51, k1 = 0.6 * 0.03, k2 = 0, k3 = 0.36 * 2.43, k4 = 0.6 * 0.59, k5 = 0.14;
-constexpr double k_bright = 0.85;  ///< where the tone mapper is taken to saturate
+constexpr double k_bright = 0.85;  ///< the tone mapper counts as saturated from here on
 
 float aces(float x) {
     const float y = (float(k0) * x * x + float(k1) * x + float(k2)) / (float(k3) * x * x + float(k4) * x + float(k5));
@@ -33,7 +33,8 @@ struct ExposureRange {
     int count = 2;
 };
 
-/// From the brightest pixel just saturating to the median pixel doing so (eq. 3 and 4), a stop or less apart.
+/// From the exposure at which the brightest pixel just saturates to the one at which the median pixel does (eq. 3 and
+/// 4), at most a stop apart.
 ExposureRange exposures_of(ImageView<const float> reference) {
     std::vector<float> luminance;
     luminance.reserve(std::size_t(reference.width) * reference.height);
@@ -46,7 +47,7 @@ ExposureRange exposures_of(ImageView<const float> reference) {
     constexpr float least = std::numeric_limits<float>::epsilon();
     const auto middle = luminance.begin() + std::ptrdiff_t(luminance.size() / 2);
     std::nth_element(luminance.begin(), middle, luminance.end());
-    const double median = *middle;  // the upper one of an even count, as in the authors' program
+    const double median = *middle;  // of an even count the upper middle value, as in the authors' program
     const double brightest = *std::max_element(luminance.begin(), luminance.end());
     ExposureRange range;
     range.start = std::log2(saturating_radiance() / std::max(brightest, double(least)));

@@ -158,7 +158,7 @@ NoiseSummary compare_noisy(ImageView<const float> test, ImageView<const float> r
     const double variance = s.test_variance + s.reference_variance;
     if (variance > 0) n.total_z = (s.test - s.reference) / std::sqrt(variance);
     n.mean_ratio = s.test == s.reference ? 1 : s.test / s.reference;
-    // Of r = A / B: var r = (var A + r^2 var B) / B^2.
+    // For r = A / B: var r = (var A + r² var B) / B².
     const double error = std::sqrt(s.test_variance + n.mean_ratio * n.mean_ratio * s.reference_variance) /
                          std::max(std::abs(s.reference), std::numeric_limits<double>::min());
     constexpr double k_95 = 1.959964;

@@ -34,8 +34,9 @@ ImageF bordered(int width, int height) {
 
 ImageF ssim(ImageView<const float> test, ImageView<const float> reference, Mask mask, int threads) {
     const int width = test.width, height = test.height;
-    // Weighted moments: the weight m (1 inside the mask and the image), m a, m b, m a^2, m b^2, m a b. Luminances are
-    // taken relative to 1/2 for the squares: in floats that keeps the variance of nearly equal pixels.
+    // Weighted moments: the weight m (1 inside the mask and the image), m a, m b, m a^2, m b^2, m a b. 1/2 is
+    // subtracted from the luminances before they are squared, so that the variance of nearly equal pixels survives the
+    // rounding to float.
     ImageF planes[6];
     for (ImageF& plane : planes) plane = bordered(width, height);
     parallel_for(height, threads, [&](int y) {
@@ -57,8 +58,8 @@ ImageF ssim(ImageView<const float> test, ImageView<const float> reference, Mask 
             for (int i = 0; i < 6; ++i) m[i] = *planes[i].at(x + k_reach, y + k_reach);
             const double a = m[1] / m[0], b = m[2] / m[0];
             const double aa = std::max(m[3] / m[0] - a * a, 0.0), bb = std::max(m[4] / m[0] - b * b, 0.0);
-            // The covariance of flat windows, which is only rounding, is limited by the variances, so that equal images
-            // have exactly 1.
+            // In flat windows the covariance is nothing but rounding error. It is limited by the variances, so that
+            // equal images give exactly 1.
             const double most = std::sqrt(aa * bb), ab = std::clamp(m[5] / m[0] - a * b, -most, most), mean_a = a + 0.5,
                          mean_b = b + 0.5;
             *result.at(x, y) = float((2 * mean_a * mean_b + k_c1) * (2 * ab + k_c2) /

@@ -40,7 +40,7 @@ Result<Picture> read_texture_picture(const std::filesystem::path& file, const st
     return picture;
 }
 
-/// The picture itself, by the reader that environments use too (luminance and chroma, other primaries).
+/// The picture itself, read by the reader of environments (which converts luminance and chroma, and other primaries).
 Result<Picture> read_plain(std::shared_ptr<const FileBytes> bytes, const ReaderOptions& options) {
     auto opened = open_image_reader(std::move(bytes), options);
     if (!opened) return opened.error();
@@ -108,8 +108,9 @@ Result<void> read_objects(ExrLayers& layers, Picture& picture) {
     return {};
 }
 
-/// The channel of opacity that goes with a layer's colour; empty: none. `layer` as in ExrLayers::colour_of, and empty
-/// for the unnamed one, else the first that has an opacity. A layer without one of its own has the whole picture's.
+/// The channel of opacity that goes with a layer's colour; empty: none. `layer` as in ExrLayers::colour_of; empty: the
+/// unnamed layer, otherwise the first that has an opacity. A layer without an opacity of its own has that of the whole
+/// picture.
 std::string opacity_channel(const ExrLayers& layers, const std::string& layer) {
     if (layer.empty() && layers.has("A")) return "A";
     for (const std::string& name : layers.layers())
@@ -127,7 +128,7 @@ Result<void> read_exr_opacity(ExrLayers& layers, const std::string& layer, Pictu
     return {};
 }
 
-/// A PNG's colours are not multiplied with its opacity: this multiplies them, as OpenEXR files have it.
+/// Multiplies the colours with the opacity. PNG stores them unmultiplied, OpenEXR multiplied.
 Result<void> read_png_opacity(const FileBytes& bytes, Picture& picture) {
     const auto texels = decode_png_texture(bytes.bytes());
     if (!texels) return texels.error();
@@ -161,7 +162,7 @@ Result<Picture> read_exr_picture(std::shared_ptr<const FileBytes> bytes, const P
         picture.rgb = std::move(*pixels);
         picture.format = "OpenEXR";
     }
-    // The variance belongs to the picture, not to a layer. Sizes differ if the picture is the data window of an
+    // The variance belongs to the picture, not to a layer. The sizes differ if the picture is the data window of an
     // environment.
     const bool same = (*layers)->width() == picture.rgb.width() && (*layers)->height() == picture.rgb.height();
     if (same && options.layer.empty())
@@ -200,7 +201,7 @@ Result<Picture> read_picture(const std::filesystem::path& file, const PictureOpt
 
 namespace {
 
-/// Whether a cell of a cross holds one colour, but for the noise that JPEG leaves at its rim.
+/// Whether a cell of a cross holds one colour, apart from the noise that JPEG leaves at its edges.
 bool is_empty_cell(const ImageF& rgb, int column, int row, int n) {
     const int margin = std::min(8, n / 4);
     const float* first = rgb.at(column * n + margin, row * n + margin);
@@ -249,7 +250,7 @@ Result<PictureFacts> facts_of(std::shared_ptr<const FileBytes> bytes) {
     facts.layers = (*layers)->layers();
     facts.channels = (*layers)->channels();
     if (reader) return facts;
-    facts.format = "OpenEXR";  // without colour in it: numbers such as depth alone
+    facts.format = "OpenEXR";  // a file without colour, for example one that holds only depth
     facts.width = (*layers)->width();
     facts.height = (*layers)->height();
     return facts;

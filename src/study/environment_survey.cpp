@@ -21,12 +21,13 @@ void note_range(EnvironmentSurvey& survey, std::span<const float> values) {
 
 /// A connected part of a lat-long image that is much brighter than the mean.
 struct Blob {
-    Vec3d sum;  ///< of directions times power
+    Vec3d sum;  ///< sum of the directions, each weighted by its power
     double power = 0, peak = 0;
     double core = 0;  ///< solid angle of the texels at least half as bright as the peak
 };
 
-/// The texels connected to `start` (the seam wraps) whose luminance exceeds `threshold`; marks them as taken.
+/// The texels whose luminance exceeds `threshold` and that are connected to `start`, also across the seam. They are
+/// marked as taken.
 Blob grow_blob(const ImageF& image, int start, double threshold, std::vector<char>& taken) {
     const int width = image.width(), height = image.height();
     const auto texel_luminance = [&](int i) { return luminance(image.at(i % width, i / width)); };
@@ -62,9 +63,9 @@ BrightLight describe(const Blob& blob, double total) {
     return light;
 }
 
-/// The bright sources of a lat-long image in world directions: connected parts above ten times the mean radiance with
-/// at least a thousandth of all power. Parts within 5 degrees of a brighter one (the sun behind twigs) count with it.
-/// At most five, the strongest first.
+/// The bright sources of a lat-long image in world directions: connected parts brighter than ten times the mean
+/// radiance, with at least a thousandth of all power. Parts within 5 degrees of a brighter one are counted as one with
+/// it (for example the sun behind twigs). At most five, the strongest first.
 std::vector<BrightLight> find_lights(const ImageF& image) {
     const int width = image.width(), height = image.height();
     double total = 0;

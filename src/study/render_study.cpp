@@ -15,22 +15,23 @@ namespace {
 
 constexpr LightStrategy k_strategies[] = {LightStrategy::environment, LightStrategy::brdf, LightStrategy::mis};
 
-/// Where the round lights stand: up, before the scene and to the left.
+/// The direction of the round lights: above, in front of and to the left of the scene.
 Vec3d light_direction() {
     return normalize(Vec3d{-0.55, 0.9, 0.6});
 }
 
-/// A disc of the given diameter in the dark; texels on its edge by the part that it covers (4 x 4 points each).
+/// A disc of the given diameter in the dark. Texels on its edge are weighted by the part that the disc covers, sampled
+/// at 4 x 4 points.
 ImageF round_light(double diameter_deg) {
     constexpr int width = 1024, height = 512, points = 4;
     const double radius = diameter_deg * k_pi / 360, cosine = std::cos(radius), s = std::sin(radius);
-    // Irradiance of a disc of radiance L that faces the surface: pi L sin^2.
+    // The irradiance from a disc of radiance L and angular radius ρ that faces the surface is π L sin² ρ.
     const double radiance = 1 / (s * s);
     const Vec3d towards = light_direction();
     ImageF image(width, height, 3);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            // How far the texel's middle is from the edge decides for most.
+            // For most texels, the distance of their centre from the edge decides.
             const auto direction = [&](double i, double j) {
                 const double phi = 2 * k_pi * (i / width - 0.5), theta = k_pi * j / height;
                 return Vec3d{std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
@@ -53,7 +54,8 @@ Scene with_roughness(const Scene& scene, double roughness) {
     Scene out = scene;
     for (Material& m : out.materials) {
         m.roughness = float(roughness);
-        // Its green channel would be multiplied with it, and the metalness beside it is the scene's own.
+        // The texture's green channel would be multiplied with the roughness, and its metalness belongs to the scene's
+        // own materials.
         if (m.metallic_roughness_texture) m.metallic_roughness_texture = {};
     }
     return out;
@@ -72,11 +74,11 @@ RenderOptions base_options(const StudyScene& scene, const RenderStudyOptions& o)
     return r;
 }
 
-/// Tells one progress from the work of many renders.
+/// Reports the work of many renders as one progress.
 class Work {
   public:
     Work(const Progress& progress, double total) : progress_(progress), total_(total) {}
-    /// A render of `part` of the whole; its own progress goes into this one.
+    /// Begins a render that is `part` of the whole work; the render's progress is included in this one.
     Result<RenderResult> render(const RayScene& scene, const EnvironmentSampler& sampler, RenderOptions o,
                                 double part) {
         o.progress = inner(part);
@@ -113,7 +115,7 @@ double slope_of(const std::vector<NoiseLine::Point>& points) {
     return n >= 2 ? (n * sxy - sx * sy) / (n * sxx - sx * sx) : 0;
 }
 
-/// 1 where the picture shows the object that counts, else 0; empty where all count.
+/// 1 where the picture shows the object that counts, 0 elsewhere; empty if every object counts.
 ImageF mask_of(const RenderResult& truth, int object) {
     if (object <= 0) return {};
     ImageF mask(truth.object.width(), truth.object.height(), 1);
@@ -144,7 +146,7 @@ StudyScene study_ball() {
     plastic.metalness = 0;
     plastic.base_color = {0.32f, 0.36f, 0.42f};
     scene.materials = {metal, plastic};
-    // The furnace's sphere of unit radius, on a floor at -1.
+    // The unit sphere of the scene "furnace", on a floor at y = −1.
     Scene furnace = std::move(*built_in_scene("furnace"));
     Mesh ball = std::move(furnace.meshes[0]);
     ball.material = 0;
@@ -186,7 +188,7 @@ Result<StrategyFigure> study_light_strategies(const StudyScene& study, StudyLigh
     figure.reference_samples = 16 * o.samples;
     const double cells = double(figure.roughness.size() * figure.lights.size()) * 2;
     Work work(o.progress, cells * (figure.reference_samples + 3.0 * o.samples));
-    // Of each light: with the whole density, and with the compensated one that goes with MIS.
+    // Two samplers for each light: one with the full density, and one with the compensated density that suits MIS.
     std::vector<std::vector<EnvironmentSampler>> samplers;
     for (const StudyLight& light : figure.lights) {
         samplers.emplace_back();
@@ -209,7 +211,7 @@ Result<StrategyFigure> study_light_strategies(const StudyScene& study, StudyLigh
                     r.seed = seed;
                     return work.render(*scene, samplers[std::size_t(l)][strategy == LightStrategy::mis], r, samples);
                 };
-                // Another seed: the same points would have the same errors.
+                // A different seed, because with the same points the errors would be the same.
                 const auto truth = draw(LightStrategy::mis, figure.reference_samples, derive_key(o.seed, 0x54727574));
                 if (!truth) return truth.error();
                 const ImageF mask = mask_of(*truth, study.object);
@@ -275,7 +277,7 @@ struct Bin {
     std::int64_t values = 0;
 };
 
-/// Towards the eye from where a pixel's ray met the scene, by the pixel's middle.
+/// The direction to the eye from where the ray through the pixel's centre meets the scene.
 Vec3f view_direction(const Camera& camera, int x, int y, int size) {
     const Affine& m = camera.to_world;
     if (camera.orthographic) return normalize(m.z);
@@ -289,12 +291,12 @@ void add_to_bins(std::vector<Bin>& bins, const RenderResult& test, const RenderR
     const int size = truth.radiance.width();
     for (int y = 0; y < size; ++y)
         for (int x = 0; x < size; ++x) {
-            // Whole pixels of the object: an edge is no surface.
+            // Only pixels that the object covers completely: the normals of edge pixels are mixed.
             if (*truth.opacity.at(x, y) < 1 || (object > 0 && int(*truth.object.at(x, y)) != object)) continue;
             const float* n = truth.normal.at(x, y);
             const Vec3f normal{n[0], n[1], n[2]};
             const float l = length(normal);
-            if (!(l > 0.9f)) continue;  // normals of two surfaces
+            if (!(l > 0.9f)) continue;  // a mean of the normals of two surfaces
             const float NdotV = std::clamp(dot(normal, view_direction(camera, x, y, size)) / l, 0.f, 1.f);
             Bin& bin = bins[std::size_t(std::min(int(NdotV * float(bins.size())), int(bins.size()) - 1))];
             for (int c = 0; c < 3; ++c) {

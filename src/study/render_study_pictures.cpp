@@ -35,7 +35,7 @@ Image<std::uint8_t> page(int width, int height, const std::string& title, const 
 }
 
 /// Stops that bring the log-average luminance of several pictures to a little above middle grey; darkness counts as a
-/// twentieth of the mean, so that a black background does not burn out what it surrounds.
+/// twentieth of the mean, so that objects before a black background are not overexposed.
 double common_ev(const std::vector<const ImageF*>& pictures) {
     double mean = 0, sum = 0, n = 0;
     const auto each = [&](const auto& use) {

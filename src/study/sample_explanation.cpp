@@ -12,7 +12,8 @@
 namespace domelight {
 namespace {
 
-/// Pieces from places[i] to places[i + 1] with the densities given at their ends (any scale); linear in between.
+/// Pieces from places[i] to places[i + 1]. The densities at their ends are given in any unit; between them they are
+/// linear.
 CumulativeSearch search(double xi, std::vector<double> places, const std::function<std::array<double, 2>(int)>& ends) {
     const int n = int(places.size()) - 1;
     std::vector<double> cumulative(n + 1);
@@ -24,7 +25,7 @@ CumulativeSearch search(double xi, std::vector<double> places, const std::functi
     for (double& c : cumulative) c /= total;
     CumulativeSearch f;
     f.xi = xi;
-    // The first piece that ends beyond xi; rounding of the last sum may leave none, and then it is the last that is not
+    // The first piece that ends beyond ξ. If the rounding of the last sum leaves none, the last piece that is not
     // empty.
     f.index = int(std::upper_bound(cumulative.begin() + 1, cumulative.end(), xi) - cumulative.begin()) - 1;
     f.index = std::min(f.index, n - 1);
@@ -33,7 +34,8 @@ CumulativeSearch search(double xi, std::vector<double> places, const std::functi
     f.end = cumulative[f.index + 1];
     f.density_begin = ends(f.index)[0] / total;
     f.density_end = ends(f.index)[1] / total;
-    // Inverse of the cumulative function of a linear density a .. b: t (a + t (b - a) / 2) = s (a + b) / 2.
+    // Inverse of the cumulative function of a density that is linear from a to b: solves t (a + t (b − a) / 2) = s (a +
+    // b) / 2.
     const double a = f.density_begin, b = f.density_end, s = std::clamp((xi - f.begin) / (f.end - f.begin), 0.0, 1.0);
     const double bottom = a + std::sqrt(std::max(0.0, a * a + s * (b * b - a * a)));
     f.fraction = a == b ? s : bottom > 0 ? s * (a + b) / bottom : 0;
@@ -50,7 +52,7 @@ std::vector<double> even_places(int n, double first = 0) {
     return places;
 }
 
-/// How the method finds the piece.
+/// Words for how the method finds the piece.
 std::string search_words(const EnvironmentSampler& sampler, const CumulativeSearch& found, bool column, int row) {
     const int n = int(found.places.size()) - 1;
     switch (sampler.options().method) {
@@ -79,7 +81,8 @@ std::string search_words(const EnvironmentSampler& sampler, const CumulativeSear
 SampleExplanation explain_sample(const EnvironmentSampler& sampler, const std::array<double, 2>& point) {
     const SamplingTextures tables = sampling_textures(sampler);
     const int w = tables.columns.width(), h = tables.columns.height();
-    // The sampler takes the middle of a point's quantum of 2^-32; so v = 0, where the Jacobian is, never comes.
+    // The sampler takes the middle of the interval of length 2^-32 in which a point lies, so v = 0, where the Jacobian
+    // vanishes, never occurs.
     const double xi_u = (unit_fixed(point[0]) + 0.5) * 0x1p-32, xi_v = (unit_fixed(point[1]) + 0.5) * 0x1p-32;
     const auto row_density = [&](int j) { return double(tables.rows.at(0, j)[1]); };
     const auto density = [&](int i, int j) { return double(tables.columns.at(i, j)[1]); };
@@ -88,8 +91,8 @@ SampleExplanation explain_sample(const EnvironmentSampler& sampler, const std::a
     e.point = point;
     e.continuous = sampler.distribution().continuous();
     if (e.continuous) {
-        // Half a row at the top, then from row centre to row centre, half a row at the bottom; columns from centre to
-        // centre, around.
+        // The pieces of the rows: half a row at the top, then from row centre to row centre, and half a row at the
+        // bottom. The columns go from centre to centre, around the image.
         std::vector<double> places(h + 2);
         for (int s = 1; s <= h; ++s) places[s] = (s - 0.5) / h;
         places[h + 1] = 1;

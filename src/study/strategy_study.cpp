@@ -48,7 +48,7 @@ struct Contender {
     std::string name;
     Strategy strategy;
     const EnvironmentSampler* sampler;
-    /// Density per steradian (L in the local frame); empty for strategies that have none.
+    /// Density per steradian of a direction L in the local frame; empty for strategies that have no such density.
     std::function<double(const Vec3f& L, const Vec3f& world)> density;
 };
 
@@ -63,7 +63,7 @@ class Runner {
 
     void find_reference(StrategyStudy& study) const;
     std::vector<Contender> contenders() const;
-    /// Adds the contender's results to the study. False where `told` cancelled.
+    /// Adds the contender's results to the study. Returns false if `told` has cancelled the work.
     bool run(const Contender& contender, StrategyStudy& study, const std::function<bool(double)>& told) const;
 
   private:
@@ -72,7 +72,7 @@ class Runner {
         o.samples = samples;
         o.candidates = candidates;
         o.sequence = options_.sequence;
-        // Run 0 is what a program with this seed gets.
+        // Run 0 has the seed itself: it is the estimate that a program with this seed gets.
         o.seed = run == 0 ? options_.seed : derive_key(options_.seed, std::uint64_t(run));
         return estimate_reflection(surface_, *c.sampler, c.strategy, o);
     }
@@ -120,7 +120,7 @@ std::vector<Contender> Runner::contenders() const {
         {"mis-power", Strategy::mis_power, &plain_, {}},
         {"mis-balance-compensated", Strategy::mis_balance, &compensated_, {}},
         {"product", Strategy::product, &plain_, {}}};
-    // Environment sampling is the yardstick of the efficiencies.
+    // Efficiencies are relative to environment sampling.
     const auto& wanted = options_.strategies;
     std::erase_if(all, [&](const Contender& c) {
         return !wanted.empty() && c.name != "environment" &&
@@ -129,10 +129,10 @@ std::vector<Contender> Runner::contenders() const {
     return all;
 }
 
-/// Variance of one sample over the squared mean, of luminance.
+/// Variance of one sample divided by the squared mean, of luminance.
 std::optional<double> Runner::variance(const Contender& c, const StrategyStudy& study) const {
     if (!c.density || options_.sequence != Sequence::random) return std::nullopt;
-    // A surface whose BRDF is f times f L cos / p reflects the second moment.
+    // The second moment is what a surface reflects whose BRDF is f · (f L cos θ / p).
     Surface squared = surface_;
     squared.evaluate = [&](const Vec3f& V, const Vec3f& L) {
         const Vec3f f = surface_.evaluate(V, L), d(frame_.to_world(Vec3d(L))), radiance = plain_.radiance(d);
@@ -159,7 +159,7 @@ double slope_of(const std::vector<std::array<double, 2>>& curve) {
     return n >= 2 ? (n * sxy - sx * sy) / (n * sxx - sx * sx) : NAN;
 }
 
-/// The numbers of samples looked at: up to `most` in factors of 4 (2 where it is small).
+/// The numbers of samples that are measured: up to `most` in factors of 4, or of 2 if `most` is small.
 std::vector<int> steps(int most) {
     std::vector<int> n;
     const int factor = most >= 256 ? 4 : 2, least = most >= 256 ? 16 : 2;
@@ -179,7 +179,7 @@ bool Runner::run(const Contender& c, StrategyStudy& study, const std::function<b
     double done = 0, all = 0;
     for (const int n : counts) all += std::min(4 * n, study.samples);
     for (const int n : counts) {
-        // Rare bright hits decide the error of few samples, so more runs are needed there; these cost little.
+        // With few samples the error is decided by rare bright hits, so more runs are needed; these take little time.
         const int runs = c.strategy == Strategy::riemann ? 1 : study.runs * std::min(4, study.samples / n);
         std::vector<double> squares(runs), seconds(runs);
         std::vector<Estimate> first(1);
@@ -210,7 +210,8 @@ void conclude(StrategyStudy& study, Sequence points) {
     const StrategyResult& yardstick = *study.find("environment");
     const auto squared_error = [&](const StrategyResult& r) {
         const double expected = r.expected_error() * r.expected_error();
-        // The product form averages the environment's candidates, and what the runs missed of these both have missed.
+        // The product strategy averages candidates of the environment strategy, so light that the runs of one missed
+        // was missed by both.
         if (r.name != "product" || !yardstick.missed()) return expected;
         const double scale = yardstick.expected_error() / yardstick.error;
         return expected * scale * scale;

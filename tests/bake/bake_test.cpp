@@ -70,7 +70,7 @@ int count_files(const std::filesystem::path& folder) {
     return n;
 }
 
-/// The texel of `texture`'s level 0 that texture(cube, d) reads.
+/// The texel of level 0 of `texture` that a shader's texture(cube, d) reads.
 Vec3d lookup(const Texture& texture, const Vec3d& d) {
     const CubePoint p = cube_point(d);
     const ImageF face = decode_texture(texture, 0, p.face);
@@ -145,7 +145,7 @@ TEST_CASE("staging: a file that is written at once or not at all has one tempora
 }
 
 TEST_CASE("sh report: three bands hold the irradiance of linear light exactly, two of light of degree two do not") {
-    // E / pi of a constant plus a linear function: band 1 is scaled by 2/3 (Ramamoorthi and Hanrahan 2001).
+    // E / π of a constant plus a linear function: band 1 is scaled by 2/3 (Ramamoorthi and Hanrahan 2001).
     std::vector<Vec3d> radiance(9);
     radiance[0] = Vec3d(1, 1, 1) * (2 * std::sqrt(4 * k_pi));
     radiance[3] = Vec3d(1, 0, 0) * std::sqrt(4 * k_pi / 3);  // x in red
@@ -166,7 +166,7 @@ TEST_CASE("sh report: three bands hold the irradiance of linear light exactly, t
     radiance[3] = {};
     const ShReport wrong = make_sh_report(radiance, 3, ShWindow::none, exact, 1);
     CHECK(wrong.max_error > 0.2);
-    // Filament's form of the same: E / pi = 2 + 2/3 x.
+    // Filament's form of the same: E / π = 2 + 2/3 x.
     CHECK(filament_sh_text(right).starts_with(
         "( 2.000000000000000,  2.000000000000000,  2.000000000000000); // L00, irradiance, pre-scaled base\n"));
     CHECK(filament_sh_text(right).find("( 0.666666666666667,  0.000000000000000,  0.000000000000000); // L11") !=
@@ -221,7 +221,7 @@ TEST_CASE("bake: irradiance is E for generic and E / pi for khronos") {
 
 TEST_CASE("bake: the bytes of an engine's files do not depend on the engines baked with it") {
     ImageF image = smooth_image(32);
-    image.at(20, 12)[1] = 1e5f;  // a sun, which narrow lobes take out of the rows
+    image.at(20, 12)[1] = 1e5f;  // a sun, which is removed from the rows for narrow lobes
     const auto files_of = [](const std::filesystem::path& folder) {
         std::map<std::string, std::string> files;
         for (const auto& entry : std::filesystem::directory_iterator(folder))
@@ -264,7 +264,8 @@ TEST_CASE("bake: the picture shows the BRDF table as it is stored") {
         REQUIRE(bake(environment, options, folder.path()));
         const auto png = decode_png_texture(bytes_of(text_of(folder / "preview.png")));
         REQUIRE(png);
-        // The third of three cells of 300 px. Scale is the larger part; scale + bias is in the second channel.
+        // The third of three cells, each 300 px wide. The scale is the larger part; the second channel holds scale +
+        // bias.
         const std::uint8_t* middle = png->rgba.data() + 4 * ((626 + 150) * png->width + 32 + 2 * 316 + 150);
         CHECK((middle[0] > middle[1]) == (std::string(engine) == "generic"));
     }
@@ -290,7 +291,7 @@ TEST_CASE("bake: a reading that fails changes nothing") {
 
 TEST_CASE("bake: what was clipped is reported") {
     ImageF image(64, 32, 3, 1.0f);
-    for (int c = 0; c < 3; ++c) image.at(10, 16)[c] = 1e6f;  // more than half floats hold
+    for (int c = 0; c < 3; ++c) image.at(10, 16)[c] = 1e6f;  // more than a half float can hold
     const test::TemporaryFolder folder;
     Environment environment = environment_of(image);
     const auto report = bake(environment, small_options(), folder.path());
@@ -343,7 +344,7 @@ TEST_CASE("bake_is_up_to_date: only for the same source, options and files") {
     other.environment.rotate_y_deg = 1;
     CHECK_FALSE(bake_is_up_to_date(files, other, folder / "out"));
     other = options;
-    other.threads = 7;  // has no say in the bytes
+    other.threads = 7;  // does not change the bytes
     CHECK(bake_is_up_to_date(files, other, folder / "out"));
     std::filesystem::remove(folder / "out/sh.json");
     CHECK_FALSE(bake_is_up_to_date(files, options, folder / "out"));

@@ -10,7 +10,7 @@ using namespace domelight;
 
 namespace {
 
-/// A table as it comes back from its file.
+/// A table as it is read back from its file.
 ImageF read_back(const std::filesystem::path& file, const BrdfFileOptions& options) {
     REQUIRE(write_brdf_file(file, options));
     const auto texture = read_texture(file);

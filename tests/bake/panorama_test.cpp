@@ -19,7 +19,7 @@ using namespace domelight::test;
 
 namespace {
 
-/// How far the texels of a projected picture of the directions are from their own, at most.
+/// The largest distance between what the texels of a projected picture of directions hold and their own directions.
 double worst_of(const ImageF& image, const char* name) {
     const Projection projection = *projection_from_name(name);
     double worst = 0;
@@ -46,7 +46,7 @@ TEST_CASE("panorama_as_latlong: every direction lies where the default conventio
     const ImageF image = direction_image(64);
     const ImageF shown = panorama_as_latlong(image, "latlong", 32, 1);
     CHECK(shown.height() == 32);
-    CHECK(worst_of(shown, "latlong") < 0.06);  // means over texels 0.1 wide, against their middles
+    CHECK(worst_of(shown, "latlong") < 0.06);  // means over texels 0.1 wide, compared with the values at their centres
     CHECK(panorama_as_latlong(image, "latlong", 512, 1).height() == 64);
 }
 

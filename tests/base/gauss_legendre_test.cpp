@@ -36,7 +36,8 @@ TEST_CASE("gauss_legendre: large rules integrate what oscillates as fast as they
         }
         CHECK(ascending);
         CHECK(std::abs(sum - 2) < 1e-12);
-        // int cos(k (x + .3)) over [-1, 1]; rounding of the phase, 1e4 * 1e-16, over the whole interval
+        // ∫ cos(k (x + 0.3)) dx over [-1, 1]. The tolerance is the rounding of the phase, 1e4 * 1e-16, over the
+        // interval.
         CHECK(std::abs(oscillation - 2 * std::cos(0.3 * k) * std::sin(k) / k) < 2e-12);
     }
 }

@@ -67,7 +67,7 @@ def named_files(value):
 def test_examples_in_every_help_run(folder):
     shutil.copy(folder / "evening.hdr", folder / "sunset.hdr")
     (folder / "helmet.glb").write_bytes(make_glb())
-    smaller = {"render": ["--width", "8", "--height", "8", "--spp", "1", "--quiet"]}  # the last of an option counts
+    smaller = {"render": ["--width", "8", "--height", "8", "--spp", "1", "--quiet"]}  # if an option is repeated, the last one counts
     for command in ["bake", "brdf", "compare", "convert", "info", "lights", "render", "sample", "sky"]:
         text = run(command, "--help", folder=folder).stdout
         assert text.startswith("Examples:\n"), f"{command} --help does not open with examples"
@@ -393,7 +393,7 @@ def test_phong_tells_how_exponents_between_levels_are_read(folder):
     for gap, above, below in zip(gaps, exponents, exponents[1:]):
         assert below < gap["exponent"] < above and 0 <= gap["median_error"] <= gap["worst_error"]
     assert max(g["worst_error"] for g in gaps) > 0.05  # under a sun
-    # Closer exponents are read better, and the levels themselves do not depend on the question.
+    # Closer exponents are interpolated better, and measuring this does not change the levels themselves.
     run("bake", "studio.hdr", "-o", "two", *SMALL[2:], "--size", "64", "--lobe", "phong", "--exponents", "inf,64,32,16", folder=folder)
     run("bake", "studio.hdr", "-o", "four", *SMALL[2:], "--size", "64", "--lobe", "phong", "--exponents", "inf,64,16", folder=folder)
     two, four = (manifest_of(folder / f)["specular"]["between_levels"] for f in ("two", "four"))
@@ -427,10 +427,10 @@ def test_every_engine_writes_what_it_says(folder):
         for role in ("specular", "environment"):
             for level in manifest.get(role, {}).get("levels", []):
                 assert 0 <= level["roughness"] <= 1 and 0 <= level["clipped_energy"] < 1, (engine, level)
-    # RGBD ends at 255, of which the sun takes no notice; half floats hold it.
+    # RGBD ends at 255, and the sun is brighter; half floats can hold it.
     assert manifest_of(folder / "babylon")["specular"]["levels"][0]["clipped_texels"] > 0
     assert manifest_of(folder / "unity")["specular"]["levels"][0]["clipped_texels"] == 0
-    # What others can open, we can.
+    # The program can open its own files.
     for file in ["babylon/studio.env", "gltf/studio.gltf", "unity/studio.dds", "pbrt/studio.exr", "mitsuba/studio.exr", "materialx/studio.exr"]:
         words = {"pbrt": ["--latlong", "pbrt"], "mitsuba": ["--latlong", "mitsuba"], "materialx": ["--latlong", "materialx"]}.get(file.split("/")[0], [])
         info = json.loads(run("info", file, "--json", *words, folder=folder).stdout)
@@ -449,7 +449,7 @@ def test_engines_share_a_reading_and_get_folders(folder):
     assert files >= {"khronos/ggx/specular.ktx2", "khronos/charlie/sheen.ktx2", "khronos/lambertian/diffuse.ktx2", "filament/studio_ibl.ktx",
                      "filament/studio_skybox.ktx", "filament/sh.txt", "babylon/studio.env", "bevy/studio_specular.ktx2", "bevy/studio_diffuse.ktx2",
                      "three/studio.pmrem.ktx2", "three-latlong/studio.exr", "generic/specular.ktx2"}, files
-    # The same bytes as each baked on its own.
+    # The same bytes as if each had been baked alone.
     for engine in ["khronos", "bevy", "three", "three-latlong"]:
         run("bake", "studio.hdr", "-o", engine, *SMALL, "--for", engine, folder=folder)
         assert files_of(folder / engine) == files_of(folder / "all" / engine), engine
@@ -497,7 +497,7 @@ def test_irradiance_as_e_or_over_pi(folder):
     assert over["irradiance"]["quantity"] == "irradiance_over_pi" and over["options"]["irradiance"] == "irradiance_over_pi"
     metadata = json.loads(run("info", "over/irradiance.ktx2", "--json", folder=folder).stdout)["metadata"]
     assert metadata["domelight.quantity"] == "irradiance_over_pi"
-    # An engine that wants the one gets the other.
+    # An engine that loads E / pi by default gets E if that is asked for.
     run("bake", "studio.hdr", "-o", "k", *SMALL, "--for", "khronos", "--irradiance", "e", folder=folder)
     assert manifest_of(folder / "k")["irradiance"]["quantity"] == "irradiance"
 
@@ -524,7 +524,7 @@ def test_brdf_alone(folder):
         run("brdf", "-o", name, "--size", "8", folder=folder)
         assert (folder / name).stat().st_size > 100, name
     assert b"brdf scale-bias" in (folder / "a.exr").read_bytes()
-    # The courses' sum of samples comes near.
+    # The courses' sum of samples comes close to it.
     run("brdf", "-o", "m.ktx2", "--size", "32", "--float", "--form", "scale-bias-charlie", "--method", "montecarlo", "--sequence", "sobol", "--samples", "4096", folder=folder)
     other = struct.unpack(f"<{32 * 32 * 4}f", (folder / "m.ktx2").read_bytes()[-32 * 32 * 16:])
     assert 0 < max(abs(a - b) for i, (a, b) in enumerate(zip(values, other)) if i % 4 < 2) < 0.02
@@ -779,7 +779,7 @@ def test_sample_writes_pictures_and_tables(folder):
     document = json.loads(run("sample", "studio.hdr", "--heat", "c.png", "--heat-measure", "uv", "--tables", "t", "--tables-format", "exr", "--json", folder=folder).stdout)
     assert document["files"] == ["c.png", "t/rows.exr", "t/columns.exr", "t/row_averages.exr"] and document["width"] == 64
 
-    # A shader's reading of the tables, as docs/math/importance.md has it, draws what the program draws.
+    # Reading the tables as a shader does (docs/math/importance.md) gives the samples of the program.
     def table(name, width, height):
         info = json.loads(run("info", name, "--json", folder=folder).stdout)
         assert (info["width"], info["height"], info["levels"]) == (width, height, 1) and "R32G32" in info["format"], info
@@ -843,7 +843,7 @@ def test_row_averages_draw_as_the_lecture_does(folder):
             assert i == next(i for i in range(width) if columns[2 * (width * j + i)] > (b + 0.5) / n)
             found[j][i] += 1
             assert b or abs(light[j][i] / total / (rows[2 * j + 1] * columns[2 * (width * j + i) + 1]) - 1) < 1e-5
-    # How often a texel is found, against its share of the light: the points of a grid miss a strip by one at most.
+    # How often a texel is found, compared with its share of the light: with the points of a grid, a strip gets at most one too many or too few.
     for j in range(height):
         row = sum(light[j]) / (total * width * height)
         for i in range(width):
@@ -861,7 +861,7 @@ def test_sample_explains_what_it_does(folder):
             e = json.loads(run(*words, "--json", folder=folder).stdout)["explanation"]
             row, column, sample = e["row"], e["column"], e["sample"]
             assert row["begin"] <= row["xi"] <= row["end"] and column["begin"] <= column["xi"] <= column["end"]
-            # The board's arithmetic ends where the sampler does; under the sun float rows have 24 bits.
+            # The arithmetic of the explanation ends at the sampler's own result; rows of floats have 24 bits, which limits it under the sun.
             assert abs(row["v"] - sample["v"]) < 2e-6 and abs((column["u"] - sample["u"] + 0.5) % 1 - 0.5) < 2e-5, (method, point, e)
             assert point[1] == 0 or abs(e["pdf_solid_angle"] / sample["pdf_solid_angle"] - 1) < 2e-3, (method, point, e)
             assert abs(e["jacobian"] - 2 * math.pi**2 * math.sin(math.pi * row["v"])) < 1e-6
@@ -884,7 +884,7 @@ def test_sample_estimates_agree_and_tell_the_strategies_apart(folder):
                     assert error < 5 * s["standard_error"][c] + 0.01 * reference[c], (surface, name, s, reference)
                 assert s["convergence"][-1]["error"] == s["error"] and s["cpu_seconds"] > 0
                 if s["variance"] is not None and sequence == "random":
-                    # Measured over 64 runs, against the integral: within 4 standard errors of an RMS of 64.
+                    # Measured over 64 runs, against the integral: within 4 standard errors of the RMS of 64 values.
                     assert abs(s["error"] / (s["variance"] / s["samples"]) ** 0.5 - 1) < 0.4, (surface, name, s)
             if sequence == "random":
                 assert all(-0.75 < found[n]["slope"] < -0.3 for n in found if n != "riemann"), {n: found[n]["slope"] for n in found}
@@ -1020,7 +1020,7 @@ def test_convert_every_projection_there_and_back(folder):
         assert info["projection"] == name.split("/")[0], info
         mean = info["mean_radiance"]
         before = before or mean
-        # A mirror ball hides a cone behind it, and 64 texels are coarse for the sun.
+        # A mirror ball hides a cone behind it, and 64 texels resolve the sun only coarsely.
         tolerance = 0.25 if "ball" in name else 0.05
         assert all(abs(a / b - 1) < tolerance for a, b in zip(mean, before)), (name, mean, before)
     for name, share in [("hemisphere", 50), ("paraboloid", 50), ("paraboloid-opposite", 50)]:
@@ -1035,7 +1035,7 @@ def test_convert_every_projection_there_and_back(folder):
 
 
 def test_convert_reads_every_projection_by_the_name_that_wrote_it(folder):
-    """The names are those of docs/projections.md."""
+    """The names of projections are those of docs/projections.md."""
     table = re.findall(r"^\| (`[^|]*) \|", (ROOT / "docs/projections.md").read_text(), re.MULTILINE)
     names = [name.replace("=F", "=30") for cell in table for name in re.findall("`([^`]*)`", cell)]
     assert "cube" in names and len(names) == 12, names
@@ -1104,7 +1104,7 @@ def test_convert_textures_envmap_and_threads(folder):
 
 
 def test_bad_texels_are_reported(folder):
-    # A flat .pfm would be simpler, but the program reads .hdr, which cannot hold them: an uncompressed float EXR, made here.
+    # Radiance files cannot hold these values, so an uncompressed float EXR is written here.
     (folder / "bad.exr").write_bytes(make_exr(8, 4, {5: float("nan"), 9: float("inf"), 11: -3.0}))
     info = json.loads(run("info", "bad.exr", "--json", folder=folder).stdout)
     assert info["repaired"] == {"not_a_number": 1, "infinite": 1, "negative": 1, "most_negative": -3.0}
@@ -1134,7 +1134,7 @@ def test_lights_writes_lights_and_remainder_that_add_up(folder):
     assert found["remainder"]["sha256"] == files["remainder.exr"] and found["source"]["sha256"] == hashlib.sha256((folder / "sky.exr").read_bytes()).hexdigest()
     sun, = found["lights"]
     assert abs(sun["azimuth_deg"] - 30) < 0.15 and abs(sun["elevation_deg"] - 30) < 0.15 and sun["share"] > 0.4  # texels of 0.7 degrees
-    # info reads the remainder for itself: mean radiance times 4 pi is the power, of its bilinear reconstruction.
+    # info reads the remainder independently: the mean radiance of its bilinear reconstruction, times 4 pi, is the power.
     before = json.loads(run("info", "sky.exr", "--json", folder=folder).stdout)["mean_radiance"]
     after = json.loads(run("info", "out/remainder.exr", "--json", folder=folder).stdout)
     assert all(light["share"] < 0.1 for light in after["lights"]), "what is left is the glow around"
@@ -1172,7 +1172,7 @@ def test_lights_directions_are_the_worlds(folder):
     assert near(usd["direction"], [-z, y, x], 1e-9)  # centre +Z, right -X: what the default shows at +X and +Z
     brighter, = json.loads(run("lights", "sky.exr", "-o", "brighter", "--no-preview", "--exposure", "1", "--json", folder=folder).stdout)["lights"]
     assert near([2 * c for c in plain["irradiance"]], brighter["irradiance"], 1e-6 * max(brighter["irradiance"]))
-    # The remainder stays as the source is, and no texel away from the light changes.
+    # The remainder has the form of the source, and no texel away from the light changes.
     files = [files_of(folder / name)["remainder.exr"] for name in ("plain", "turned", "usd")]
     assert files[0] == files[1] == files[2]
 
@@ -1187,7 +1187,7 @@ def test_lights_takes_a_cube_and_is_the_same_on_any_number_of_threads(folder):
 
 
 def matte_light(scene, *words, folder):
-    """The radiance that a matte square about the origin shows from above, without what other surfaces send to it."""
+    """The radiance of a matte square about the origin, seen from above, without light reflected by other surfaces."""
     view = ["--width", "32", "--height", "16", "--spp", "256", "--bounces", "0", "--camera-position", "0,1,0.001", "--fov-deg", "1"]
     run("render", scene, "-o", "matte.exr", *view, *words, "--quiet", folder=folder)
     return json.loads(run("info", "matte.exr", "--projection", "latlong", "--json", folder=folder).stdout)["mean_radiance"]
@@ -1213,12 +1213,12 @@ def test_render_of_remainder_and_lights_is_that_of_the_environment(folder):
         whole = light_of(scene, "--env", "sky.exr")
         assert light_of(scene, "--env", "out/remainder.exr")[0] < 0.8 * whole[0], "without the lights much is missing"
         same(whole, light_of(scene, "--env", "out/remainder.exr", *lights))
-    # Turned and brightened, both are.
+    # --rotate-y-deg and --exposure apply to the lights and to the remainder alike.
     words = ["--rotate-y-deg", "80", "--exposure", "1"]
     turned = light_of("slanted.gltf", "--env", "sky.exr", *words)
     assert abs(turned[0] / whole[0] - 2) > 0.2
     same(turned, light_of("slanted.gltf", "--env", "out/remainder.exr", *lights, *words))
-    # Taken out of the turned environment, in another unit, or of a cube, whose remainder has been turned already.
+    # Lights taken out of the turned environment, in another unit, and out of a cube, whose remainder is written turned.
     run("lights", "sky.exr", "-o", "out", "--no-preview", "--rotate-y-deg", "80", "--lux-per-unit", "179", folder=folder)
     same(whole, light_of("slanted.gltf", "--env", "out/remainder.exr", *lights))
     same(turned, light_of("slanted.gltf", "--env", "out/remainder.exr", *lights, *words))
@@ -1226,14 +1226,14 @@ def test_render_of_remainder_and_lights_is_that_of_the_environment(folder):
         folder=folder)
     run("lights", "cube/specular.ktx2", "-o", "out", "--no-preview", "--rotate-y-deg", "80", folder=folder)
     same(turned, light_of("slanted.gltf", "--env", "out/remainder.exr", *lights, "--exposure", "1"))
-    # In a scene of the user's own the lights keep their unit.
+    # Lights of the user's own scene keep their unit.
     scene, taken = make_square(math.radians(50)), json.loads((folder / "out/lights.gltf").read_text())
     scene["extensions"], scene["extensionsUsed"] = taken["extensions"], taken["extensionsUsed"]
     scene["nodes"] += taken["nodes"]
     scene["scenes"] = [{"nodes": list(range(len(scene["nodes"])))}]
     (folder / "lit.gltf").write_text(json.dumps(scene))
     same(light_of("slanted.gltf", "--env", "out/remainder.exr", *lights), light_of("lit.gltf", "--env", "out/remainder.exr"))
-    # Engines' shadings draw them too; a file that is none is an error.
+    # The shadings of engines draw the lights too; a file that holds no lights is an error.
     same(light_of("slanted.gltf", "--env", "out/remainder.exr", *lights), light_of("slanted.gltf", "--env", "out/remainder.exr", *lights, "--shading", "split-sum"))
     assert "is not a glTF file" in run("render", "up.gltf", "--lights", "out/lights.json", "-o", "no.exr", folder=folder, code=1).stderr
     assert "no light" in run("render", "up.gltf", "--lights", "up.gltf", "-o", "p.exr", *TINY, folder=folder).stderr
@@ -1246,7 +1246,7 @@ def test_lights_of_an_openexr_latlong_are_read_where_they_were(folder):
     assert "warning" not in said.stderr
     sun, = lights_of(folder / "out")["lights"]
     assert abs(sun["azimuth_deg"] - 30) < 1 and abs(sun["elevation_deg"] - 40) < 1
-    # The remainder says that it is OpenEXR's too: the glow that is left is where the sun was.
+    # The remainder states OpenEXR's convention as well: the glow that is left is where the sun was.
     (folder / "slanted.gltf").write_text(json.dumps(make_square(math.radians(50))))
     same_light(matte_light("slanted.gltf", "--env", "stated.exr", folder=folder),
                matte_light("slanted.gltf", "--env", "out/remainder.exr", "--lights", "out/lights.gltf", folder=folder))
@@ -1311,7 +1311,7 @@ def test_render_backgrounds(folder):
         run("render", "model.glb", "-o", f"{name}.png", *TINY, *words, folder=folder)
         return png_of(folder / f"{name}.png")
 
-    # Shown as it was given, whatever the exposure and the tone map make of the scene.
+    # The colour is shown as it was given, independent of the exposure and the tone map of the scene.
     for name, words in {"hex": ["--background-color", "#336699"], "float": ["--background-color", "0.0331047666,0.13286832,0.318546778"],
                         "word": ["--background", "color", "--background-colour", "#336699", "--tonemap", "aces", "--ev", "3"]}.items():
         width, _, channels, pixels = picture(name, *words)
@@ -1322,13 +1322,13 @@ def test_render_backgrounds(folder):
     sharp, blurred = picture("sharp", "--tonemap", "gamma22")[3], picture("blurred", "--background", "blurred", "--tonemap", "gamma22")[3]
     middle = 3 * (6 * 16 + 8)
     assert sharp[:3] != blurred[:3]
-    # Exposure is what the surfaces ask for: the same ball, whatever is behind it.
+    # The exposure depends on the surfaces only: the ball looks the same before any background.
     ball = slice(3 * (6 * 16 + 7), 3 * (6 * 16 + 9))
     white, hexed = picture("w2", "--background", "colour")[3][ball], picture("h2", "--background-color", "#000000")[3][ball]
     assert white == hexed
     seen, cut = picture("seen", "--background", "environment")[3], clear
     for c in range(3):
-        # (The edge's pixels have some of the background in them.)
+        # (Pixels at the edge contain some of the background.)
         assert abs(seen[middle + c] - cut[4 * (6 * 16 + 8) + c]) <= 6, (tuple(seen[middle:middle + 3]), tuple(cut[4 * (6 * 16 + 8):][:3]))
     looks = {name: bytes(picture(name, "--tonemap", name)[3]) for name in ["agx", "agx-punchy", "neutral", "aces", "reinhard", "gamma22", "none"]}
     assert len(set(looks.values())) == len(looks)
@@ -1362,13 +1362,13 @@ def test_render_turntable(folder):
     assert webp_frames((folder / "t.webp").read_bytes()) == (16, 16, [125] * 4)
     whole = files_of(folder)
     assert len({whole[f"{n}.png"] for n in names}) == 4
-    # What is missing is drawn again, the same; what is there stays as it is.
+    # Missing frames are drawn again with the same bytes; frames that exist are not changed.
     (folder / "t_0003.png").unlink()
     (folder / "t.webp").unlink()
     said = json.loads(run(*words, "--resume", "--json", folder=folder).stdout)
     assert said["drawn"] == 1 and said["kept"] == 3
     assert files_of(folder) == whole
-    # Frame 1 is the picture itself, and light that goes round changes it.
+    # Frame 1 equals the single picture, and turning the light changes the frames.
     run("render", "ball", "-o", "one.exr", "--width", "16", "--height", "16", "--spp", "1", folder=folder)
     assert (folder / "one.exr").read_bytes() == (folder / "t_0001.exr").read_bytes()
     run(*[w.replace("t.png,t.exr", "e.exr") for w in words], "--turn", "environment", folder=folder)
@@ -1447,7 +1447,7 @@ def test_render_study(folder):
     assert len(cells) == 2 * 4 * 5 * 3
     error = {(c["occlusion"], c["roughness"], c["light_deg"], c["strategy"]): c["tone_mapped_rmse"] for c in cells}
     for occlusion in [False, True]:
-        # Veach's figure: each of the two fails where the other does well, and MIS is near the better one everywhere.
+        # As in Veach's figure, each of the two strategies is poor where the other is good, and MIS is close to the better one everywhere.
         assert error[occlusion, 0.8, 2, "env"] < 0.3 * error[occlusion, 0.8, 2, "brdf"]
         assert error[occlusion, 0.05, 90, "brdf"] < 0.3 * error[occlusion, 0.05, 90, "env"]
     lines = stored["noise"]["lines"]
@@ -1522,7 +1522,7 @@ def test_render_exposes_a_dark_picture_for_what_is_lit(folder):
         assert 0.18 < brightest * 2 ** said["ev"] <= 4.1, said["ev"]
     assert f"exposure {said['ev']:+.2f} EV" in run(*words, "--shading", "split-sum", "-o", "p.png", folder=folder).stdout
     assert "exposure" not in run(*words, "-o", "p.exr", folder=folder).stdout
-    # Of a turn, the views of the dark back do not burn the front: 2^-14 of radiance all around asks for twelve stops.
+    # In a turntable, the views of the dark back do not overexpose the front. An even light of 2^-14 alone would need twelve stops.
     write_even(folder / "dim.hdr", 128, 115)
     turn = ["--frames", "2", "--width", "32", "--height", "32", "-o", "t.png", "--camera-position", "0,0,8", "--spp", "4"]
     said = json.loads(run("render", "spot.gltf", "--env", "dim.hdr", *turn, "--json", folder=folder).stdout)
@@ -1573,10 +1573,10 @@ def test_convert_shows_a_render_as_render_does(folder):
     layer = json.loads(run("convert", "r.exr", "-o", "l.png", "--layer", "direct", "--json", folder=folder).stdout)
     assert (layer["source"]["layer"], layer["tonemap"], layer["projection"]) == ("direct", "agx", None), layer
     assert "direct" in run("convert", "r.exr", "-o", "l.png", "--layer", "gloss", folder=folder, code=1).stderr
-    # What was made for a screen stays as it is, whatever its shape.
+    # A picture made for a screen is not changed, whatever its shape.
     run("convert", "r.png", "-o", "again.png", folder=folder)
     assert max(abs(a - b) for a, b in zip(png_of(folder / "again.png")[3], png_of(folder / "r.png")[3]) if b) <= 1
-    # An environment is shown as it lies, and light from all around keeps its own way.
+    # An environment is shown as it is stored, and is converted to other projections as before.
     run("convert", "studio.hdr", "-o", "studio.jpg", folder=folder)
     assert json.loads(run("convert", "studio.hdr", "-o", "s.png", "--to", "angular", "--json", folder=folder).stdout)["projection"]
 
@@ -1749,7 +1749,7 @@ def test_compare_agrees_with_flip_evaluator(folder):
         for letter, turbidity in [("a", 2), ("b", 4)]:
             run("sky", "-o", f"{letter}{elevation}.exr", "--exr", "float", "--height", "64", "--sun-elevation-deg", elevation, "--turbidity", turbidity, folder=folder)
         agrees("HDR", f"a{elevation}.exr", f"b{elevation}.exr", "hdr_flip")
-    for name in ["difference", "tone-mapped", "relative"]:  # pictures for a screen that lie at hand
+    for name in ["difference", "tone-mapped", "relative"]:  # pictures for a screen that the tests have made already
         run("compare", "a12.exr", "b12.exr", "--heat", f"{name}.png", "--heat-of", name, "--quiet", folder=folder)
     agrees("LDR", "difference.png", "relative.png", "flip")
     agrees("LDR", "tone-mapped.png", "relative.png", "flip")

@@ -16,7 +16,7 @@ using namespace domelight;
 
 namespace {
 
-/// Light that no exchange of axes leaves alone: a gradient, soft lamps of different colours and one hard one.
+/// Light that differs under every exchange of axes: a gradient, soft lamps of different colours and a hard one.
 ImageF environment(int height = 32) {
     ImageF image(2 * height, height, 3);
     for (int y = 0; y < height; ++y)
@@ -198,7 +198,7 @@ TEST_SUITE("bake") {
             return sum;
         };
         CHECK(sums(all)[0] == doctest::Approx(4 * k_pi));
-        // Standard errors of some 4600 random texels are below a hundredth; the sun alone is a third of the light.
+        // The standard errors of about 4600 random texels are below 1 %; the sun alone is a third of the light.
         CHECK(sums(some)[0] == doctest::Approx(4 * k_pi).epsilon(0.03));
         CHECK(sums(some)[1] == doctest::Approx(sums(all)[1]).epsilon(0.03));
     }
@@ -281,7 +281,8 @@ TEST_SUITE("bake") {
         CHECK(std::isinf(found.levels[0].exponent.value()));
         for (std::size_t l = 0; l < exponents.size(); ++l) {
             CAPTURE(l);
-            // A few 1e-4 of roughness, as for GGX, is five times as much of the exponent.
+            // As for GGX the roughness is found to a few 1e-4; the relative error of the exponent is five times as
+            // large.
             CHECK(std::abs(found.levels[l + 1].exponent.value() / exponents[l] - 1) < 0.01);
             CHECK(found.levels[l + 1].error < 1e-3);
             CHECK(audited(Lobe::ggx).levels[l + 1].error > 5 * found.levels[l + 1].error);

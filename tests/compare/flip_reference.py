@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the numbers that metrics_test.cpp holds FLIP to: those of the authors' own program (PyPI: flip-evaluator, numpy) on the same pictures.
+"""Prints the numbers with which metrics_test.cpp compares FLIP: those of the authors' own program (PyPI: flip-evaluator, numpy) on the same pictures.
 
 Made with flip-evaluator 1.7. Run it again after a change of the pictures and copy what it prints.
 """

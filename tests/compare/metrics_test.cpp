@@ -94,7 +94,7 @@ TEST_SUITE("render") {
         const Errors without = compare_images(test.view(), reference.view(), mask.view());
         CHECK(without.rmse == 0);
         CHECK(without.pixels == 199);
-        CHECK(without.ssim == doctest::Approx(1));  // windows do not look behind the mask
+        CHECK(without.ssim == doctest::Approx(1));  // windows leave out what is behind the mask
         ImageF none(20, 10, 1);
         CHECK(compare_images(test.view(), reference.view(), none.view()).pixels == 0);
     }
@@ -113,7 +113,8 @@ TEST_SUITE("render") {
                 }
         const ImageF map = ssim(a.view(), b.view());
         const double expected = (-2 * d * d + 9e-4) / (2 * d * d + 9e-4);
-        // The Gaussian's alternating sum is exp(-pi^2 sigma^2) = 2e-10, its cut at 5 pixels leaves 1e-3 of the mean.
+        // The alternating sum of the Gaussian is exp(−π² σ²) = 2e-10; cutting it off at 5 pixels leaves 1e-3 of the
+        // mean.
         CHECK(*map.at(32, 32) == doctest::Approx(expected).epsilon(0.001));
     }
 
@@ -132,14 +133,14 @@ TEST_SUITE("render") {
         const ImageF test = noisy(truth, 0.2, 1), reference = noisy(truth, 0.2, 2);
         const NoiseSummary n = compare_noisy(test.view(), reference.view(), variance.view(), variance.view());
         CHECK(n.values == 36000);
-        // Standard errors over 36 000 values: chi2 sqrt(2 / n) = 0.0075, share 0.0011, mean z 0.0053; four of them
+        // Standard errors over 36 000 values: chi2 √(2 / n) = 0.0075, share 0.0011, mean z 0.0053; four of them
         // allowed.
         CHECK(std::abs(n.chi2 - 1) < 0.03);
         CHECK(std::abs(n.share_above_2 - 0.0455) < 0.0044);
         CHECK(std::abs(n.mean_z) < 0.021);
         CHECK(std::abs(n.total_z) < 4);
         CHECK(n.ratio_low < n.mean_ratio);
-        // sd of the ratio of means = sqrt(2) 0.2 / sqrt(36000) = 0.00149
+        // sd of the ratio of means = √2 · 0.2 / √36000 = 0.00149
         const double expected = 2 * 1.96 * std::sqrt(2.0) * 0.2 / std::sqrt(36000.0);
         CHECK((n.ratio_high - n.ratio_low) / expected == doctest::Approx(1).epsilon(0.01));
 

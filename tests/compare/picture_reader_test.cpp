@@ -13,7 +13,7 @@ using namespace domelight::test;
 
 namespace {
 
-/// Four channels: the left half is covered, half of that by 0.5; the rest shows `background`.
+/// Four channels: the left half is covered, half of it with opacity 0.5; the rest shows `background`.
 ImageF half_covered(int width, int height, float background) {
     ImageF image(width, height, 4);
     for (int y = 0; y < height; ++y)

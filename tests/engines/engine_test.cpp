@@ -198,7 +198,8 @@ TEST_CASE("plan: options override the engine, level by level") {
     CHECK(sizes(plan_of("generic", options)).front() == 1024);  // as fine as a cube of 512^2
     CHECK(sizes(plan_of("generic", options)).size() == 8);      // to 8 rows
 
-    // One texture holds 200 x 100, 100 x 50, 50 x 25, but then 25 x 12: files of a level each may go on.
+    // One texture holds 200 x 100, 100 x 50, 50 x 25, but then 25 x 12: an engine that takes a file for each level may
+    // go on.
     options.size = 100;
     CHECK(sizes(plan_of("generic", options)) == std::vector{100, 50, 25});
     options.format = Container::exr;
@@ -214,7 +215,7 @@ TEST_CASE("plan: options override the engine, level by level") {
 
     options = {};
     options.format = Container::ktx2;
-    CHECK(plan_of("filament", options).encoding == Encoding::rgba16f);  // another container, its own default
+    CHECK(plan_of("filament", options).encoding == Encoding::rgba16f);  // this container's own default
 }
 
 TEST_CASE("plan: contradictions are errors that name the field") {

@@ -1,4 +1,4 @@
-// Environment: rows, texels and directions of the same light, again and again, whatever it is stored as.
+// Environment: rows, texels and directions of the same light can be read again and again, however it is stored.
 
 #include "domelight/environment/environment.h"
 #include "domelight/filtering/prefilter.h"
@@ -21,7 +21,7 @@ namespace {
 
 constexpr int k_height = 64;
 
-/// The largest error of the direction that a lookup speaks of, over directions all around.
+/// The largest error, over all directions, of the direction that a lookup returns.
 double worst_lookup(const Environment& environment) {
     double worst = 0;
     for (int i = 0; i < 500; ++i) {
@@ -49,7 +49,7 @@ double worst_row(const Environment& environment) {
 }
 
 Environment turned_cube() {
-    // A cube that stands a third of a turn off: texels speak of world directions.
+    // A cube that is turned by a third of a turn: its texels hold world directions.
     const Mat3 world_to_source = rotation_y(2 * k_pi / 3);
     Cubemap cube(32);
     for (int f = 0; f < 6; ++f)
@@ -66,14 +66,14 @@ Environment turned_cube() {
 Environment turned_picture() {
     const ProjectedImage latlong{*projection_from_name("latlong"), test::direction_image(k_height)};
     const Mat3 turn = rotation_y(0.5);
-    // What is written as the picture's own frame is the world, turned.
+    // Written in the picture's own frame, the world is turned.
     return Environment::from_picture(
         reproject({latlong.projection.turned(turn.transposed()), latlong.pixels}, *projection_from_name("octahedral"),
                   128, 128),
         turn);
 }
 
-/// All that a second reader must find as the first one did.
+/// Everything that must be the same for a second reader as for the first.
 void check_readable_again(const Environment& environment, double tolerance) {
     CHECK(environment.latlong_width() == 2 * environment.latlong_height());
     for (int reading = 0; reading < 2; ++reading) {
@@ -83,7 +83,7 @@ void check_readable_again(const Environment& environment, double tolerance) {
         options.irradiance_size = 4;
         const auto filtered = prefilter(environment, options);
         REQUIRE(filtered);
-        // The harmonics of 2 + (x, y, z): a_00 = 2 sqrt(4 pi), and sqrt(4 pi / 3) of each axis.
+        // The harmonics of 2 + (x, y, z): a_00 = 2 √(4π), and √(4π / 3) of each axis.
         CHECK(filtered->sh[0].x == doctest::Approx(2 * std::sqrt(4 * k_pi)).epsilon(0.002));
         CHECK(std::abs(filtered->sh[3].x) == doctest::Approx(std::sqrt(4 * k_pi / 3)).epsilon(0.01));
         CHECK(std::abs(filtered->sh[3].y) < 0.02);

@@ -32,7 +32,7 @@ Vec3d integral(const ImageF& image) {
     return sum;
 }
 
-/// |a - b| / |b|: doctest's Approx lets small numbers off.
+/// |a − b| / |b|. doctest's Approx is too tolerant with small numbers.
 double off(double a, double b) {
     return std::abs(a - b) / std::abs(b);
 }
@@ -107,7 +107,7 @@ TEST_CASE("sun disc: a texel sum has the disc's energy to 1e-5, at any size and 
                 const Vec3d sum = integral(image);
                 CAPTURE(elevation);
                 CAPTURE(height);
-                // Quadrature at the disc's edge, cut differently by every grid of texels.
+                // The quadrature error at the disc's edge, which every grid of texels cuts differently.
                 CHECK(off(sum.x, truth.x) < 1e-5);
                 CHECK(off(sum.y, truth.y) < 1e-5);
                 CHECK(off(sum.z, truth.z) < 1e-5);
@@ -122,7 +122,7 @@ TEST_CASE("sun disc: its energy is the sunlight that the air lets through") {
         const auto through = sky::transmittance(
             m.atmosphere().medium(), sky::columns_to_top(sky::k_ground_radius, std::sin(elevation * k_pi / 180), 512));
         const Vec3d expected(m.atmosphere().medium().colour(through)), got = m.direct_normal_irradiance();
-        // The extinction's curvature over half a degree.
+        // The tolerance covers the curvature of the extinction over half a degree.
         CHECK(off(got.x, expected.x) < 3e-4);
         CHECK(off(got.y, expected.y) < 3e-4);
         CHECK(off(got.z, expected.z) < 3e-4);
@@ -151,7 +151,7 @@ TEST_CASE("sun disc: coverage by brute force") {
                     if (angle < sky::k_sun_radius)
                         sum += w * disc.radiance(e, std::sin(angle / 2) / std::sin(sky::k_sun_radius / 2)).y;
                 }
-            // 160 000 points place the edge to about their spacing times the perimeter's share.
+            // With 160 000 points the edge is known to about their spacing, times the share of the perimeter.
             CHECK(off(row[3 * x + 1], sum / weight) < 3e-3);
         }
     }
@@ -170,7 +170,7 @@ TEST_CASE("sky medium: turbidity is the ratio of optical depths at 550 nm, and c
     CHECK(off(up.air, 8.4) < 1e-3);
     CHECK(off(up.aerosol, 1.2) < 1e-3);
     CHECK(off(up.ozone, 15) < 1e-3);
-    // Along the horizon: Chapman's sqrt(pi R / 2 H) for air, with the next term of its series.
+    // Along the horizon: Chapman's √(π R / 2 H) for air, with the next term of its series.
     const auto along = sky::columns_to_top(sky::k_ground_radius, 0, 4096);
     const double x = sky::k_ground_radius / 8.4;
     CHECK(off(along.air, 8.4 * std::sqrt(k_pi * x / 2) * (1 + 3 / (8 * x))) < 1e-3);
@@ -213,7 +213,7 @@ TEST_CASE("sky table: between its nodes it is what a path gathers") {
                 CAPTURE(elevation);
                 CAPTURE(e);
                 CAPTURE(azimuth);
-                // Cubic interpolation; the Earth's shadow at dusk is its sharpest feature.
+                // The error of cubic interpolation; the Earth's shadow at dusk is the sharpest feature.
                 CHECK(off(got.y, truth.y) < (elevation > 0 ? 2e-3 : 2e-2));
             }
     }
@@ -254,9 +254,9 @@ TEST_CASE("sky: the image's irradiance is the model's") {
     for (int y = 0; y < 128; ++y)
         for (int x = 0; x < 512; ++x)
             sum += image.at(x, y)[1] * latlong_solid_angle(y, 512, 256) * std::cos(k_pi * (y + 0.5) / 256);
-    // The model sums spectra over 96 x 33 nodes, coarse for the aureole.
+    // The model sums spectra over 96 x 33 nodes, which is coarse for the aureole.
     CHECK(off(sum, sky::SkyModel(options).sky_irradiance().y) < 0.01);
-    // Straight down: the ground, albedo / pi times all irradiance.
+    // Straight down: the ground, albedo / π times all irradiance.
     const sky::SkyModel m(options);
     const double direct = m.direct_normal_irradiance().y * std::sin(35 * k_pi / 180);
     CHECK(off(m.radiance(-k_pi / 2, 0).y, 0.2 / k_pi * (direct + m.sky_irradiance().y)) < 0.02);

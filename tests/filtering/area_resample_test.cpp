@@ -22,7 +22,7 @@ const Mat3 k_identity{};
 const Mat3 k_z_up{{Vec3d{1, 0, 0}, Vec3d{0, 0, 1}, Vec3d{0, -1, 0}}};
 const Mat3 k_mirror{{Vec3d{0, 0, 1}, Vec3d{0, 1, 0}, Vec3d{1, 0, 0}}};
 
-/// Any rotation: about the axis (1, 2, 3) by 0.7.
+/// An arbitrary rotation: about the axis (1, 2, 3) by 0.7 radians.
 Mat3 tilted() {
     const Vec3d k = normalize(Vec3d{1, 2, 3});
     const double c = std::cos(0.7), s = std::sin(0.7);
@@ -52,7 +52,7 @@ Vec3d bilinear(ImageView<const float> image, UV uv) {
            (texel(i, j + 1) * (1 - s) + texel(i + 1, j + 1) * s) * t;
 }
 
-/// ∫ g dω over the sphere: the integral of each row's tent against sin theta in closed form.
+/// ∫ g dω over the sphere: the integral of each row's tent against sin θ in closed form.
 Vec3d total_light(ImageView<const float> image) {
     const double h = k_pi / image.height;
     Vec3d sum;
@@ -104,8 +104,8 @@ Vec3d latlong_light(ImageView<const float> image) {
     return sum;
 }
 
-/// A constant of a different value in each channel (results are kept inside the range of all values, which must not
-/// hide an error).
+/// A constant with a different value in each channel: results are clamped to the range of all values, and this must not
+/// hide an error.
 constexpr float k_constant[3] = {0.7f, 0.2f, 3.0f};
 
 double worst_against_constant(std::span<const float> pixels) {
@@ -180,7 +180,7 @@ TEST_CASE("area_resample: cube texels are the average of the bilinear reconstruc
                 worst = std::max(worst, relative(Vec3d(p[0], p[1], p[2]), truth));
             }
             INFO(s.width, "x", s.height, " to ", s.size);
-            CHECK(worst < 1e-4);  // the samples' own error, O(1/steps^2) at the reconstruction's kinks
+            CHECK(worst < 1e-4);  // the error of the samples, O(1/steps²) at the kinks of the reconstruction
         }
 }
 
@@ -241,7 +241,7 @@ TEST_CASE("area_resample: the same bytes on any number of threads and in any chu
                                                                   {{514, 257, 48}, k_z_up}}) {
         const ImageF image = random_image(s.width, s.height);
         const ImageF cube = resample_to_cube(image, s.size, m);
-        const bool plain = m == tilted() || m == k_z_up;  // slow to a lat-long image
+        const bool plain = m == tilted() || m == k_z_up;  // resampling to a lat-long image is slow
         const int latlong_height = plain ? 3 : s.size;
         const ImageF latlong = resample_to_latlong(image, latlong_height, m);
         for (const auto& [threads, chunk] : std::vector<std::pair<int, int>>{{2, 1}, {3, 7}, {8, s.height}}) {
@@ -332,7 +332,7 @@ TEST_CASE("area_resample_cube: texels are averages, the mean is kept, a constant
                     const float* p = out.strip().at(x, y);
                     worst = std::max(worst, relative(Vec3d(p[0], p[1], p[2]), truth / weight));
                 }
-                CHECK(worst < 2e-4);  // the samples' own error
+                CHECK(worst < 2e-4);  // the error of the samples
             }
             CHECK(relative(latlong_light(latlong), total_light(cube)) < 1e-5);
             Cubemap grey(from);
@@ -389,7 +389,7 @@ TEST_CASE("area_resample: to a lat-long image, the separable version is the plai
 }
 
 TEST_CASE("area_resample: large sources keep a constant and the light of one texel, near the poles too") {
-    // Near a pole an output texel averages thousands of source texels: sums of floats must not drift.
+    // Near a pole an output texel averages thousands of source texels: the rounding of float sums must not accumulate.
     for (const auto& [s, angle] : std::vector<std::pair<Shape, double>>{
              {{4096, 2048, 256}, 0}, {{4095, 2047, 255}, 0.5}, {{2048, 1024, 8}, 0}}) {
         const Mat3 m = rotation_y(angle);
@@ -426,7 +426,7 @@ TEST_CASE("area_resample: every instruction set gives the same to 1e-6") {
         simd::limit_instruction_set(set);
         check(set);
     }
-    // The plain code; limit_instruction_set knows it as EMU128, which not every compiler builds.
+    // The plain code, which limit_instruction_set calls EMU128. Not every compiler builds it.
     hwy::SetSupportedTargetsForTest(HWY_TARGETS & (HWY_SCALAR | HWY_EMU128));
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
     check("plain");

@@ -22,15 +22,14 @@ std::vector<std::pair<int, int>> texels() {
     return list;
 }
 
-/// int f NdotL dl over the light's hemisphere itself, D and all, in (mu, phi): no half vectors. For alpha that a plain
-/// grid resolves.
+/// ∫ f NdotL dω over the hemisphere of light directions (μ, φ), without half vectors. For α that a plain grid resolves.
 BrdfTerms over_light_directions(double NdotV, double alpha, BrdfG g) {
     const GaussLegendre& rule = gauss_legendre(400);
     const double s_v = std::sqrt(1 - NdotV * NdotV);
     BrdfTerms sum;
     for (std::size_t i = 0; i < rule.x.size(); ++i)
         for (std::size_t j = 0; j < rule.x.size(); ++j) {
-            // mu = sin^2 (pi x / 4) would do; squares at both ends take the roots away.
+            // This substitution removes the square roots at both ends; μ = sin² (π x / 4) would do so as well.
             const double x = (1 + rule.x[i]) / 2, mu = x * x * (3 - 2 * x), dmu = 6 * x * (1 - x) * rule.w[i] / 2;
             const double phi = k_pi * (1 + rule.x[j]) / 2, s_l = std::sqrt(1 - mu * mu);
             const double v_l = NdotV * mu + s_v * s_l * std::cos(phi), length2 = 2 + 2 * v_l;
@@ -60,7 +59,7 @@ TEST_CASE("brdf_table: the default agrees with a far finer quadrature to 1e-5, t
 }
 
 TEST_CASE("brdf_table: each G is the one its name says") {
-    // alpha = NdotL = NdotV = 1/2: sqrt(alpha^2 + (1 - alpha^2) c^2) = sqrt(7) / 4.
+    // α = NdotL = NdotV = 1/2: √(α^2 + (1 - α^2) c^2) = √7 / 4.
     const double root = std::sqrt(7.0) / 4;
     CHECK(brdf_visibility(0.5, 0.5, 0.5, BrdfG::correlated) == doctest::Approx(0.5 / root));
     CHECK(brdf_visibility(0.5, 0.5, 0.5, BrdfG::smith) == doctest::Approx(1 / ((0.5 + root) * (0.5 + root))));
@@ -79,13 +78,13 @@ TEST_CASE("brdf_table: half vectors and light directions integrate to the same, 
 }
 
 TEST_CASE("brdf_table: closed forms: a mirror reflects all, a rough lobe seen from above, never more than it gets") {
-    // alpha -> 0: scale + bias = 1 and bias = (1 - NdotV)^5.
+    // α -> 0: scale + bias = 1 and bias = (1 - NdotV)^5.
     for (double NdotV : {0.2, 0.6, 1.0}) {
         const BrdfTerms mirror = integrate_brdf(NdotV, 1e-5, BrdfG::correlated);
         CHECK(mirror.scale + mirror.bias == doctest::Approx(1).epsilon(1e-5));
         CHECK(mirror.bias == doctest::Approx(std::pow(1 - NdotV, 5)).epsilon(1e-3));
     }
-    // alpha = 1, NdotV = 1: D = 1 / pi, V = 1 / 2 / (c + 1): 2 pi int c / (2 pi (1 + c)) dc = 1 - log 2.
+    // α = 1, NdotV = 1: D = 1 / π, V = 1 / 2 / (c + 1): 2π ∫ c / (2π (1 + c)) dc = 1 − log 2.
     const BrdfTerms rough = integrate_brdf(1, 1, BrdfG::correlated);
     CHECK(rough.scale + rough.bias == doctest::Approx(1 - std::log(2.0)).epsilon(1e-6));
     const ImageF& table = brdf_table_default();
@@ -100,8 +99,8 @@ TEST_CASE("brdf_table: closed forms: a mirror reflects all, a rough lobe seen fr
 }
 
 TEST_CASE("brdf_table: the sheen seen from straight above, in closed form") {
-    // NdotV = 1: theta_h = theta_l / 2, V = 1/4; with p = 1 / 2 alpha: int D c / 4 = (2 + 2p) / 4 2^-p int c (1 - c)^p
-    // dc, int = 1 / (p + 1)(p + 2).
+    // NdotV = 1: θ_h = θ_l / 2, V = 1/4; with p = 1 / 2 α: ∫ D c / 4 = (2 + 2p) / 4 · 2^-p ∫ c (1 − c)^p
+    // dc, and that integral is 1 / ((p + 1) (p + 2)).
     for (double alpha : {1.0, 0.5, 0.1}) {
         const double p = 0.5 / alpha;
         CHECK(integrate_sheen(1, alpha) == doctest::Approx(std::pow(2, -p) / (2 * (p + 2))).epsilon(1e-5));
@@ -111,7 +110,7 @@ TEST_CASE("brdf_table: the sheen seen from straight above, in closed form") {
 TEST_CASE("brdf_table: other sizes and G, the multiple-scattering form, any number of threads") {
     const ImageF small = brdf_table({16, BrdfG::correlated, 1}), three = brdf_table({16, BrdfG::correlated, 3});
     CHECK(std::equal(small.pixels().begin(), small.pixels().end(), three.pixels().begin()));
-    // 128 / 16 = 8: the small table's texel centre is the corner between 16 large ones' middle four.
+    // 128 / 16 = 8: the centre of a small table's texel is the common corner of the middle four of 8 x 8 large texels.
     const ImageF& table = brdf_table_default();
     const double mean = (table.at(59, 67)[0] + table.at(60, 67)[0] + table.at(59, 68)[0] + table.at(60, 68)[0]) / 4.0;
     CHECK(small.at(7, 8)[0] == doctest::Approx(mean).epsilon(1e-3));
@@ -138,6 +137,6 @@ TEST_CASE("brdf_table: the courses' Monte Carlo comes within its noise") {
                 worst = std::max(worst, e);
                 sum += e;
             }
-    CHECK(worst < 0.1);  // grazing, where a few samples carry all; 1024 points leave 1.2e-2 of scale and bias
+    CHECK(worst < 0.1);  // at grazing angles, where few samples carry nearly all of the value
     CHECK(sum / (14 * 16 * 3) < 2e-3);
 }

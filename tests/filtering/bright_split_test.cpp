@@ -37,7 +37,7 @@ void take(BrightSplit& split, ImageView<float> rows) {
     split.take_from(rows, summaries);
 }
 
-/// What the split took out, as tents.
+/// The texels that the split removed, as tents.
 struct Taken {
     Taken() : image(lamps()), rest(lamps()), split(k_width, k_height) {
         take(split, rest.view());
@@ -48,7 +48,7 @@ struct Taken {
     Vec3d exactly(const ZonalKernel& kernel, const Vec3d& n) const {
         Vec3d sum;
         for (const auto& [x, y] : texels) {
-            // Fine where the kernel is: a rule of 16 x 16 nodes a patch elsewhere too.
+            // A rule of 16 x 16 nodes in each patch, which is fine enough for the kernel.
             BrightPoints nodes;
             add_tent_nodes(nodes, k_width, k_height, x, y, image.at(x, y), 16);
             for (int i = 0; i < nodes.count(); ++i) {
@@ -95,7 +95,7 @@ TEST_CASE("bright_split: the tree of lights gives each kernel over the tents the
         double worst = 0;
         for (int k = 0; k < 60; ++k) {
             Vec3d n = normalize(Vec3d{normal(random), normal(random), normal(random)});
-            // Half of them at one to a few hundred texels from a lamp.
+            // Half of them lie one to a few hundred texels from a lamp.
             if (k % 2) {
                 const auto& [x, y] = taken.texels[random() % taken.texels.size()];
                 n = normalize(latlong_direction({(x + 0.5) / k_width, (y + 0.5) / k_height}) +
@@ -106,7 +106,7 @@ TEST_CASE("bright_split: the tree of lights gives each kernel over the tents the
             simd::add_direct_lights(lights.nodes.data(), int(lights.nodes.size()), lights.points.view(), table.view(),
                                     &x, &y, &z, 1, rgb);
             const Vec3d truth = taken.exactly(kernel, n);
-            // Relative to the sum, or where the horizon hides nearly all of it to a tenth of its mean over the sphere.
+            // Relative to the sum; where the horizon hides nearly all of it, to a tenth of its mean over the sphere.
 
             for (const auto& [got, want, floor] :
                  {std::tuple{rgb[0], truth.x, mean.x}, {rgb[1], truth.y, mean.y}, {rgb[2], truth.z, mean.z}})

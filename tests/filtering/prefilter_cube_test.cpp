@@ -11,7 +11,7 @@ using namespace domelight;
 
 namespace {
 
-/// The kernel summed over the nodes of a dense rule on every patch of the cube's reconstruction, in double.
+/// The kernel summed in double over the nodes of a dense quadrature rule on every patch of the cube's reconstruction.
 struct CubeTruth {
     std::vector<Vec3d> direction, light;
 

@@ -178,7 +178,7 @@ TEST_CASE("prefilter: SH coefficients are the integrals over the reconstruction,
             for (int k = 0; k < bands * bands; ++k)
                 truth[k] = truth[k] + Vec3d{nodes.r[i], nodes.g[i], nodes.b[i]} * basis[k];
         }
-        // Wide lobes alone, and with a narrow one, for which the suns are taken out.
+        // Wide lobes alone, and with a narrow one, for which the suns are removed.
         for (const double narrowest : {0.2, 0.05}) {
             FilterOptions options;
             options.specular.push_back({16, false, ZonalKernel::ggx(narrowest)});
@@ -255,7 +255,7 @@ TEST_CASE("prefilter: lat-long levels agree with the cube's at the same directio
 }
 
 TEST_CASE("prefilter: spherical harmonics of a known function, and turned with the world") {
-    // g = 1 + x + 0.5 y z, sampled finely: the bilinear image is off by the sampling, 1e-4 at 512 x 256.
+    // g = 1 + x + 0.5 y z. The error of its bilinear image is 1e-4 at 512 x 256.
     ImageF image(512, 256, 3);
     for (int y = 0; y < 256; ++y)
         for (int x = 0; x < 512; ++x) {

@@ -33,7 +33,7 @@ ImageF one_texel(int width, int height, int x, int y) {
     return image;
 }
 
-/// int K g over the tent of that one texel, by 400 x 400 midpoints: nothing but the definition.
+/// ∫ K g dω over the tent of that texel, by 400 x 400 midpoints: the definition itself.
 double tent_by_midpoints(int width, int height, int x, int y, const ZonalKernel& kernel, const Vec3d& axis) {
     constexpr int k_points = 400;
     double sum = 0;
@@ -70,7 +70,7 @@ TEST_CASE("convolve_exactly: a constant environment stays constant, at every siz
         const ImageF image = constant(width, height, 0.75f);
         for (const ZonalKernel& kernel : k_kernels)
             for (const Vec3d& value : convolve_exactly(image, kernel, directions()))
-                // The quadrature's own error; 1e-9 to 5e-8 at 1k, a little more where one patch spans radians.
+                // The error of the quadrature is 1e-9 to 5e-8 at 1k, and a little more if a patch spans radians.
                 CHECK_MESSAGE(std::abs(value.y / 0.75 - 1) < 1e-6, width, " x ", height, " ", lobe_name(kernel.lobe),
                               " ", kernel.width);
     }
@@ -87,7 +87,7 @@ TEST_CASE(
         std::vector<Vec3d> axes = {sun, -sun, side, other, normalize(sun + side * 0.02), normalize(sun + other * 0.3)};
         for (double offset : {-0.05, -0.01, 0.003, 0.02}) axes.push_back(normalize(side + sun * offset));
         for (const ZonalKernel& kernel : k_kernels) {
-            if (kernel.width < 0.01) continue;  // 400 midpoints do not resolve those
+            if (kernel.width < 0.01) continue;  // too narrow for 400 midpoints
             const std::vector<Vec3d> values = convolve_exactly(image, kernel, axes);
             double peak = 0, worst = 0;
             for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -96,8 +96,8 @@ TEST_CASE(
                 worst = std::max(worst, std::abs(values[i].y - expected));
                 CHECK(values[i].z == doctest::Approx(1.5 * values[i].y));
             }
-            // Midpoints: (1/200)^2 / 24 of the second derivative, in units of the tent's half width or the lobe's if
-            // that is shorter.
+            // The error of midpoints is (1/200)² / 24 times the second derivative, in units of the half width of the
+            // tent, or of the lobe if that is narrower.
             CHECK_MESSAGE(worst < 3e-5 * peak, lobe_name(kernel.lobe), " ", kernel.width, " at ", x, ",", y, " of ",
                           width);
         }
@@ -116,7 +116,8 @@ TEST_CASE("convolve_exactly: agrees with multiplying spherical harmonics by the 
             for (int i = l * l; i < (l + 1) * (l + 1); ++i) b[i] = b[i] * k[l];
         const std::vector<Vec3d> axes = directions(), values = convolve_exactly(image, kernel, axes);
         for (std::size_t i = 0; i < axes.size(); ++i)
-            // What bands 40 and up would add: l^-2 of the source times l^-2.5 of the lobe (charlie: a slower l^-1.5).
+            // The tolerance is what bands from 40 on would add: l^-2 of the source times l^-2.5 of the lobe (l^-1.5 for
+            // Charlie).
             CHECK(length(values[i] - sh_evaluate(b, axes[i])) < (kernel.lobe == Lobe::charlie ? 5e-3 : 3e-4));
     }
 }
@@ -126,7 +127,7 @@ TEST_CASE("convolve_exactly: the narrowest lobe is the bilinear reconstruction i
     const ReferenceSource source(image);
     const std::vector<Vec3d> axes = directions(), values = convolve_exactly(image, {Lobe::ggx, 1e-5}, axes);
     for (std::size_t i = 6; i < axes.size(); ++i)  // not the axes themselves: at the poles u has no value
-        CHECK(length(values[i] - source.lookup(axes[i])) < 1e-3);  // alpha over a texel
+        CHECK(length(values[i] - source.lookup(axes[i])) < 1e-3);  // α over a texel
 }
 
 TEST_CASE("convolve_exactly: the same bits on any number of threads and in any company") {
@@ -152,7 +153,7 @@ TEST_CASE(
     CHECK(length(a[0] / std::sqrt(4 * k_pi) - source.mean()) < 1e-12);
     CHECK(length(ReferenceSource(constant(5, 3, 2)).mean() - Vec3d{2, 2, 2}) < 1e-15);
 
-    // Turning the basis is turning the world: with w -> s a quarter about Y, world x looks along source z.
+    // Turning the basis turns the world: if world to source is a quarter turn about Y, world x is source z.
     const Mat3 turn = rotation_y(k_pi / 2);
     const std::vector<Vec3d> b = source.spherical_harmonics(3, turn, 1);
     for (const Vec3d& d : directions()) CHECK(length(sh_evaluate(b, d) - sh_evaluate(a, turn * d)) < 1e-12);
@@ -203,7 +204,7 @@ TEST_CASE("prefilter_reference: the Riemann sum and Monte Carlo come nearer to b
             }
             return std::sqrt(sum / 72);
         };
-        CHECK(error({ReferenceMethod::riemann, {400, 200}}) < 1e-4);  // (pi / 400)^2
+        CHECK(error({ReferenceMethod::riemann, {400, 200}}) < 1e-4);  // (π / 400)^2
         CHECK(error({ReferenceMethod::riemann, {20, 10}}) > error({ReferenceMethod::riemann, {80, 40}}));
         const auto montecarlo = [&](Sequence sequence, std::uint64_t seed, int count) {
             return error({ReferenceMethod::montecarlo, {}, {sequence, seed, count}});
@@ -211,7 +212,7 @@ TEST_CASE("prefilter_reference: the Riemann sum and Monte Carlo come nearer to b
         // Noise of a unit-contrast source, low-discrepancy points.
         CHECK(montecarlo(Sequence::hammersley, 0, 16384) < 1e-3);
         CHECK(montecarlo(Sequence::hammersley, 0, 64) > montecarlo(Sequence::hammersley, 0, 4096));
-        // Each sequence by itself, plain and randomised; independent points leave 1/sqrt(4096) times the deviation.
+        // Each sequence, plain and randomised. The error of independent points would be the deviation divided by √4096.
         for (const Sequence sequence :
              {Sequence::stratified, Sequence::hammersley, Sequence::halton, Sequence::sobol, Sequence::r2})
             for (const std::uint64_t seed : {0, 1}) {
@@ -232,14 +233,15 @@ TEST_CASE("prefilter_reference: the plain Riemann sum of constant light is the l
             prefilter_reference(constant(8, 4, 1), options, {ReferenceMethod::riemann, {K, J, normalised}});
         return result->irradiance_over_pi.pixels()[0] * k_pi;
     };
-    // pi^2 / J sum_j cos theta_j sin theta_j = (pi^2 / 2J) / sin(pi / 2J): pi^2 / (8 sin(pi / 8)) for J = 4.
+    // π^2 / J sum_j cos θ_j sin θ_j = (π^2 / 2J) / sin(π / 2J): π^2 / (8 sin(π / 8)) for J = 4.
     for (const int K : {1, 4, 16}) CHECK(irradiance(K, 4, false) == doctest::Approx(3.2238).epsilon(1e-4));
     CHECK(irradiance(4, 16, false) == doctest::Approx(3.1466).epsilon(1e-4));
     CHECK(irradiance(4, 4, true) == doctest::Approx(k_pi).epsilon(1e-6));
 }
 
 TEST_CASE("prefilter_reference: K steps turn about the direction, J steps tilt away from it") {
-    // Light that depends on the azimuth about +Y only: J changes nothing but the weights' sum, K samples it.
+    // Light that depends on the azimuth about +Y only: J changes only the sum of the weights, and K samples the
+    // azimuth.
     ImageF image(64, 32, 3);
     for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 64; ++x)

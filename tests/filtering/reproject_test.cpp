@@ -97,7 +97,7 @@ TEST_CASE("reproject: light arrives from where it came, between any two projecti
                     const double omega =
                         out.projection.texel_solid_angle(x, y % out.height(), out.width(), out.height());
                     const float *p = out.pixels.at(x, y), *q = truth.pixels.at(x, y);
-                    // Rims of sphere and angular maps hold everything around the back in a few texels.
+                    // At the rims of sphere and angular maps, a few texels hold everything around the back.
                     const UVBox b = out.projection.texel_box(x, y % out.height(), out.width(), out.height());
                     const bool rim =
                         !out.projection.valid({0, 0}) && std::hypot(b.u0 + b.u1 - 1, b.v0 + b.v1 - 1) > 0.8;
@@ -127,7 +127,7 @@ TEST_CASE("reproject: power is kept, that of a small sun too") {
                 CHECK(relative(radiant_power(to(source, name, height)), before) < 1e-2);
             }
     }
-    // At an ordinary size.
+    // At a common size.
     ProjectedImage source = picture("latlong", 256, direction_colour);
     for (int k = 0; k < 20; ++k) source.pixels.at(int(random() % 512), int(random() % 256))[1] = 1e4f;
     const Vec3d before = radiant_power(source);
@@ -149,7 +149,7 @@ TEST_CASE("reproject: the same grid returns the texels, nothing negative appears
         for (std::size_t i = 0; i < source.pixels.pixels().size(); ++i)
             worst = std::max(worst, std::abs(double(same.pixels.pixels()[i]) - source.pixels.pixels()[i]) /
                                         (source.pixels.pixels()[i] + 1e-3));
-        CHECK(worst < (name == "octahedral" ? 0.15 : 0.05));  // texels at seams and folds are sampled
+        CHECK(worst < (name == "octahedral" ? 0.15 : 0.05));  // texels at seams and folds are integrated by samples
         const ProjectedImage larger = to(source, "cube", 40);
         CHECK(*std::min_element(larger.pixels.pixels().begin(), larger.pixels.pixels().end()) >= 0);
     }

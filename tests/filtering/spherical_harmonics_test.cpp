@@ -21,7 +21,7 @@ const Vec3d k_directions[] = {
 }  // namespace
 
 TEST_CASE("spherical_harmonics: the first nine are Ramamoorthi and Hanrahan's polynomials") {
-    // Their eq. 3, constants as printed (6 digits).
+    // Eq. 3 of Ramamoorthi and Hanrahan, with the constants as printed (6 digits).
     for (const Vec3d& d : k_directions) {
         double y[9];
         sh_basis(d, 3, y);
@@ -55,7 +55,7 @@ TEST_CASE("spherical_harmonics: orthonormal over the sphere, and the addition th
         for (int b = 0; b < k_count; ++b) worst = std::max(worst, std::abs(gram[a * k_count + b] - (a == b)));
     CHECK(worst < 1e-13);
 
-    // sum_m Y_lm(a) Y_lm(b) = (2l + 1) / 4 pi P_l(a . b)
+    // sum_m Y_lm(a) Y_lm(b) = (2l + 1) / 4π P_l(a . b)
     std::vector<double> ya(60 * 60), yb(60 * 60);
     const Vec3d a = k_directions[3], b = k_directions[4];
     sh_basis(a, 60, ya);
@@ -68,7 +68,7 @@ TEST_CASE("spherical_harmonics: orthonormal over the sphere, and the addition th
 }
 
 TEST_CASE("spherical_harmonics: irradiance of a cosine sky in closed form, a constant stays constant") {
-    // Radiance 1 + d.x: E / pi = 1 + 2/3 n.x.
+    // Radiance 1 + d.x: E / π = 1 + 2/3 n.x.
     std::vector<Vec3d> radiance(9);
     const double y00 = 1 / std::sqrt(4 * k_pi), y11 = std::sqrt(3 / (4 * k_pi));
     radiance[0] = Vec3d{1, 2, 4} / y00;
@@ -127,8 +127,8 @@ TEST_CASE("spherical_harmonics: Filament's nine numbers of a real environment ar
     // Their world looks along +Z at the picture's centre and has -X to its right.
     const Mat3 world_to_source{{Vec3d{0, 0, 1}, Vec3d{0, 1, 0}, Vec3d{-1, 0, 0}}};
     const std::vector<Vec3d> ours = sh_filament(ReferenceSource(*image).spherical_harmonics(3, world_to_source, 0));
-    // The tool damps the higher bands with a window of its own, and the mean of whatever source it was given is 1.2 %
-    // brighter.
+    // The tool damps the higher bands with a window function, and the mean of its source is 1.2 % brighter than that of
+    // ours.
     const double damped[3] = {1.012, 0.975, 0.862};
     for (int i = 0; i < 9; ++i) {
         const Vec3d expected = ours[i] * damped[i == 0 ? 0 : i < 4 ? 1 : 2];

@@ -12,9 +12,9 @@ using namespace domelight;
 
 namespace {
 
-/// k_l by quadrature in theta over dyadic pieces that shrink towards both ends of [0, pi / 2] (where narrow and where
-/// Charlie's lobes live), Legendre polynomials in long double: slow, and with nothing in common with the recurrences
-/// under test but density() itself.
+/// k_l by quadrature in θ over dyadic pieces that shrink towards both ends of [0, π/2], where narrow lobes and
+/// Charlie's lobe are concentrated, with Legendre polynomials in long double. It is slow and shares only density() with
+/// the recurrences under test.
 std::vector<double> coefficients_by_quadrature(const ZonalKernel& kernel, int band_limit, int nodes) {
     std::vector<double> pieces = {0};
     for (int k = 24; k >= 2; --k) pieces.push_back(k_pi / 2 * std::pow(2.0, -k));
@@ -51,7 +51,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 }  // namespace
 
 TEST_CASE("zonal_kernel: coefficients agree with brute-force quadrature, density integrates to 1") {
-    // Rounding alone separates the two: about 1e-14 of a sum of 1000 terms. The promise is 1e-9.
+    // The two differ only by rounding, about 1e-14 for a sum of 1000 terms. The documented accuracy is 1e-9.
     for (Lobe lobe : {Lobe::ggx, Lobe::charlie, Lobe::phong_brdf, Lobe::phong_plain})
         for (double roughness : {0.02, 0.051, 0.1, 0.3, 0.5, 0.77, 0.95, 0.999, 0.99999, 1.0}) {
             const bool phong = lobe == Lobe::phong_brdf || lobe == Lobe::phong_plain;
@@ -76,7 +76,7 @@ TEST_CASE("zonal_kernel: the same at band limit 4000, and the first levels of a 
 }
 
 TEST_CASE("zonal_kernel: the clamped cosine is 1, 2/3, 1/4, 0, -1/24, 0, 1/64") {
-    // Ramamoorthi and Hanrahan 2001, eq. 8, over pi.
+    // Ramamoorthi and Hanrahan 2001, eq. 8, over π.
     const std::vector<double> expected = {1, 2.0 / 3, 1.0 / 4, 0, -1.0 / 24, 0, 1.0 / 64};
     CHECK(largest_difference(expected, ZonalKernel::cosine().coefficients(6)) < 1e-15);
     // The Phong map of exponent 1 and the Phong BRDF of exponent 0 are the same lobe.
@@ -90,7 +90,7 @@ TEST_CASE("zonal_kernel: the clamped cosine is 1, 2/3, 1/4, 0, -1/24, 0, 1/64") 
 }
 
 TEST_CASE("zonal_kernel: ggx density is D(n.h) n.l / (4 v.h) up to its normalisation") {
-    // n = v: l = reflect(v, h), n.h = v.h = cos(theta / 2); importance sampling by D n.h / (4 v.h) = D / 4, weighted by
+    // n = v: l = reflect(v, h), n.h = v.h = cos(θ / 2); importance sampling by D n.h / (4 v.h) = D / 4, weighted by
     // n.l (Karis 2013).
     for (double alpha : {0.01, 0.2, 0.9}) {
         const auto unnormalised = [&](double theta) {
@@ -101,7 +101,7 @@ TEST_CASE("zonal_kernel: ggx density is D(n.h) n.l / (4 v.h) up to its normalisa
         const double ratio = kernel.density(0.3) / unnormalised(0.3);
         for (double theta : {0.0, 0.01, 0.1, 1.0, 1.55, 2.0})
             CHECK(kernel.density(theta) ==
-                  doctest::Approx(ratio * unnormalised(theta)).epsilon(1e-9));  // cos loses digits at .01
+                  doctest::Approx(ratio * unnormalised(theta)).epsilon(1e-9));  // the cosine loses digits at 0.01
     }
 }
 
@@ -109,7 +109,7 @@ TEST_CASE("zonal_kernel: a lobe too narrow for anything is the identity, and the
     for (double k : ZonalKernel{Lobe::ggx, 0}.coefficients(64)) CHECK(k == doctest::Approx(1).epsilon(1e-5));
     CHECK(ZonalKernel{Lobe::ggx, 0.01}.angular_width() == doctest::Approx(0.020001).epsilon(1e-6));
     CHECK(ZonalKernel::cosine().angular_width() <= k_pi);
-    // At l = 16 / b nothing is left but the horizon's tail.
+    // At l = 16 / b only the tail from the clamp at the horizon is left.
     for (const ZonalKernel& kernel : {ZonalKernel{Lobe::ggx, 0.05}, ZonalKernel{Lobe::phong_brdf, 500}}) {
         const int band_limit = int(16 / kernel.angular_width());
         CHECK(std::abs(kernel.coefficients(band_limit).back()) < 2e-6);

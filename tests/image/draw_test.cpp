@@ -56,7 +56,7 @@ TEST_CASE("draw_text: letters between the lines, nothing outside the image") {
     CHECK(top < 25 - 8);
     CHECK(bottom >= 25);
     CHECK(bottom < 25 + font_descent(FontSize::small));
-    // Hanging over every edge.
+    // Text that extends beyond every edge.
     for (int x : {-20, 110})
         for (int y : {-3, 2, 45}) draw_text(image.view(), x, y, "clipped", FontSize::large, {255, 0, 0}, Align::centre);
     CHECK(text_width("ab", FontSize::large) == text_width("a", FontSize::large) + text_width("b", FontSize::large));

@@ -34,7 +34,7 @@ TEST_CASE("repair: a texel with a NaN becomes the mean of its nearest good neigh
     CHECK(report.not_a_number == 2);
     CHECK(report.repaired() == 2);
 
-    // At the end of the row the next good texel is across the seam, or there is none.
+    // At the end of the row the next good texel lies across the seam, if there is any.
     for (const bool wraps : {true, false}) {
         std::vector<float> end{1, 1, 1, 5, 5, 5, k_nan, k_nan, k_nan};
         repair_row(end, {.wraps = wraps}, report);
@@ -87,7 +87,7 @@ TEST_CASE("primaries: grey stays grey whatever the white, and a red light keeps 
     const ColourPrimaries aces{{0.7347, 0.2653}, {0.0, 1.0}, {0.0001, -0.077}, {0.32168, 0.33767}};
     const Vec3d grey = *rgb_to_rec709(aces) * Vec3d{1, 1, 1};
     CHECK(length(grey - Vec3d{1, 1, 1}) < 1e-9);
-    // Same white as Rec. 709: no adaptation, so XYZ agrees.
+    // The white is that of Rec. 709, so there is no adaptation and XYZ agrees.
     const ColourPrimaries p3{{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, {0.3127, 0.3290}};
     const Vec3d red = *rgb_to_xyz({}) * (*rgb_to_rec709(p3) * Vec3d{1, 0, 0});
     CHECK(std::abs(red.x / (red.x + red.y + red.z) - 0.680) < 1e-9);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the dev build under a new prefix and builds a stranger's project against it, with nothing else of ours in reach.
+# Installs the dev build under a new prefix and builds a user's project against it, without access to the source tree.
 set -uo pipefail
 here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 build=${DOMELIGHT_BUILD:-$here/../../build/dev}
@@ -56,13 +56,13 @@ claim "what it bakes of a white environment is white" \
     python3 -c 'import sys; d = open(sys.argv[1], "rb").read(); sys.exit(d.count(b"\x00\x3c") < 0.99 * 4 * 6 * sum((256 >> l) ** 2 for l in range(5)))' \
     "$work/specular.ktx2"
 white_light() {
-    # Under a white environment a white matte surface is white, whatever the points.
+    # Under a white environment a white matte surface is white, for any points.
     "$work/build/sample_minimal" "$work/white.hdr" | awk '{ exit !($1 > 0.99 && $1 < 1.01 && $1 == $2 && $2 == $3) }'
 }
 claim "examples/sample_minimal.cpp lights a white surface white under a white sky" white_light
 claim "examples/bake_minimal.cpp says what is wrong" no_file
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$work/triangle.obj"
-# In floats, what arrives from above and what a white surface sends back are both 1; every file of the tour is there.
+# As floats, the radiance from above and the radiance of a white surface are both 1; every file of the tour exists.
 tour() {
     "$work/build/tour" "$work/white.hdr" "$work/triangle.obj" "$work/tour" >"$work/told" || return 1
     cat "$work/told"
@@ -71,7 +71,7 @@ tour() {
 }
 claim "examples/tour.cpp goes through the five steps of domelight.h" tour
 
-# A program that only samples and filters: neither its link line nor the program itself knows the libraries that files and rays need.
+# A program that only samples and filters: neither its link line nor the program itself contains the libraries for files and ray tracing.
 not_of_core='exr|Imath|Iex|embree|draco|webp|crypto|ssl|png|jpeg|zstd|astc|meshopt|fmt'
 core_links_little() {
     ninja -C "$work/core" -t commands sampler | tail -n 1 >"$work/link"

@@ -33,7 +33,7 @@ std::size_t entries(const TemporaryFolder& folder) {
     return n;
 }
 
-/// Runs `work` in a child process and returns its wait status. No threads of libraries are there.
+/// Runs `work` in a child process and returns its wait status. Threads that libraries have started do not exist there.
 template <typename Work>
 int in_child(Work work) {
     const pid_t child = ::fork();
@@ -43,8 +43,8 @@ int in_child(Work work) {
     return status;
 }
 
-/// Runs `work` while no file may grow beyond `room` bytes. In this process: OpenEXR's threads, which others may have
-/// started, would be missing in a child.
+/// Runs `work` in this process while no file may grow beyond `room` bytes. (In a child process, OpenEXR's threads,
+/// which earlier tests may have started, would be missing.)
 template <typename Work>
 int with_room(rlim_t room, Work work) {
     const auto handler = ::signal(SIGXFSZ, SIG_IGN);
@@ -58,7 +58,7 @@ int with_room(rlim_t room, Work work) {
     return result;
 }
 
-/// All writers on one folder's files, under the names a to h; how many failed.
+/// Runs all writers in one folder, with the files a to h. Returns how many failed.
 int write_everything(const TemporaryFolder& folder) {
     const Texture texture = sample_texture(Encoding::rgba16f, 64, 6, 3);
     ImageF image(256, 256, 3);
@@ -188,7 +188,7 @@ TEST_CASE("remove_temporaries_on_signals: interruption removes the temporary and
             remove_temporaries_on_signals();
             (void)!write_file_atomically(folder / "a", [&](const std::filesystem::path& path) -> Result<void> {
                 write_bytes(path, bytes_of("half of it"));
-                // Two at a time: both go.
+                // Two at a time: both are removed.
                 (void)!write_file_atomically(folder / "b", [&](const std::filesystem::path&) -> Result<void> {
                     ::raise(signal);
                     return {};

@@ -50,7 +50,7 @@ ImageF direction_latlong(int height) {
     return image;
 }
 
-/// The nearest texel's light from a direction, less 2: the direction itself, of direction_latlong().
+/// The light of the nearest texel in a direction, minus 2: for direction_latlong() this is the direction itself.
 Vec3d seen(const ProjectedImage& image, const Vec3d& world) {
     const ProjectionPoint p = image.projection.locate(world);
     const float* v =
@@ -158,7 +158,7 @@ TEST_CASE("convert: every projection, written and read again, shows the same lig
         for (int k = 0; k < charts; ++k)
             for (int y = 0; y < 96; ++y) std::copy_n(c.image.pixels.row(k * 96 + y), 3 * 96, sheet.at(96 * k, y));
         REQUIRE(write_exr(folder / "p.exr", sheet, {.half = false}));
-        // As bake, sample and render open it.
+        // Opened as by bake, sample and render.
         auto back = open_environment({folder / "p.exr"}, {.projection = name});
         REQUIRE_MESSAGE(back, back.error().format());
         REQUIRE_FALSE(back->cube());
@@ -208,7 +208,7 @@ TEST_CASE("convert: lat-long to cube and back, a real environment at matched siz
     TemporaryFolder folder;
     Environment source = open(file);
     const ImageF truth = *read_latlong(**open(file).rows());
-    // The face whose middle's texels are as wide as the equator's: pi / H = 2 / n.
+    // The size of face at whose centre texels are as wide as at the equator: π / H = 2 / n.
     const int size = int(std::lround(2 * truth.height() / k_pi));
     Conversion cube = made(source, "cube", size);
     REQUIRE(write_exr(folder / "cube.exr", cube.image.pixels, {.half = false}));
@@ -239,7 +239,7 @@ TEST_CASE("convert: lat-long to cube and back, a real environment at matched siz
 }
 
 TEST_CASE("convert: lat-long to cube and back, steps across the cube's edges are the source's within 1 %") {
-    // A smooth sky, whose steps no resampling blurs: what is more or less at a seam is the seam's own.
+    // A smooth sky, whose steps are not blurred by resampling, so that any difference at a seam is caused by the seam.
     SkyOptions options;
     options.height = 256;
     options.sun_disc = false;
@@ -295,15 +295,15 @@ ImageF in_one_picture(const ProjectedImage& image) {
     for (int c = 0; c < charts; ++c)
         for (int y = 0; y < h; ++y)
             for (int x = 0; x < w; ++x) {
-                // As ImfEnvmap.h draws them: the sides are mirrored from left to right, top and bottom upside down.
+                // As drawn in ImfEnvmap.h: the sides are mirrored from left to right, and top and bottom are upside
+                // down.
                 const int sx = strip && c / 2 != 1 ? w - 1 - x : x, sy = strip && c / 2 == 1 ? h - 1 - y : y;
                 std::copy_n(image.pixels.at(sx, c * h + sy), 3, strip ? out.at(x, c * h + y) : out.at(c * w + x, y));
             }
     return out;
 }
 
-/// How far the light of a picture, written in a projection and read by its name, comes from other directions than it
-/// did.
+/// By how much directions change if a picture is written in a projection and read again by the projection's name.
 double error_read_back(const std::string& name) {
     const TemporaryFolder folder;
     REQUIRE(write_exr(folder / "e.exr", direction_latlong(128).view()));

@@ -81,7 +81,7 @@ TEST_CASE("write_exr_levels: OpenEXR reads every level back, and the ones that w
     CHECK(last.width() == 1);
     double mean = 0;
     for (const float v : third.pixels()) mean += double(v) / double(third.pixels().size());
-    CHECK(last.at(0, 0)[1] == doctest::Approx(mean).epsilon(0.15));  // odd sizes weigh their last texels less
+    CHECK(last.at(0, 0)[1] == doctest::Approx(mean).epsilon(0.15));  // at odd sizes the last texels have less weight
 }
 
 TEST_CASE("write_exr_levels: levels of other sizes are refused") {
@@ -120,7 +120,7 @@ TEST_CASE("bake: exr-mip lies as OpenEXR's envmap says, in every level, and is r
                             projection.direction(0, {x / (level.width() - 1.0), y / (level.height() - 1.0)});
                         worst = std::max(worst, length(direction_of(level.at(x, y)) - d));
                     }
-                // Samples on the edges stand for half texels there, whose middle is elsewhere.
+                // Samples on the edges represent half texels, whose centres lie elsewhere.
                 CHECK(worst < 4.0 / level.height());
             }
         const auto opened = open_environment({folder / "specular.exr"});

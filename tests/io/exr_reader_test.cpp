@@ -40,7 +40,7 @@ ImageF sample_image(int width, int height) {
     return image;
 }
 
-/// Channels of one type, in memory, and the frame buffer that shows them to OpenEXR at `origin`.
+/// Channels of one type in memory, and the frame buffer with which OpenEXR accesses them at `origin`.
 struct Channels {
     Imf::PixelType type;
     std::vector<std::string> names;
@@ -223,7 +223,7 @@ TEST_CASE("exr reader: of several parts the first with colour is read, and deep 
 TEST_CASE("exr reader: the picture is the display window; texels outside the data window are black") {
     TemporaryFolder folder;
     const Imath::Box2i display({10, 20}, {29, 29});
-    // Inside, sticking out on every side, and covering.
+    // A data window inside the display window, one that extends beyond each side, and one that covers it.
     for (const Imath::Box2i& data :
          {Imath::Box2i({12, 22}, {25, 27}), Imath::Box2i({5, 15}, {19, 24}), Imath::Box2i({0, 0}, {40, 40})}) {
         const int width = data.max.x - data.min.x + 1, height = data.max.y - data.min.y + 1;
@@ -272,7 +272,7 @@ TEST_CASE("exr reader: a header alone does not ask for gigabytes of black round 
     CHECK(huge.error().what.find("the display window has 2147483648 texels, but the data window only 8") == 0);
     CHECK(!huge.error().hint.empty());
     CHECK(opened(8192, 4096, small, std::int64_t(1) << 30));
-    // What the file holds a good part of is read at any size.
+    // An image of any size is read if the file holds a good part of it.
     CHECK_FALSE(opened(320, 160, small, 1 << 18));
     const auto half = opened(320, 160, Imath::Box2i({0, 0}, {319, 79}), 1 << 18);
     CHECK_MESSAGE(half, half.error().format());
@@ -355,7 +355,7 @@ TEST_CASE("exr reader: damaged files give one clear error") {
     header.compression() = Imf::ZIPS_COMPRESSION;
     write_scanlines(folder / "a.exr", header, Channels(Imf::FLOAT, k_rgb, 64, 32));
     const Bytes file = load(folder / "a.exr");
-    // Cut anywhere: never a picture.
+    // A file cut off anywhere is not read as a picture.
     for (std::size_t length = 4; length < file.size(); length += length < 700 ? 1 : 97) {
         const auto cut = read_bytes(Bytes(file.begin(), file.begin() + std::ptrdiff_t(length)));
         CHECK_FALSE(cut);
@@ -375,7 +375,7 @@ TEST_CASE("exr reader: damaged files give one clear error") {
     CHECK(with_window(0, 0, 99999, 99999).find("longer than") != std::string::npos);
     CHECK(with_window(0, 0, 59999, 59999).find("ends too early") != std::string::npos);
     CHECK(with_window(-2147483647 - 1, 0, 2147483647, 3).find("longer than") != std::string::npos);
-    // Decoding blocks over the limit.
+    // Blocks that take more memory than the limit to decode.
     const auto limited = read_bytes(file, {.max_bytes = 1000});
     REQUIRE_FALSE(limited);
     CHECK(limited.error().what.find("limit") != std::string::npos);

@@ -142,8 +142,8 @@ TEST_CASE("write_exr: a cube lies as OpenEXR's own directions say") {
     for (int f = 0; f < 6; ++f)
         for (int y = 0; y < size; ++y)
             for (int x = 0; x < size; ++x) {
-                // A position in a face is not a pixel's: OpenEXR turns each face its own way. Its texels lie on the
-                // edges of the faces, ours half a texel inside.
+                // Positions in a face differ from those of pixels, because OpenEXR turns each face differently. Its
+                // outer texels lie on the edges of the faces, ours half a texel inside.
                 const Imath::V2f position(static_cast<float>(x), static_cast<float>(y));
                 const Imath::V2f pixel = Imf::CubeMap::pixelPosition(Imf::CubeMapFace(f), window, position);
                 const Imath::V3f d = Imf::CubeMap::direction(Imf::CubeMapFace(f), window, position).normalized();

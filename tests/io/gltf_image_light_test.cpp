@@ -138,13 +138,13 @@ TEST_CASE("gltf_image_light: a bake shows every direction's light, also when it 
     const auto light = read_gltf_image_light(*bytes, folder.path(), 1 << 28);
     REQUIRE(light);
     CHECK(light->levels.size() == 2);  // 32 and 16
-    // E of 2 + d.n by hand: 2 pi + 2 pi / 3 n.
+    // E of 2 + d.n by hand: 2π + 2π / 3 n.
     for (const Vec3d& n : {Vec3d{1, 0, 0}, Vec3d{0, -1, 0}, normalize(Vec3d{1, 2, 3})}) {
         const Vec3d e = sh_evaluate(light->irradiance, n);
         CHECK(e.x == doctest::Approx(2 * k_pi + 2 * k_pi / 3 * n.x).epsilon(1e-3));
         CHECK(e.z == doctest::Approx(2 * k_pi + 2 * k_pi / 3 * n.z).epsilon(1e-3));
     }
-    // Half a turn about +Y: what came from d comes from where the turn takes it.
+    // Half a turn about +Y: light from d now comes from the turned direction.
     auto json = nlohmann::json::parse((*bytes)->bytes().begin(), (*bytes)->bytes().end());
     light_of(json)["rotation"] = {0, std::sqrt(0.5), 0, std::sqrt(0.5)};  // a quarter turn: +Z goes to +X
     light_of(json)["intensity"] = 2;

@@ -36,7 +36,7 @@ ImageF expected_image(int width, int height) {
 
 using Encode = Bytes (*)(const std::vector<Rgbe>&);
 
-/// The image in the order that a resolution line such as "+X 20 -Y 10" asks for.
+/// The image in the order that a resolution line such as "+X 20 -Y 10" states.
 Bytes encode(int width, int height, bool columns, bool flip_x, bool flip_y, Encode scanline) {
     const std::string x = std::string(flip_x ? "-" : "+") + "X " + std::to_string(width);
     const std::string y = std::string(flip_y ? "+" : "-") + "Y " + std::to_string(height);
@@ -111,7 +111,7 @@ TEST_CASE("hdr reader: EXPOSURE and COLORCORR are divided out, all of them") {
     CHECK(std::vector<float>(image->pixels().begin(), image->pixels().end()) == expected);
     CHECK((*reader)->facts().warnings.size() == 1);
 
-    // Nonsense is named, not obeyed.
+    // Invalid values are reported and not used.
     const auto odd = open_bytes(joined(hdr_header("-Y 1 +X 1", "EXPOSURE=0\nCOLORCORR=1\n"), {128, 128, 128, 129}));
     REQUIRE(odd);
     CHECK((*odd)->facts().warnings.size() == 2);
@@ -136,12 +136,12 @@ TEST_CASE("hdr reader: PRIMARIES and xyze become Rec. 709") {
     REQUIRE(primaries);
     const auto converted = read_latlong(**primaries->rows());
     REQUIRE(converted);
-    for (int c = 0; c < 3; ++c) CHECK(std::abs(converted->at(0, 0)[c] - 1) < 1e-3);  // the rounding of 0.333
+    for (int c = 0; c < 3; ++c) CHECK(std::abs(converted->at(0, 0)[c] - 1) < 1e-3);  // because 0.333 is rounded
     CHECK(converted->at(1, 0)[1] > 0.9);
     CHECK(std::abs(converted->at(1, 0)[1] - 1) > 1e-3);
     CHECK(primaries->report().warnings.size() == 1);
 
-    // Eight zeros mean that nobody knew.
+    // Eight zeros mean that the primaries are unknown.
     const auto zeros = open_bytes(joined(hdr_header("-Y 1 +X 1", "PRIMARIES=0 0 0 0 0 0 0 0\n"), {1, 2, 3, 129}));
     REQUIRE(zeros);
     CHECK(!(*zeros)->facts().to_rec709);

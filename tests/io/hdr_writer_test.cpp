@@ -13,7 +13,7 @@ using namespace domelight::test;
 
 namespace {
 
-/// A plain decoder of what the writer makes: header, then rows flat or in new run-length encoding.
+/// A plain decoder for the writer's files: a header, then rows that are flat or in the new run-length encoding.
 struct Picture {
     int width = 0, height = 0;
     std::vector<std::array<std::uint8_t, 4>> texels;
@@ -69,7 +69,7 @@ ImageF sample_image(int width, int height) {
     return image;
 }
 
-/// Hands rows on and fails at one of them.
+/// Passes rows on and fails at one of them.
 class FailingRows : public RowSource {
   public:
     int width() const override { return 16; }

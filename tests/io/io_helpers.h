@@ -23,7 +23,7 @@ inline void write_bytes(const std::filesystem::path& file, const std::vector<std
 
 inline constexpr Encoding k_encodings[] = {Encoding::rgba16f, Encoding::rgba32f, Encoding::rgb9e5, Encoding::r11g11b10f,
                                            Encoding::rg16f,   Encoding::rg32f,   Encoding::bc6h};
-/// Those whose meaning a key says, which DDS has not.
+/// The encodings whose meaning is stated by a key, which DDS does not have.
 inline constexpr Encoding k_scaled_bytes[] = {Encoding::rgbm, Encoding::rgbd, Encoding::rgbp};
 
 /// A texture of distinct bytes with some metadata.

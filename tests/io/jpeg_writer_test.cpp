@@ -12,7 +12,8 @@ using namespace domelight::test;
 
 namespace {
 
-/// Smooth shades in every channel, with a red square whose edges would smear if colour were stored at half resolution.
+/// Smooth gradients in every channel, with a red square whose edges would be blurred if colour were stored at half
+/// resolution.
 Image<std::uint8_t> shades(int width, int height, int channels) {
     Image<std::uint8_t> image(width, height, channels);
     for (int y = 0; y < height; ++y)

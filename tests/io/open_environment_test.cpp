@@ -210,7 +210,7 @@ TEST_CASE("environment: an OpenEXR cube lies as the OpenEXR library says, orient
                 const auto face = Imf::CubeMapFace(f);
                 const Imath::V2f at = Imf::CubeMap::pixelPosition(face, window, Imath::V2f(float(x), float(y)));
                 const Imath::V3f d = Imf::CubeMap::direction(face, window, Imath::V2f(float(x), float(y)));
-                // Linear on each face, so that resampling is exact.
+                // The values are linear on each face, so that resampling is exact.
                 const float largest = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
                 for (int c = 0; c < 3; ++c) image.at(int(at.x + 0.5f), int(at.y + 0.5f))[c] = 2 + d[c] / largest;
             }
@@ -264,8 +264,8 @@ TEST_CASE("environment: OpenEXR's cube and lat-long of one place agree on every 
         REQUIRE_MESSAGE(cube, cube.error().format());
         const auto image = read_latlong(**latlong->rows());
         REQUIRE(image);
-        // Differences as they are, against those with every face mirrored: the picture must be told from its mirror
-        // image.
+        // The differences as they are, compared with those of mirrored faces: the picture must be distinguished from
+        // its mirror image.
         double as_it_is[6] = {}, mirrored[6] = {};
         for (const Vec3d& d : directions(6000)) {
             const Vec3d seen = look(*image, latlong->world_to_source, d);
@@ -312,7 +312,7 @@ TEST_CASE("environment: every malformed file opens properly or gives one error t
     int opened = 0, refused = 0;
     for (const char* folder : {"exr_damaged", "exr_invalid", "exr_special", "exr_tinyexr", "hdr_variants", "oiio"})
         for (const auto& entry : std::filesystem::directory_iterator(malformed / folder)) {
-            // Two ways in: as an environment, and (whatever its shape) as an image.
+            // Opened in two ways: as an environment, and as an image of any shape.
             const auto environment = open_environment({entry.path()}, {.max_bytes = 64 << 20, .threads = 2});
             if (!environment) {
                 CHECK(environment.error().where == entry.path().string());

@@ -1,5 +1,5 @@
 #pragma once
-// Small images that the tests of the readers write byte by byte, and short ways to read them.
+// Small images that the tests of the readers write byte by byte, and helpers that read them.
 
 
 #include "io/image_reader.h"
@@ -39,7 +39,7 @@ inline Result<std::unique_ptr<ImageReader>> open_bytes(Bytes bytes, const Reader
     return open_image_reader(FileBytes::from_memory(std::move(bytes)), options);
 }
 
-/// All rows, asked for `rows_a_read` at a time.
+/// All rows, read `rows_a_read` at a time.
 inline Result<ImageF> read_all(ImageReader& reader, int rows_a_read = 5) {
     ImageF image(reader.facts().width, reader.facts().height, 3);
     for (int y = 0; y < image.height(); y += rows_a_read) {

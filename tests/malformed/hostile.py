@@ -1,4 +1,4 @@
-"""Made-up hostile files: headers that lie about sizes, cut-off data, and things that are no image at all. All small; all must be refused."""
+"""Synthetic hostile files: headers with wrong sizes, cut-off data, and files that are not images. All are small, and all must be refused."""
 
 import base64
 import json
@@ -79,7 +79,7 @@ def env(width, pictures, data=b"", version=2):
 
 
 def image_light(size, picture, levels=1):
-    """A glTF file with EXT_lights_image_based, all of whose faces are one picture."""
+    """A glTF file with EXT_lights_image_based, whose faces are all the same picture."""
     light = {"irradianceCoefficients": [[0, 0, 0]] * 9, "specularImageSize": size, "specularImages": [[0] * 6] * levels}
     return json.dumps({"asset": {"version": "2.0"}, "extensions": {"EXT_lights_image_based": {"lights": [light]}},
                        "images": [{"uri": "data:image/png;base64," + base64.b64encode(picture).decode()}]}).encode()

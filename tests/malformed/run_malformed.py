@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Runs the program over hostile files: made-up ones, and those of DOMELIGHT_DATA/malformed.
+"""Runs the program over hostile files: synthetic ones, and those of DOMELIGHT_DATA/malformed.
 
-Each run has a memory and a time limit. It may succeed (exit 0) or fail (exit 1); if it fails, it says exactly one error, which names the file,
-and leaves nothing in the output folder. It never crashes, hangs or takes memory beyond what is stated. The made-up files must all be refused.
+Each run has a memory and a time limit. It may succeed (exit 0) or fail (exit 1); if it fails, it prints exactly one error, which names the file,
+and leaves nothing in the output folder. It never crashes, hangs or takes memory beyond what is stated. The synthetic files must all be refused.
 
     run_malformed.py [WORD]     only files whose name has WORD in it
 """
@@ -24,14 +24,14 @@ PROGRAM = os.environ.get("DOMELIGHT_PROGRAM", str(ROOT / "build/dev/cli/domeligh
 
 SECONDS = 60                      # one run; the slowest takes less than 2 s on an idle machine
 ADDRESS_SPACE = 4 << 30           # a broken size that slips through fails here, not on the machine
-RESIDENT_MADE_UP = 128 << 20      # a header alone must not make the program allocate what it promises
+RESIDENT_MADE_UP = 128 << 20      # a header alone must not make the program allocate the size that it states
 RESIDENT = 1200 << 20             # the readers' cap of 1 GiB, and the program itself
 
 SANITIZED = bool(os.environ.get("DOMELIGHT_SANITIZED"))  # AddressSanitizer reserves terabytes of addresses and keeps freed memory
 if SANITIZED:
     SECONDS, RESIDENT_MADE_UP, RESIDENT = 10 * SECONDS, 4 * RESIDENT_MADE_UP, 2 * RESIDENT
 
-# Not images, but what `info` may be pointed at by mistake: no use in baking each of them.
+# Not images, but files that a user may give to `info` by mistake. Baking each of them would test nothing.
 SCENES = {".gltf", ".glb", ".obj", ".ply"}
 NOT_IMAGES = SCENES | {".json", ".bin", ".rst", ".md"}
 
@@ -97,7 +97,7 @@ def check(file, work, number, made_up):
     for arguments, folder in commands:
         run = Run(arguments)
         runs.append(run)
-        # info may well describe a texture whose header alone is there; a bake needs all of it
+        # info may describe a texture of which only the header exists; a bake needs all of it
         must_fail = made_up and (folder is not None or file.suffix in (".hdr", ".exr", ".png", ".jpg"))
         for sentence in complaints(run, file, must_fail, RESIDENT_MADE_UP if made_up else RESIDENT, folder):
             failures.append(f"FAILED: {arguments[0]} {file}: {sentence}\n" + "".join("    " + l + "\n" for l in run.err.splitlines()[-8:]))

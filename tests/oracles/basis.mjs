@@ -52,7 +52,7 @@ async function encode() {
     const {encodeToKTX2} = await load('ktx2-encoder/dist/node/index.js');
     const bytes = new Uint8Array(fs.readFileSync(input));
     const options = {isHDR: true, imageType: 'hdr', isUASTC: true, hdrQualityLevel: +level, generateMipmap: false, needSupercompression: false, isKTX2File: true};
-    // The encoder chats on stdout, and warms up.
+    // The encoder prints to stdout; this first call is a warm-up.
     const write = process.stdout.write;
     process.stdout.write = () => true;
     const seconds = [];

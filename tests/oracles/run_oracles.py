@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Other people's encoders and decoders judge ours: the Basis Universal transcoder that three.js ships, its encoder (npm's ktx2-encoder) and
-ktx-parse. Closes with the line that ./test adds up; what cannot be had here is skipped with the reason.
+"""Compares our encoders and decoders with others: the Basis Universal transcoder that three.js ships, its encoder (npm's ktx2-encoder) and
+ktx-parse. Closes with the line that ./test adds up; what cannot be installed here is skipped, and the reason is printed.
 
 The packages come from DOMELIGHT_ORACLES, a folder with node_modules, or else are installed into build/oracles.
 """
@@ -34,7 +34,7 @@ def run(*words, **options):
 
 
 def node_modules():
-    """The folder with the packages of package.json; installs them where there is npm and it reaches its registry."""
+    """The folder with the packages of package.json; installs them if npm exists and can reach its registry."""
     if "DOMELIGHT_ORACLES" in os.environ:
         return Path(os.environ["DOMELIGHT_ORACLES"]) / "node_modules"
     if not shutil.which("node"):
@@ -95,7 +95,7 @@ def test_three_js_gets_what_its_loader_wants(folder):
         count = 6 * size * size * 4
         off = [log2(max(theirs[i], 1e-4) / min(max(floats[i], 1e-4), 65216)) for i in range(at, at + count) if i % 4 < 3]
         rms = sqrt(sum(o * o for o in off) / len(off))
-        # A wrong face or a turned one is octaves away.
+        # A wrong or turned face would differ by octaves.
         assert rms < 0.08, f"{rms} octaves at {size}^2"
         at += count
 

@@ -1,5 +1,5 @@
-// uastc_samples OUT.ktx2 OUT.halves: a texture of random UASTC HDR blocks of all modes, and what our decoder makes of
-// it (RGB halves, row by row). tests/oracles/run_oracles.py has the reference decoder read the first.
+// uastc_samples OUT.ktx2 OUT.halves: writes a texture of random UASTC HDR blocks of all modes, and the values that our
+// decoder gives (RGB halves, row by row). tests/oracles/run_oracles.py decodes the texture with the reference decoder.
 #include "texture/uastc_samples.h"
 
 #include "domelight/texture/texture.h"

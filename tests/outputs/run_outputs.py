@@ -21,7 +21,7 @@ PROGRAM = os.environ.get("DOMELIGHT_PROGRAM", str(ROOT / "build/dev/cli/domeligh
 
 OLD = ["--size", "32", "--levels", "2"]
 NEW = ["--size", "256", "--levels", "4", "--brdf-size", "64"]
-MOMENTS = 8  # interruptions at as many moments of a run, for each signal
+MOMENTS = 8  # the number of moments of a run at which it is interrupted, for each signal
 
 passed = failed = skipped = 0
 
@@ -57,7 +57,7 @@ def mixture(now, old, new, leftovers_allowed):
 
 
 def small_disk(limit):
-    """Files that grow beyond `limit` bytes fail to, as on a full disk. (Writing reports an error; the signal is for those who do not look.)"""
+    """Files that grow beyond `limit` bytes fail to, as on a full disk. (Writing then returns an error; the signal that comes with it is ignored.)"""
     def apply():
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
@@ -99,7 +99,7 @@ def test_full_disk(work, bakes):
 
 
 def test_real_full_disk(work):
-    """A file system of 256 KiB, where one can be mounted."""
+    """A file system of 256 KiB, if one can be mounted."""
     global skipped
     disk = work / "disk"
     disk.mkdir()

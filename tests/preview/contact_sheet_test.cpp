@@ -59,8 +59,8 @@ TEST_CASE(
         const Vec3d d = normalize(direction), n = normalize(d + Vec3d(0, 0, 1));
         return pixel(sheet, 32 + 150 + 149.5 * n.x, 386 + 150 - 149.5 * n.y);
     };
-    // A place on each disc that no letter covers: below the name, as seen from the inside; overhead and below it is
-    // shifted likewise.
+    // A place on each disc that no letter covers: below the name, as seen from inside; on the discs overhead and
+    // underfoot it is shifted in the same way.
     const Vec3f red{0.80f, 0.06f, 0.05f}, cyan{0.05f, 0.55f, 0.60f}, green{0.10f, 0.60f, 0.08f},
         magenta{0.50f, 0.08f, 0.45f}, blue{0.07f, 0.16f, 0.85f};
     check_near(ball({1, -0.4, 0}), red);

@@ -17,7 +17,7 @@ bool is(const std::uint8_t* p, Colour8 c) {
     return p[0] == c.r && p[1] == c.g && p[2] == c.b;
 }
 
-/// Mean row of a colour's pixels in each column; -1 where there are none.
+/// The mean row of the pixels of a colour in each column; -1 if there are none.
 std::vector<double> rows_of(const Image<std::uint8_t>& image, Colour8 colour) {
     std::vector<double> rows(image.width(), -1);
     for (int x = 0; x < image.width(); ++x) {

@@ -21,7 +21,7 @@ std::array<int, 3> rgb(const Image<std::uint8_t>& image, int x, int y) {
     return {image.at(x, y)[0], image.at(x, y)[1], image.at(x, y)[2]};
 }
 
-// The environment stands at (16, 66) in every picture.
+// The environment begins at (16, 66) in every picture.
 constexpr int k_left = 16, k_top = 66;
 
 }  // namespace
@@ -56,7 +56,8 @@ TEST_CASE("density_picture: a constant environment has one density per steradian
         how.method = method;
         const EnvironmentSampler sampler = sampler_of(image, how);
         const auto even = density_picture(sampler, DensityMeasure::solid_angle, options);
-        // Near the poles the sine varies within a row of texels, and a density constant in it does not follow.
+        // Near the poles the sine varies within a row of texels, which a density that is constant within the row does
+        // not follow.
         std::set<std::array<int, 3>> colours;
         for (int y = 40; y < 88; ++y) colours.insert(rgb(even, k_left + 100, k_top + y));
         int least = 255, largest = 0;

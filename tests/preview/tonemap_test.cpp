@@ -65,7 +65,7 @@ TEST_CASE("tonemap aces: Hill's published curve, middle grey and white as the AC
     CHECK(tonemap({0.18f, 0.18f, 0.18f}, Tonemap::aces).y == doctest::Approx(0.036733611 / 0.347885).epsilon(1e-4));
     CHECK(tonemap({1, 1, 1}, Tonemap::aces).y == doctest::Approx(1.024488 / 1.654761).epsilon(1e-4));
     CHECK(tonemap({100, 100, 100}, Tonemap::aces).y == 1);
-    // A saturated blue leans to white as it brightens, and a red one too.
+    // A saturated blue becomes whiter as it becomes brighter, and so does a saturated red.
     const Vec3f blue = tonemap({0, 0, 20}, Tonemap::aces), red = tonemap({20, 0, 0}, Tonemap::aces);
     CHECK(blue.x > 0.02);
     CHECK(blue.z == 1);

@@ -49,9 +49,9 @@ TEST_CASE("lat-long conventions: the published formulas of each name") {
         for (double theta = 0.2; theta < 3; theta += 0.45) {
             const Vec3d d{std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
             const double tau = 2 * k_pi;
-            // Mitsuba: u = atan2(x, -z) / 2 pi. OpenEXR: longitude atan2(x, z) runs from pi at the left to -pi at the
-            // right. MaterialX: u = atan2(x, -z) / 2 pi + 1/2. The courses' shader form, z up there: u = 1 - mod(phi /
-            // 2 pi, 1), phi = atan2(-z, x) here.
+            // Mitsuba: u = atan2(x, -z) / 2π. OpenEXR: longitude atan2(x, z) runs from π at the left to -π at the
+            // right. MaterialX: u = atan2(x, -z) / 2π + 1/2. The courses' shader form, z up there: u = 1 - mod(φ /
+            // 2π, 1), φ = atan2(-z, x) here.
             CHECK(wrapped(uv_in(*latlong_convention("mitsuba"), d).u, std::atan2(d.x, -d.z) / tau) < 1e-12);
             CHECK(wrapped(uv_in(*latlong_convention("openexr"), d).u, 0.5 - std::atan2(d.x, d.z) / tau) < 1e-12);
             CHECK(wrapped(uv_in(*latlong_convention("materialx"), d).u, 0.5 + std::atan2(d.x, -d.z) / tau) < 1e-12);

@@ -75,7 +75,7 @@ TEST_CASE("sphere map: the centre is +Z, right +X, up +Y; the reflection of Open
     CHECK(std::abs(at({1, 0, 0}).u - (0.5 + 0.5 * std::sqrt(0.5))) < 1e-15);
     CHECK(std::abs(at({0, 3, 0}).v - (0.5 - 0.5 * std::sqrt(0.5))) < 1e-15);
     for (const Vec3d& d : probes()) {
-        // The specification's own m = 2 sqrt(x^2 + y^2 + (z + 1)^2); s = x / m + 1/2, t = y / m + 1/2 upwards.
+        // The specification's own m = 2 √(x^2 + y^2 + (z + 1)^2); s = x / m + 1/2, t = y / m + 1/2 upwards.
         const double m = 2 * std::sqrt(d.x * d.x + d.y * d.y + (d.z + 1) * (d.z + 1));
         if (d.z > -0.999) {
             CHECK(std::abs(at(d).u - (d.x / m + 0.5)) < 1e-12);
@@ -98,7 +98,7 @@ TEST_CASE("dual paraboloid: each half's formula, inverse everywhere, equal at th
         CHECK((p.half == ParaboloidHalf::front) == (d.z >= 0));
         CHECK(disc_point(p.uv).squared() < 1 + 1e-12);
         CHECK(length(paraboloid_direction(p.half, p.uv) - d) < 1e-14);
-        // The picture goes on past the rim.
+        // The picture continues beyond the rim.
         const auto other = p.half == ParaboloidHalf::front ? ParaboloidHalf::back : ParaboloidHalf::front;
         if (std::abs(d.z) < 0.9) CHECK(length(paraboloid_direction(other, paraboloid_uv(other, d)) - d) < 1e-12);
     }

@@ -9,7 +9,7 @@ using namespace domelight;
 
 namespace {
 
-/// Every projection of the table, and conventions and parameters of them.
+/// Every projection of the table, with various conventions and parameters.
 const std::vector<std::string> k_all{"latlong",
                                      "latlong/usd",
                                      "latlong/mitsuba",
@@ -94,7 +94,7 @@ TEST_CASE("projections: uv -> direction -> uv, and the picture goes on past its 
             CHECK(std::hypot(back.uv.u - uv.u, back.uv.v - uv.v) < 1e-6);
         }
     }
-    // A step past the edge is a step on the sphere. (The hemisphere and a near mirror ball end at their rims.)
+    // A step beyond the edge is also a step on the sphere. (The hemisphere and a near mirror ball end at their rims.)
     for (const char* name : {"latlong", "cube", "angular", "paraboloid", "dual-paraboloid", "octahedral", "pbrt"}) {
         INFO(name);
         const Projection p = get(name);
@@ -117,7 +117,7 @@ TEST_CASE("projections: the Jacobian is that of the direction, by finite differe
             const UV uv{unit(random), unit(random)};
             const double r = std::hypot(2 * uv.u - 1, 2 * uv.v - 1), e = 1e-6;
             if (!p.valid(uv) || (r > 0.98 && !p.valid({0, 0}))) continue;
-            // Kinks of the octahedron within the step.
+            // The octahedron may have a kink within the step.
             if (std::min({std::abs(uv.u - 0.5), std::abs(uv.v - 0.5),
                           std::abs(std::abs(uv.u - 0.5) + std::abs(uv.v - 0.5) - 0.5)}) < 2 * e)
                 continue;
@@ -151,7 +151,7 @@ TEST_CASE("projections: solid angles of texels sum to 4 pi, or to what is shown,
             if (p.full()) CHECK(std::abs(sum - 4 * k_pi) < 1e-6);
         }
     }
-    // A larger one each, where rounding and quadrature would add up.
+    // A larger picture of each projection, in which errors of rounding and quadrature would add up.
     for (const char* name : {"sphere-map", "angular", "dual-paraboloid", "octahedral", "mirror-ball/fov=30"}) {
         INFO(name);
         const Projection p = get(name);
@@ -178,7 +178,8 @@ TEST_CASE("projections: a texel's solid angle is the integral of the Jacobian ov
                     rim = rim || !p.valid(uv);
                 }
             sum *= (b.u1 - b.u0) * (b.v1 - b.v0) / (steps * steps);
-            // Midpoints see a rim only to a step's breadth, and the hemisphere's ends steeply.
+            // Midpoints resolve a rim only to the width of a step, and the density is steep at the rim of the
+            // hemisphere.
             CHECK(std::abs(sum - p.texel_solid_angle(x, y, 7, 7)) < (rim ? 1e-2 : 1e-4) * (sum + 1e-3));
         }
     }
@@ -227,7 +228,7 @@ TEST_CASE("projections: where the axes lie") {
 
 TEST_CASE("projections: each one's published formula") {
     for (const Vec3d& d : probes()) {
-        // The courses' hemisphere: d = normalize(pos).xy, z = sqrt(1 - d.d).
+        // The courses' hemisphere: d = normalize(pos).xy, z = √(1 - d.d).
         if (d.z > 0.01) {
             const UV uv = get("hemisphere").locate(d * 2.0).uv;
             CHECK(std::hypot(2 * uv.u - 1 - d.x, 1 - 2 * uv.v - d.y) < 1e-12);
@@ -239,13 +240,13 @@ TEST_CASE("projections: each one's published formula") {
             CHECK(std::hypot(2 * uv.u - 1 - x, 1 - 2 * uv.v - y) < 1e-12);
             CHECK(length(normalize(Vec3d{x, y, 0.5 - 0.5 * (x * x + y * y)}) + d) < 1e-12);
         }
-        // Debevec: rotate (0, 0, -1) by phi = pi |p| about y, then by theta = atan2(v, u) about -z.
+        // Debevec: rotate (0, 0, -1) by φ = π |p| about y, then by θ = atan2(v, u) about -z.
         const UV uv = get("angular").locate(d).uv;
         const double u = 2 * uv.u - 1, v = 1 - 2 * uv.v, phi = k_pi * std::hypot(u, v), theta = std::atan2(v, u);
         CHECK(length(Vec3d{std::sin(phi) * std::cos(theta), std::sin(phi) * std::sin(theta), -std::cos(phi)} - d) <
               1e-9);
     }
-    // A mirror ball from farther and farther away is the sphere map.
+    // A mirror ball seen from farther and farther away approaches the sphere map.
     for (const Vec3d& d : probes())
         if (d.z > -0.95) {
             const UV near = get("mirror-ball/fov=0.1").locate(d).uv, far = get("sphere-map").locate(d).uv;

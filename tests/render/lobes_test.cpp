@@ -1,4 +1,4 @@
-// glTF's layers: what they draw against the densities that they state, their energy, their symmetries, and pictures
+// glTF's layers: their samples against the densities that they state, their energy, their symmetries, and pictures
 // whose values are known.
 #include "domelight/render/render.h"
 #include "domelight/sampling/sequences.h"
@@ -45,7 +45,7 @@ struct Seen {
 
 constexpr int k_polar = 12, k_azimuth = 12, k_patches = 2 * k_polar * k_azimuth;
 
-/// The sphere in patches: the upper hemisphere's, then the lower one's.
+/// The sphere in patches: first those of the upper hemisphere, then those of the lower one.
 Vec3d turned(const Vec3d& d, bool below) {
     return below ? Vec3d{d.x, d.y, -d.z} : d;
 }
@@ -148,7 +148,7 @@ double mean_inside(const RenderResult& r) {
     REQUIRE(n > 0);
     return sum / n;
 }
-/// Changes slowly everywhere, by another rule in each channel.
+/// A light that changes slowly everywhere, and differently in each channel.
 ImageF smooth_environment() {
     ImageF image(64, 32, 3);
     for (int y = 0; y < 32; ++y)
@@ -228,11 +228,11 @@ TEST_CASE("lobes: white under a white light stays white with multiple scattering
             };
             for (const Named& n : conserving) {
                 INFO(n.name << ", roughness " << roughness << " at " << degrees);
-                // Where the albedo is a mean over few normals, each such mean is near, and their mean (next test)
-                // right.
+                // If the albedo is estimated from few normals, each estimate is close and their mean is right (next
+                // test).
                 const bool by_few = n.material.transmission > 0 || n.material.anisotropy > 0;
                 CHECK(std::abs(albedo(Seen(n.material, degrees, n.from_below, true)) - 1) < (by_few ? 0.05 : 1e-3));
-                // glTF's own diffuse below a dielectric gains at grazing angles; all else does not.
+                // glTF's diffuse layer below a dielectric gains energy at grazing angles; nothing else does.
                 if (n.material.metalness == 1 || n.material.transmission == 1)
                     CHECK(albedo(Seen(n.material, degrees, n.from_below, false)) < 1 + 1e-4);
             }
@@ -287,7 +287,8 @@ TEST_CASE("lobes: microfacets are reciprocal, by reflection and through a bounda
         const Vec3f V = uniform_hemisphere(random_point(3, i)), L = uniform_hemisphere(random_point(4, i)), down = -L;
         CHECK(ggx.evaluate(V, L) == doctest::Approx(ggx.evaluate(L, V)).epsilon(1e-4));
         CHECK(sheet.transmission(V, down).value == doctest::Approx(sheet.transmission(L, -V).value).epsilon(1e-4));
-        // Walter et al. 2007, eq. 15: f / n^2 of the side that the light leaves to; the lobe carries n^2.
+        // Walter et al. 2007, eq. 15: f / n² with the n of the side to which the light leaves; the lobe contains the
+        // factor n².
         const auto one_way = out.transmission(V, down), other_way = in.transmission(L, -V);
         through += one_way.value > 0;
         CHECK(one_way.value == doctest::Approx(1.5 * 1.5 * other_way.value).epsilon(2e-3));
@@ -317,10 +318,11 @@ TEST_CASE("lobes: a brushed surface of strength 0 is the round one, and so is it
         CHECK(length(ggx.sample(V, random_point(7, i)) - round.sample(V, random_point(7, i)).L) < 1e-4);
     }
     CHECK(!Seen(with(white(1, 0.5f), [](Material& m) { m.anisotropy_rotation = 1; }), 30).point.layers);
-    // Smooth across the brushing, rough along it: a highlight that is stretched along its direction.
+    // A surface that is smooth in one direction and rough in the other has a highlight that is stretched in the rough
+    // direction.
     Material m = with(white(1, 0.3f), [](Material& b) { b.anisotropy = 1; });
     const Seen seen(m, 0);
-    const Vec3f x = Frame<float>(seen.point.normal).to_local({0, 0, 1});  // around the vertical axis: any, if it is up
+    const Vec3f x = Frame<float>(seen.point.normal).to_local({0, 0, 1});  // brushed around the vertical axis
     CHECK(seen.layers.gloss.ggx.alpha_x == 1);
     CHECK(seen.layers.gloss.ggx.alpha_y == doctest::Approx(0.09));
     CHECK(std::isfinite(x.x));
@@ -373,7 +375,7 @@ TEST_CASE("lobes: a body of the index of air shows the background unchanged") {
     Material air = with(white(0, 0), body);
     air.ior = 1;
     RenderOptions o = view(24, 16);
-    // The smoothest lobe has a tail still: with MIS one sample in thousands counts as a draw from the environment.
+    // Even the smoothest lobe has a tail: with MIS, one sample in thousands counts as drawn from the environment.
     o.strategy = LightStrategy::brdf;
     const RenderResult seen = render(trace(one(sphere_mesh(300), air)), smooth_environment(), o);
     Scene far = one(sphere_mesh(8), air);
@@ -398,7 +400,8 @@ TEST_CASE("lobes: light through a slab follows Beer's law, with all its inner re
         const double R = std::pow((ior - 1) / (ior + 1), 2);
         for (int c = 0; c < 3; ++c) {
             const double color[] = {0.5, 0.25, 1}, a = std::pow(color[c], 3 / 2.0);
-            // From below, through both faces; from above, from the first; and what goes to and fro inside.
+            // Light from below through both faces, light from above reflected by the first one, and light reflected to
+            // and fro inside.
             const double truth = R + (1 - R) * (1 - R) * a / (1 - R * a);
             INFO("ior " << ior << " channel " << c);
             CHECK(r.radiance.at(0, 0)[c] == doctest::Approx(truth).epsilon(0.01));
@@ -437,10 +440,10 @@ TEST_CASE(
         o.refractions = 200;
         const RenderResult r = render(scene, ImageF(32, 16, 3, 1.f), o);
         INFO("roughness " << roughness);
-        // What meshes cost: normals that are smooth where triangles are not.
+        // The error of meshes, whose normals are smooth although their triangles are flat.
         CHECK(mean_inside(r) == doctest::Approx(1).epsilon(0.01));
         CHECK(*std::ranges::max_element(r.indirect.pixels()) == 0);
-        // Few passages lose what goes to and fro, and no more.
+        // With few passages only the light that is reflected to and fro is lost.
         o.refractions = 2;
         CHECK(mean_inside(render(scene, ImageF(32, 16, 3, 1.f), o)) < mean_inside(r) + 1e-3);
     }
@@ -453,7 +456,7 @@ TEST_CASE("lobes: brushed metal and sheets keep their light in a white furnace")
         o.multiple_scattering = true;
         o.bounces = 8;  // inside the hollow sphere
         o.refractions = 64;
-        o.strategy = LightStrategy::brdf;  // the least noise under an even light
+        o.strategy = LightStrategy::brdf;  // this has the least noise under an even light
         const RenderResult r = render(trace(one(sphere_mesh(96), m)), ImageF(32, 16, 3, 1.f), o);
         CHECK(std::abs(mean_inside(r) - 1) < 1e-3);
     }
@@ -479,7 +482,7 @@ TEST_CASE("lobes: a material of absurd numbers gives finite pictures") {
 }
 
 TEST_CASE("lobes: what lies behind a sheet is lit as if it were not there, less what the sheet takes") {
-    // A window before a matte wall that shines: seen through a sheet of no reflection and half the light.
+    // A luminous matte wall behind a window that reflects nothing and lets half of the light through.
     Material window = with(white(0, 0), sheet);
     window.base_color = {0.5f, 0.5f, 0.5f};
     window.ior = 1;

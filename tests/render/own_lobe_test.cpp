@@ -1,6 +1,6 @@
-// The renderer against a convolution of its own lobe: at normal incidence GGX reflects the environment weighted by
-// D G2 / 4 (F = 1), a function of the angle to the normal alone, so that the picture of a distant mirror-wise lit patch
-// is an integral that can be written down.
+// The renderer against a convolution of its own lobe: at normal incidence GGX reflects the environment weighted by D G2
+// / 4 (F = 1), a function of the angle to the normal alone, so that the picture of a distant patch is an integral that
+// can be written down.
 
 #include "domelight/sampling/microfacet.h"
 #include "domelight/projection/projection.h"
@@ -27,7 +27,7 @@ ImageF sky_with_sun() {
     ImageF image(2 * k_height, k_height, 3);
     REQUIRE(make_sky(options)->read(image.view()));
     for (float& p : image.pixels()) p /= 3000;
-    // and something bright on a seam
+    // and a bright light on a seam
     for (int c = 0; c < 3; ++c) image.at(0, 20)[c] = 5.f + float(c);
     return image;
 }
@@ -55,7 +55,7 @@ Vec3d convolve(const EnvironmentSampler& sampler, const Vec3d& N, int fine, cons
     return sum;
 }
 
-/// What the renderer's metal sends back along N.
+/// The radiance that the renderer's metal reflects along N.
 double own_lobe(double c, double alpha) {
     return ggx_d(half_vector(c), alpha) * ggx_visibility(c, 1.0, alpha) * c;
 }
@@ -110,9 +110,9 @@ TEST_CASE("render: a distant metal's reflection at normal incidence is the envir
             for (const auto& [ours, truth, v] : {std::tuple{mean.x, exact.x, variance.x},
                                                  {mean.y, exact.y, variance.y},
                                                  {mean.z, exact.z, variance.z}}) {
-                // Three standard errors, and what the midpoint sum is off by.
+                // Three standard errors, plus the error of the midpoint sum.
                 CHECK(std::abs(ours - truth) < 3 * std::sqrt(v) + 2e-4 * truth);
-                CHECK(std::sqrt(v) < 0.01 * truth);  // else the line above says nothing
+                CHECK(std::sqrt(v) < 0.01 * truth);  // otherwise the check above would prove nothing
                 worst = std::max(worst, std::abs(ours / truth - 1));
                 squares += (ours / truth - 1) * (ours / truth - 1);
                 ++values;
@@ -123,7 +123,7 @@ TEST_CASE("render: a distant metal's reflection at normal incidence is the envir
 }
 
 TEST_CASE("render: that lobe is not the prefilter's D n.l") {
-    // What the test above must be able to tell: at roughness 0.6 the two differ by far more than its tolerance.
+    // The test above must be able to tell the two apart: at roughness 0.6 they differ by far more than its tolerance.
     const ImageF image = sky_with_sun();
     auto sampler = EnvironmentSampler::build(image, reference_sampler_options());
     REQUIRE(sampler);

@@ -44,7 +44,7 @@ RenderResult render(const RayScene& scene, const ImageF& environment, const Rend
     return std::move(*result);
 }
 
-/// Mean of a channel over the pixels that the surface covers whole.
+/// The mean of a channel over the pixels that the surface covers completely.
 double mean_inside(const RenderResult& r, const ImageF& image, int channel = 1) {
     double sum = 0;
     int n = 0;
@@ -109,7 +109,7 @@ TEST_CASE("render: Lambert on a sphere is the exact irradiance, pixel by pixel w
             const float* N = r.normal.at(x, y);
             const Vec3d normal = normalize(Vec3d{N[0], N[1], N[2]});
             const Vec3d truth = convolve_exactly(sky, ZonalKernel::cosine(), std::span(&normal, 1))[0] * 0.8;
-            // A pixel's mean over its normals bends a little: 1 %.
+            // The mean over the normals within a pixel differs a little from the value at its centre: 1 %.
             const double error = std::sqrt(r.variance.at(x, y)[1] + std::pow(0.01 * truth.y, 2)),
                          d = r.radiance.at(x, y)[1] - truth.y;
             z2 += d * d / (error * error);
@@ -135,7 +135,7 @@ TEST_CASE("render: a sphere's shadow on the ground under an even sky is its form
 }
 
 TEST_CASE("render: light in a closed room is the sum over its bounces") {
-    // Inside a sphere that shines with e and reflects a: e (1 + a + ... + a^n).
+    // Inside a sphere of emission e and albedo a: e (1 + a + ... + aⁿ).
     Material wall = lambert_material(0.6f);
     wall.emission = {1, 1, 1};
     const RayScene scene = trace(one(sphere_mesh(64), wall));
@@ -191,7 +191,7 @@ TEST_CASE("render: samples that are not finite are counted, and count as black")
         Scene bad = scene;
         bad.materials[0].emission = {wrong, 0, 0};
         const RenderResult r = render(trace(bad), sky, o);
-        // NaN may vanish in a comparison on its way; infinity does not.
+        // NaN may be lost in a comparison before the sample is added; infinity is not.
         if (std::isinf(wrong)) CHECK(r.non_finite_samples == 4 * 4 * 8);
         for (const float p : r.radiance.pixels()) CHECK(std::isfinite(p));
     }
@@ -314,7 +314,7 @@ TEST_CASE("render: an instanced, turned and mirrored mesh is lit as if it stood 
         Affine mirror;
         mirror.x = {-1, 0, 0};
         add(scene, sphere_mesh(48), lambert_material(0.8f), mirror);
-        // Far behind the camera: with it the mesh becomes an object of its own.
+        // A second instance far behind the camera: because of it the mesh becomes an object of its own.
         if (instances == 2) {
             Affine away;
             away.translation = {0, 0, 1000};
@@ -329,7 +329,7 @@ TEST_CASE("render: an instanced, turned and mirrored mesh is lit as if it stood 
 }
 
 TEST_CASE("render: rays that leave the range of float meet nothing, and flattened instances are met") {
-    // Twice the same mesh: Embree turns rays into its frame, where it can.
+    // Two instances of one mesh: Embree transforms rays into its frame where it can.
     Scene scene;
     add(scene, sphere_mesh(16), lambert_material(1), {{1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {-1.5f, 0, 0}});
     for (const Affine& place : {Affine{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1.5f, 0, 0}},

@@ -46,7 +46,7 @@ double mean_inside(const RenderResult& r, int channel = 1) {
     return sum / n;
 }
 
-/// Bright towards +X, dim elsewhere, without an edge.
+/// Light that is bright towards +X and dim elsewhere, without a hard edge.
 ImageF gradient() {
     ImageF image(128, 64, 3);
     for (int y = 0; y < 64; ++y)
@@ -98,7 +98,7 @@ TEST_CASE("split-sum: under an even sky it is the truth without shadows") {
     plastic.base_color = {0.5f, 0.5f, 0.5f};
     const RayScene scene = sphere(plastic);
     auto truth = render_reference(scene, *light.sampler, view());
-    // Its diffuse part knows Fresnel at the viewer's angle only.
+    // Its diffuse part uses the Fresnel term at the viewer's angle only.
     CHECK(mean_inside(light.shade(scene, {})) == doctest::Approx(mean_inside(*truth)).epsilon(0.03));
 }
 
@@ -129,7 +129,7 @@ TEST_CASE("split-sum: a white plastic in an even light reflects all of it, unles
                     worst_of_fresnel = std::max(worst_of_fresnel, std::abs(reflected(shade_split_sum) - 1));
             }
         }
-    CHECK(worst_of_fresnel > 0.05);  // its known error, and the reason why it is not the default
+    CHECK(worst_of_fresnel > 0.05);  // this known error is the reason why it is not the default
 }
 
 TEST_CASE("split-sum: the courses' diffuse weight is 1 - F(NdotV), each channel by its own F0") {
@@ -192,7 +192,8 @@ TEST_CASE(
         const float ior = ior_of_reflectance(reflectance), ratio = (ior - 1) / (ior + 1);
         CHECK(ratio * ratio == doctest::Approx(0.16 * reflectance * reflectance));
     }
-    // A black plastic ball from the front reflects F0 of an even light, and half of a white metal beside it the rest.
+    // From the front, a plastic ball reflects F0 of an even light, and one that is half metal the mean of F0 and its
+    // colour.
     const Light light(ImageF(64, 32, 3, 1.f));
     RenderOptions narrow = view();
     narrow.camera = look_at({0, 0, 40}, {0, 0, 0}, 0.006f);
@@ -220,7 +221,7 @@ TEST_CASE("phong: under an even light from above all is known, and seen from the
     auto maps = LightMaps::bake(light.image, {}, 0, Lobe::phong_brdf);
     REQUIRE(maps);
     CHECK(maps->lobe() == Lobe::phong_brdf);
-    // Every level, and what lies between and beyond them, against the lobe integrated over the picture.
+    // Every level, and roughnesses between and beyond the levels, against the lobe integrated over the picture.
     for (const double exponent : {0.0, 1.0, 2.0, 32.0, 2048.0}) {
         const Vec3d d = normalize(Vec3d{0.3, 0.5, 0.8});
         const Vec3d exact = convolve_exactly(light.image, {Lobe::phong_brdf, exponent}, std::span(&d, 1))[0];
@@ -240,7 +241,7 @@ TEST_CASE("phong: under an even light from above all is known, and seen from the
     auto shaded = render_shaded(scene, *maps, *light.sampler, options, narrow);
     REQUIRE(shaded);
     for (int c = 0; c < 3; ++c) CHECK(mean_inside(*shaded, c) == doctest::Approx(mean_inside(*truth, c)).epsilon(0.01));
-    // The chain of another lobe is refused, both ways.
+    // A chain of the wrong lobe is refused, in both directions.
     CHECK(!render_shaded(scene, *light.maps, *light.sampler, options, view()));
     CHECK(!render_shaded(scene, *maps, *light.sampler, {}, view()));
 }
@@ -261,7 +262,7 @@ TEST_CASE("mirror: through a cube, lat-long, sphere map or dual paraboloid it sh
             for (std::size_t i = 0; i < r.radiance.pixels().size(); ++i)
                 largest = std::max(largest, double(std::abs(r.radiance.pixels()[i] - plain.radiance.pixels()[i])));
             INFO(map_lookup_name(lookup));
-            // The sphere map's rim is all of -Z, and its last texels hold much of what lies around it.
+            // The whole rim of the sphere map is −Z, and its outermost texels hold much of the light around −Z.
             CHECK(largest < (lookup == MapLookup::sphere_map ? 0.1 : 0.02));
         }
     }

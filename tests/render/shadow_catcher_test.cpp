@@ -88,9 +88,9 @@ TEST_CASE("catch_shadow: under a constant sky a ball takes its form factor from 
     for (int y = 0; y < w.options.height; ++y)
         for (int x = 0; x < w.options.width; ++x) {
             const auto p = ground_at(w.options, x, y);
-            // The ball itself in the way.
+            // The ball itself hides the ground here.
             if (!p || *r.depth.at(x, y) < 1e9f) continue;
-            // Of a sphere that is above the horizon as a whole: R^2 cos / d^2 (Howell's catalogue, B-43).
+            // The form factor of a sphere entirely above the horizon: R² cos θ / d² (Howell's catalogue, B-43).
             const float d = length(Vec3f{0, k_high, 0} - *p), factor = k_high / (d * d * d);
             const double difference = *r.opacity.at(x, y) - factor;
             CHECK(std::abs(difference) < 0.06);  // 256 samples
@@ -138,7 +138,7 @@ TEST_CASE("catch_shadow: under a sky the ground darkens as a white Lambert floor
             ++n;
         }
     REQUIRE(n > 900);
-    // The light that is taken away, of all there was.
+    // The share of the light that is taken away.
     for (int c = 0; c < 3; ++c) CHECK(caught_sum[c] / floor_sum[c] == doctest::Approx(1).epsilon(0.012));
 }
 
@@ -229,7 +229,7 @@ TEST_CASE("catch_shadow: half a ball's opacity is half its shadow; ground withou
             const auto p = ground_at(w.options, x, y);
             if (!p || *r.depth.at(x, y) < 1e9f) continue;
             const float off = std::hypot(p->x, p->z);
-            // In at one side of the ball and out at the other: a quarter comes through.
+            // The light passes through both sides of the ball, so a quarter remains.
             if (off < 0.6f) {
                 CHECK(*r.opacity.at(x, y) == doctest::Approx(0.75).epsilon(1e-4));
                 ++inside;

@@ -7,7 +7,7 @@
 
 namespace domelight::test {
 
-/// A sphere of unit radius about the origin, `rings` bands of 2 rings triangles' pairs, smooth.
+/// A smooth sphere of unit radius about the origin, of `rings` bands with 2 · `rings` pairs of triangles each.
 inline Mesh sphere_mesh(int rings) {
     Mesh mesh;
     const int columns = 2 * rings;

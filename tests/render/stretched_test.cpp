@@ -12,7 +12,7 @@ using namespace domelight::test;
 
 namespace {
 
-/// An environment with what its chain and sampler are made of.
+/// An environment with its filtered chain and its sampler.
 struct Light {
     explicit Light(ImageF picture) : image(std::move(picture)) {
         auto built = EnvironmentSampler::build(image, reference_sampler_options());
@@ -95,7 +95,7 @@ TEST_CASE("stretched: at grazing angles at most half of split-sum's error, nowhe
                     const SquareErrors e = lobe_errors(*light.maps, *light.sampler, {roughness, NdotV, f0, 96, 1024});
                     if (NdotV < 0.4) grazing += e;
                     INFO("roughness " << roughness << " NdotV " << NdotV << " F0 " << f0);
-                    // Towards the normal both are good: there a thousandth more is allowed.
+                    // Both are good at small angles to the normal: there an increase of a thousandth is allowed.
                     CHECK(e.roots().stretched <= 1.05 * e.roots().split_sum + (NdotV < 0.4 ? 0 : 0.001));
                 }
             CHECK(grazing.roots().ratio() <= 0.5);

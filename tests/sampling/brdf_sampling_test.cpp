@@ -1,5 +1,5 @@
-// What BRDFs draw against the densities that they state, and against the albedos that the BRDF table's quadrature
-// gives.
+// The samples of BRDFs against the densities that they state, and against the albedos from the quadrature of the BRDF
+// table.
 #include "domelight/sampling/brdf.h"
 #include "domelight/sampling/sequences.h"
 
@@ -20,7 +20,7 @@ namespace {
 constexpr int k_polar = 18, k_azimuth = 12, k_patches = k_polar * k_azimuth;
 constexpr int k_samples = 60000;
 
-/// The view at this angle from the normal, at no special azimuth; unit length in float.
+/// The view at this angle from the normal, at an arbitrary azimuth; of unit length in float.
 Vec3f view(double degrees) {
     const double theta = degrees * k_pi / 180;
     if (degrees == 0) return {0, 0, 1};
@@ -48,7 +48,7 @@ Drawn draw(const Brdf& brdf, const Vec3f& V, std::uint64_t seed, int samples = k
     return out;
 }
 
-/// int pdf over each patch; the last is what they leave of 1.
+/// ∫ pdf dω over each patch; the last value is 1 minus their sum.
 template <typename Brdf>
 std::vector<double> expected_counts(const Brdf& brdf, const Vec3f& V) {
     std::vector<double> out(k_patches + 1);
@@ -74,7 +74,7 @@ double albedo_by_quadrature(const Brdf& brdf, const Vec3f& V) {
 /// Chi-square over the patches and the horizon, and the density's integral against the share that was drawn above.
 template <typename Brdf>
 void check_density(const std::string& name, const Brdf& brdf, double degrees) {
-    constexpr int k_tests = 150;  // at least as many as all calls together
+    constexpr int k_tests = 150;  // at least the number of all tests together
     static std::uint64_t seed = 100;
     const Vec3f V = view(degrees);
     const Drawn drawn = draw(brdf, V, ++seed);
@@ -84,7 +84,8 @@ void check_density(const std::string& name, const Brdf& brdf, double degrees) {
     CHECK_MESSAGE(std::abs(share - p) < 4.5 * std::sqrt(p * (1 - p) / k_samples) + 5e-5, name, " at ", degrees, ": ",
                   share, " of the samples fall below the horizon, ", p, " of the density");
     for (double& e : expected) e *= k_samples;
-    // Where (almost) nothing is expected below, the quadrature's error must not be taken for an expectation.
+    // If (almost) no samples are expected below the horizon, the error of the quadrature must not be taken as an
+    // expected count.
     std::vector<double> observed = drawn.counts;
     if (expected[k_patches] < 5e-5 * k_samples) observed.pop_back(), expected.pop_back();
     const double significance = chi_square_p_value(observed, expected);
@@ -116,7 +117,7 @@ TEST_CASE("brdf_sampling: samples follow the density, which leaves out what fall
 
 namespace {
 
-/// Chi-square over tan theta_h / alpha and azimuth of the half vector, for lobes that patches of directions are too
+/// Chi-square over tan θ_h / α and azimuth of the half vector, for lobes that patches of directions are too
 /// coarse for. dl = 4 VdotH dh.
 template <typename Brdf>
 double narrow_significance(const Brdf& brdf, double alpha, const Vec3f& V, std::uint64_t seed) {
@@ -149,7 +150,7 @@ double narrow_significance(const Brdf& brdf, double alpha, const Vec3f& V, std::
     return chi_square_p_value(observed, expected);
 }
 
-/// int pdf over light directions and the draws agree with `truth` in the mean weight.
+/// ∫ pdf dω over light directions, and the mean weight of the samples, agree with `truth`.
 template <typename Brdf>
 void check_albedo(const std::string& name, const Brdf& brdf, const Vec3f& V, double truth, std::uint64_t seed) {
     const Drawn drawn = draw(brdf, V, seed, 20000);
@@ -161,7 +162,7 @@ void check_albedo(const std::string& name, const Brdf& brdf, const Vec3f& V, dou
 }  // namespace
 
 TEST_CASE("brdf_sampling: narrow GGX lobes follow their density too") {
-    // 3 views x 2 alphas x 4 forms = 24 tests. At alpha 0.001 directions in float still tell 1e-4 of the width.
+    // 3 views x 2 widths x 4 forms = 24 tests. At α = 0.001, directions in float still resolve 1e-4 of the width.
     std::uint64_t seed = 500;
     for (double degrees : {0.0, 40.0, 70.0})
         for (float alpha : {0.001f, 0.02f}) {
@@ -214,7 +215,7 @@ TEST_CASE("brdf_sampling: bounded caps lose fewer samples than caps, and those f
                          bounded = draw(Ggx<GgxNormals::bounded_caps>{alpha}, V, 1).counts.back();
             CHECK(caps <= half + 4 * std::sqrt(half + 1));
             CHECK(bounded < caps);
-            // Nothing is lost at normal incidence: there the bound is exact.
+            // No energy is lost at normal incidence, so the bound is exact there.
             if (degrees == 0) CHECK(bounded <= 1);
         }
 }
@@ -227,7 +228,7 @@ TEST_CASE("brdf_sampling: no more light leaves than comes in") {
         CHECK(albedo_by_quadrature(LambertBrdf{}, V) == doctest::Approx(1).epsilon(1e-4));
         for (float alpha : {0.25f, 1.f}) CHECK(albedo_by_quadrature(CharlieBrdf{alpha}, V) < 1);
     }
-    // The sheen as it is defined is not bounded for narrow lobes: known, and said at its declaration.
+    // The sheen as defined is not bounded for narrow lobes, as its declaration says.
     CHECK(integrate_sheen(0.001, 0.1, 128) == doctest::Approx(1.335).epsilon(1e-3));
 }
 

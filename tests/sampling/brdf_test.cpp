@@ -53,7 +53,7 @@ TEST_CASE("brdf: no argument in range makes anything but finite, unit and consis
 
 namespace {
 
-/// The same value in double from the definition, unit half vector and all: F D G2 / (4 NdotL NdotV).
+/// The same value in double from the definition, with a unit half vector: F D G2 / (4 NdotL NdotV).
 double ggx_by_definition(const Vec3f& V, const Vec3f& L, double alpha, double f0) {
     const Vec3d H = normalize(Vec3d(V) + Vec3d(L));
     const double a2 = alpha * alpha, d = H.z * H.z * (a2 - 1) + 1;

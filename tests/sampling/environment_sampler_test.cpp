@@ -58,7 +58,7 @@ std::vector<std::pair<std::string, ImageF>> environments() {
     return list;
 }
 
-/// Int of the density over each cell of a grid over the image, `fine` x `fine` cells a texel, by midpoints.
+/// ∫ of the density over each cell of a grid over the image, with `fine` x `fine` cells in a texel, by midpoints.
 std::vector<double> integrals(const EnvironmentSampler& sampler, int columns, int rows) {
     const int w = sampler.image().width, h = sampler.image().height, fine_x = 24 * std::max(1, columns / w),
               fine_y = 24 * std::max(1, rows / h);
@@ -111,7 +111,7 @@ TEST_CASE(
                 for (const double e : expected) sum += e;
                 INFO(name << ", " << method_name(method) << ", variant " << variant);
                 CHECK(sum == doctest::Approx(1).epsilon(
-                                 4e-3));  // of the midpoint sum beside a pole, where the density has 1 / sin theta
+                                 4e-3));  // the midpoint sum's error beside a pole
                 constexpr int samples = 20000;
                 std::vector<double> observed(expected.size());
                 for (int i = 0; i < samples; ++i) {
@@ -147,7 +147,7 @@ TEST_CASE(
                     CHECK(length(s.direction) == doctest::Approx(1).epsilon(1e-6));
                     const Vec3d source = world_to_source * Vec3d(s.direction);
                     CHECK(length(source - latlong_direction({s.u, s.v})) < 1e-6);
-                    // On a texel's border rounding may tell a neighbour; nowhere else.
+                    // On the border of a texel, rounding may give its neighbour; nowhere else.
                     const LightSample back = sampler.look_up(s.direction);
                     const double tolerance = 1e-4 * s.pdf_solid_angle;
                     apart += std::abs(back.pdf_solid_angle - s.pdf_solid_angle) > tolerance ||
@@ -173,7 +173,7 @@ TEST_CASE(
             const double theta = k_pi * (y + 0.5) / 32;
             const Vec3f d(latlong_direction({0.3, (y + 0.5) / 32}));
             CHECK(even.pdf_solid_angle(d) * 4 * k_pi ==
-                  doctest::Approx(1).epsilon(2e-3));  // sin theta's steps against its integral
+                  doctest::Approx(1).epsilon(2e-3));  // sin θ in steps, compared with its integral
             CHECK(courses.pdf_solid_angle(d) * 2 * k_pi * k_pi * std::sin(theta) == doctest::Approx(1).epsilon(1e-4));
         }
     }
@@ -249,8 +249,8 @@ TEST_CASE("environment_sampler: invert goes back as far as float directions allo
             const LightSample s = sampler.sample(p);
             const auto back = sampler.invert(s.direction);
             REQUIRE(back);
-            // A direction is known to 1e-7; so is a point of the square, times the density over the image (and 1 / sin
-            // theta).
+            // A direction is accurate to 1e-7; a point of the square to the same, times the density over the image (and
+            // 1 / sin θ).
             const double scale = 1e-6 * std::max(1.0, 20.0 * s.pdf_solid_angle);
             worst = std::max(worst, std::max(std::abs(unit_double(back->x) - unit_double(p.x)),
                                              std::abs(unit_double(back->y) - unit_double(p.y))) /
@@ -348,7 +348,7 @@ TEST_CASE("environment_sampler: looking up many directions at once is looking up
                     CHECK((pole || std::min(du, 1 - du) < 3e-7f));
                     CHECK(std::abs(out.v[i] - one.v) < 3e-7f);
                     CHECK((out.u[i] >= 0 && out.u[i] < 1 && out.v[i] >= 0 && out.v[i] < 1));
-                    // A texel's edge may be met from the other side.
+                    // At the edge of a texel the result may be that of the other side.
                     far += !(std::abs(out.r[i] - one.radiance.x) <= 1e-4f * (1 + one.radiance.x)) ||
                            !(std::abs(out.pdf_solid_angle[i] - one.pdf_solid_angle) <= 1e-4f * one.pdf_solid_angle);
                 }

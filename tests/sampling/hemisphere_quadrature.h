@@ -1,5 +1,5 @@
 #pragma once
-// Integrals over patches of the upper hemisphere, for densities and BRDFs as peaked as they like.
+// Integrals over patches of the upper hemisphere, for densities and BRDFs with arbitrarily narrow peaks.
 
 #include "domelight/base/vec.h"
 
@@ -34,7 +34,7 @@ double integrate_once(const Patch& p, const G& g) {
     return sum * (p.theta1 - p.theta0) * (p.phi1 - p.phi0) / 4;
 }
 
-/// The same in as many pieces as it takes for halving them to change less than `tolerance`.
+/// The same, halving the patch until this changes the result by less than `tolerance`.
 template <typename G>
 double integrate(const Patch& p, const G& g, double tolerance, int depth = 0) {
     const double theta = (p.theta0 + p.theta1) / 2, phi = (p.phi0 + p.phi1) / 2;
@@ -56,7 +56,7 @@ inline Patch hemisphere_patch(int i, int polar, int azimuth) {
     return {k_pi / 2 * row / polar, k_pi / 2 * (row + 1) / polar, 2 * k_pi * column / azimuth,
             2 * k_pi * (column + 1) / azimuth};
 }
-/// Which of them a direction with z > 0 is in.
+/// The patch that contains a direction with z > 0.
 inline int hemisphere_patch_of(const Vec3d& d, int polar, int azimuth) {
     const double theta = std::atan2(std::hypot(d.x, d.y), d.z);
     double phi = std::atan2(d.y, d.x);

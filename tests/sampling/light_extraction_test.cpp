@@ -33,7 +33,7 @@ ImageF constant(int height, const Vec3f& value) {
     return image;
 }
 
-/// Adds a disc of constant radiance, each texel's share of it by 16 x 64 points.
+/// Adds a disc of constant radiance. The share of each texel is found by 16 x 64 points.
 void add_disc(ImageF& image, const Vec3d& direction, double diameter_deg, const Vec3d& radiance) {
     const int w = image.width(), h = image.height();
     const double cosine = std::cos(diameter_deg / 2 * k_deg), near = std::cos((diameter_deg + 720.0 / w) * k_deg);
@@ -185,10 +185,10 @@ TEST_CASE("extract_lights: a disc's diameter, radiance and direction, where texe
         const ExtractedLight& light = found.lights[0];
         CHECK(angle_deg(light.direction, towards) < 0.05);
         CHECK(close(light.angular_diameter_deg, diameter, diameter < 2 ? 0.13 : 0.03));  // texels of 0.7 degrees
-        if (diameter >= 2) CHECK(close(light.mean_radiance.x, 900, 0.06));  // goes with the diameter's square
+        if (diameter >= 2) CHECK(close(light.mean_radiance.x, 900, 0.06));  // as the square of the diameter
         CHECK(close(light.irradiance.x, 900 * disc_solid_angle(diameter), 0.02));
         CHECK(close(light.colour.y, 2.0 / 3, 1e-3));
-        // The surroundings are constant, and so must be what stands in its place.
+        // The surroundings are constant, so what replaces the light must be constant too.
         CHECK(*std::max_element(found.remainder.pixels().begin(), found.remainder.pixels().end()) == 0.5f);
         CHECK(*std::min_element(found.remainder.pixels().begin(), found.remainder.pixels().end()) ==
               doctest::Approx(0.3f));
@@ -233,7 +233,8 @@ TEST_CASE("extract_lights: a sun on the seam and at the poles") {
         CHECK(angle_deg(found.lights[0].direction, towards) < 0.05);
         CHECK(close(found.lights[0].irradiance.y, 1000 * disc_solid_angle(2), 0.02));
         CAPTURE(found.lights[0].angular_diameter_deg);
-        // Three texels wide; centred on a pole, where texels are rings, the correction for their width is least true.
+        // A light three texels wide, centred on a pole: there the texels are rings, and the correction for their width
+        // is least accurate.
         CHECK(close(found.lights[0].angular_diameter_deg, 2, std::abs(towards.y) == 1 ? 0.12 : 0.06));
         CHECK(*std::max_element(found.remainder.pixels().begin(), found.remainder.pixels().end()) <= 0.3f);
     }
@@ -332,7 +333,7 @@ TEST_CASE("extract_lights: the faint edge of a source goes with it, across a pol
     ImageF image = constant(64, {1, 1, 1});
     for (int c = 0; c < 3; ++c) {
         image.at(30, 20)[c] = 1e5f;
-        image.at(31, 20)[c] = 1.3f;  // as an edge that covers a little of a texel
+        image.at(31, 20)[c] = 1.3f;  // like an edge that covers a small part of a texel
     }
     const LightExtraction edge = extract(image);
     REQUIRE(edge.lights.size() == 1);
@@ -355,7 +356,7 @@ TEST_CASE("extract_lights: a dark ring that an encoding left around a source goe
             const double away = angle_deg(latlong_direction({(x + 0.5) / 256, (y + 0.5) / 128}), towards);
             float* p = image.at(x, y);
             if (away < 4.5) p[0] = p[1] = p[2] = 0;
-            if (away < 2) p[0] = 900, p[1] = 100;  // red, and without the blue of what is around
+            if (away < 2) p[0] = 900, p[1] = 100;  // red, without the blue of its surroundings
         }
     const LightExtraction found = extract(image);
     check_sound(image, found);
@@ -381,7 +382,7 @@ TEST_CASE("extract_lights: a pane among panes is no light, the same pane alone i
 }
 
 TEST_CASE("harmonic_fill: finds the harmonic function that its rim belongs to") {
-    // tan(theta / 2) e^(i phi) is the stereographic map, whose real part solves Laplace's equation on the sphere away
+    // tan(θ / 2) e^(i φ) is the stereographic map, whose real part solves Laplace's equation on the sphere away
     // from -Y.
     const int w = 256, h = 128;
     const TexelSphere sphere(w, h);
@@ -403,7 +404,7 @@ TEST_CASE("harmonic_fill: finds the harmonic function that its rim belongs to") 
             for (int c = 0; c < 3; ++c) image.at(sphere.column(t), sphere.row(t))[c] = 0;
         harmonic_fill(sphere, region, image.view());
         for (int c = 0; c < 3; ++c) {
-            if (c == 2 && elevation > 60) continue;  // a singularity within
+            if (c == 2 && elevation > 60) continue;  // the singularity lies within
             double error = 0, least = 1e9, most = -1e9;
             for (const std::int64_t t : region) {
                 const double value = truth.at(sphere.column(t), sphere.row(t))[c];
@@ -443,7 +444,7 @@ TEST_CASE("extract_lights: directions are the world's, the remainder stays as th
     const Vec3d towards = at_angles(20, 30);
     add_disc(image, towards, 3, {900, 900, 900});
     const LightExtraction plain = extract(image);
-    // Light turned by +90 degrees about Y arrives from 90 degrees further on.
+    // Light turned by +90 degrees about Y arrives from a direction 90 degrees further.
     const LightExtraction turned = extract(image, {}, rotation_y(k_pi / 2).transposed());
     REQUIRE((plain.lights.size() == 1 && turned.lights.size() == 1));
     CHECK(angle_deg(turned.lights[0].direction, at_angles(110, 30)) < 0.05);

@@ -70,7 +70,7 @@ TEST_CASE("estimate_reflection: every strategy agrees with the exact irradiance 
             INFO(strategy_name(strategy) << " at " << normal.x << " " << normal.y << " " << normal.z << ": "
                                          << e.radiance.y << " +- " << e.standard_error.y << ", exact " << truth.y);
             CHECK(largest_deviation(e, truth) < 4.5);  // 7e-6 for one, two-sided; 60 numbers
-            // And it says something: the interval is narrow.
+            // The check is meaningful, because the interval is narrow.
             CHECK(e.standard_error.y / truth.y < most_error);
         };
         check(Strategy::uniform, *sampler, 0.08);
@@ -169,7 +169,7 @@ TEST_CASE("sample_product: draws in proportion to the product, and nothing where
     std::vector<UnitPoint> candidates(16);
     for (int i = 0; i < 16; ++i) candidates[i] = random_point(1, i);
     CHECK(sample_product(*sampler, [](const LightSample&) { return 0.f; }, candidates, {5, 0}).pdf_solid_angle == 0);
-    // A target that is the density itself leaves nothing to choose: the result has the sampler's own density.
+    // If the target equals the density, resampling changes nothing: the result has the density of the sampler.
     const LightSample s =
         sample_product(*sampler, [](const LightSample& l) { return l.pdf_solid_angle; }, candidates, {7u << 20, 0});
     CHECK(s.pdf_solid_angle == doctest::Approx(sampler->pdf_solid_angle(s.direction)).epsilon(1e-4));

@@ -93,7 +93,7 @@ TEST_CASE("sequences: permute is a permutation, and any is as likely") {
         const std::vector<double> expected(all, double(trials) / double(all));
         CHECK(chi_square_p_value(observed, expected) > 1e-4);
     }
-    // Where pairs of neighbours go among 11
+    // The positions of pairs of neighbours among 11 elements
     std::vector<double> observed(121);
     for (int t = 0; t < 110000; ++t) {
         const std::uint64_t key = derive_key(2, std::uint64_t(t));
@@ -155,7 +155,7 @@ TEST_CASE("sequences: Sobol points are (0, m, 2)-nets, scrambled or not") {
                     CHECK(fullest_interval(set, m) == 1);
                 }
     }
-    // and random points are not, so the test can tell
+    // random points are not, which shows that the test can fail
     CHECK(fullest_interval(points(Sequence::random, 1, 1024), 10) > 1);
 }
 
@@ -169,11 +169,11 @@ TEST_CASE("sequences: Owen scrambling keeps common prefixes and spreads what fol
             const std::uint32_t differ = s ^ t;
             CHECK((bit == 0 || differ >> (32 - bit) == 0));
             CHECK(((differ >> (31 - bit)) & 1) == 1);
-            if (bit < 31) ++flips[(differ >> (30 - bit)) & 1];  // the next bit is flipped alike or not, half and half
+            if (bit < 31) ++flips[(differ >> (30 - bit)) & 1];  // the next bit is flipped alike in half of the cases
         }
         if (bit < 31) CHECK(chi_square_p_value(flips, std::vector<double>{1000, 1000}) > 1e-5);
     }
-    // Whether a bit is flipped is as good as independent between different bits above it: 2 x 2 cells each over seeds,
+    // Whether a bit is flipped is nearly independent for different values of the bits above it: 2 x 2 cells over seeds,
     // 24 x 8 tests
     double least = 1;
     for (int bit = 1; bit <= 24; ++bit)
@@ -203,7 +203,7 @@ TEST_CASE("sequences: scrambled Halton keeps its elementary intervals") {
 }
 
 TEST_CASE("sequences: Halton's digits are permuted by permutations of their own, and random after the last") {
-    // Base 3: second digits of 0.00.. and 0.10.., and what follows the 16 digits that count
+    // Base 3: the second digits of 0.00.. and 0.10.., and the digits after the 16 that are scrambled
     std::vector<double> digits(9), rest(16);
     for (std::uint64_t key = 0; key < 9000; ++key) {
         const auto second = [&](std::uint32_t index) {
@@ -251,8 +251,8 @@ TEST_CASE("sequences: every point is uniform in the square over the seeds") {
 }
 
 TEST_CASE("sequences: pairs of dimensions are independent") {
-    // One coordinate of one pair against one of another, along the sequence: 4096 points in 16 x 16 cells. Low
-    // discrepancy may make the cells more even than chance, never less.
+    // One coordinate of one pair against one of another, along the sequence: 4096 points in 16 x 16 cells. The cells of
+    // low-discrepancy points may be more even than those of random points, but not less.
     for (Sequence sequence : k_all)
         for (std::uint32_t other : {1u, 2u, 17u}) {
             std::vector<double> observed(256), same_axis(256);
@@ -271,7 +271,7 @@ TEST_CASE("sequences: pairs of dimensions are independent") {
                           sequence_name(sequence), " ", other);
             CHECK(std::abs(correlation) < 4.5 / std::sqrt(count));
         }
-    // Different seeds of the same pair, too, but for the sequences that only turn
+    // The same for different seeds of one pair, except for the sequences that are only rotated
     for (Sequence sequence : {Sequence::random, Sequence::stratified, Sequence::sobol}) {
         std::vector<double> observed(256);
         for (std::uint32_t i = 0; i < 4096; ++i)
@@ -367,7 +367,7 @@ TEST_CASE("sequences: any argument is valid, and names are found again") {
         CHECK(sequence_from_name(sequence_name(sequence)) == sequence);
     }
     CHECK_FALSE(sequence_from_name("owen"));
-    // Beyond its count a set goes on with another randomisation of itself
+    // Beyond its count a set continues with another randomisation of itself
     CHECK(unit_point(Sequence::stratified, 3, 16, 16) != unit_point(Sequence::stratified, 3, 0, 16));
     CHECK(unit_point(Sequence::hammersley, 3, 16, 16) != unit_point(Sequence::hammersley, 3, 0, 16));
     CHECK(unit_point(Sequence::sobol, 3, 16, 16) == unit_point(Sequence::sobol, 3, 16, 99));

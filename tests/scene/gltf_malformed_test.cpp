@@ -71,7 +71,7 @@ TEST_CASE("gltf malformed: indices past the vertices, and accessors of nothing")
     GltfSample restart = indexed();
     for (int i = 0; i < 4; ++i) restart.data[std::size_t(36 + i)] = 0xff;
     CHECK(contains(error_of(restart.load()), "index 4294967295"));
-    // Zeros that no data stands behind may not be many.
+    // Accessors of zeros without data may not be large.
     GltfSample zeros = indexed();
     zeros.json["accessors"][0].erase("bufferView");
     zeros.json["accessors"][0]["count"] = std::uint64_t(1) << 40;
@@ -97,7 +97,7 @@ TEST_CASE("gltf malformed: nodes in a circle, with two parents, and very deep on
     const auto scene = deep.load();
     REQUIRE_MESSAGE(scene, error_of(scene));
     CHECK(scene->instances[0].to_world.translation.x == 50000);
-    // Places that leave the range of float are left out.
+    // Transforms beyond the range of float are left out.
     GltfSample far = indexed();
     far.json["nodes"] = {
         {{"scale", {1e30, 1, 1}}, {"children", {1}}}, {{"scale", {1e30, 1, 1}}, {"mesh", 0}}, {{"mesh", 0}}};
@@ -105,7 +105,7 @@ TEST_CASE("gltf malformed: nodes in a circle, with two parents, and very deep on
     REQUIRE_MESSAGE(mended, error_of(mended));
     CHECK(mended->instances.size() == 1);
     CHECK(warns(*mended, "their place is not finite"));
-    // A flat scale is none of these.
+    // A scale of 0 in one direction is not an error.
     GltfSample flat = indexed();
     flat.json["nodes"][0]["scale"] = {1, 1, 0};
     CHECK(error_of(flat.load()) == "loaded");
@@ -144,7 +144,7 @@ TEST_CASE("gltf malformed: instances are counted, and the same place is taken on
     REQUIRE_MESSAGE(scene, error_of(scene));
     CHECK(scene->instances.size() == 3);
     CHECK(warns(*scene, "7 instances left out: the same mesh stands in exactly the same place"));
-    // A flattened mesh gets triangles of its own, which count.
+    // A flattened instance gets triangles of its own, which count towards the limit.
     for (Json& node : sample.json["nodes"]) node["scale"] = {1, 1, 0};
     CHECK(contains(error_of(sample.load({.max_bytes = 3000})), "instances would take the scene over the limit"));
 

@@ -169,7 +169,7 @@ TEST_CASE("gltf material: images by uri, by buffer view and by WebP, and those t
     GltfSample nothing = sample;
     nothing.json["images"][0] = Json::object();
     CHECK(contains(error_of(nothing.load()), "images[0]: names neither or both"));
-    // A texture whose image is only there in a format that is not read.
+    // A texture whose image exists only in a format that is not read.
     GltfSample basis = sample;
     basis.json["textures"][0] = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
     scene = basis.load();

@@ -234,7 +234,7 @@ TEST_CASE("gltf: a skin at rest is its joints' matrices times the inverse bind m
     sample.add("nodes", {{"translation", {0, 10, 0}}, {"children", {1}}});
     sample.add("nodes", {{"translation", {1, 0, 0}}, {"rotation", {0, -k_half, 0, k_half}}});
     sample.add("skins", {{"joints", {0, 1}}, {"inverseBindMatrices", bind}});
-    // Where the node itself is does not matter.
+    // The position of the node itself does not matter.
     sample.show(std::move(primitive), {{"skin", 0}, {"translation", {100, 100, 100}}});
     const auto scene = sample.load();
     REQUIRE_MESSAGE(scene, error_of(scene));
@@ -336,7 +336,7 @@ TEST_CASE("gltf: the file says what one unit of irradiance is in lux, else the o
     Json& light = sample.json["extensions"]["KHR_lights_punctual"]["lights"][0];
     light["extras"]["lux_per_unit"] = 1;
     CHECK(intensity_in(sample, options) == doctest::Approx(100));
-    // Extras may hold anything: what is no scale is as good as missing.
+    // Extras may hold anything: a value that is not a scale counts as missing.
     for (const Json& other : {Json("bright"), Json(0), Json(-1), Json(nullptr), Json::array({1})}) {
         light["extras"]["lux_per_unit"] = other;
         CHECK(intensity_in(sample, options) == doctest::Approx(10));
@@ -409,7 +409,7 @@ TEST_CASE("gltf: Draco gives the triangles that were packed") {
         CHECK(scene->triangle_count() == 128);
         CHECK(scene->bounds().low == Vec3f{0, 0, 0});
         CHECK(scene->bounds().high == Vec3f{1, 1, 0.5f});
-        // The same surface, whatever the order of triangles: the sum of areas.
+        // The sum of the areas shows that the surface is the same in any order of the triangles.
         double area = 0, expected = 0;
         const std::vector<Vec3f> c = corners(*scene);
         for (std::size_t i = 0; i < c.size(); i += 3) area += length(cross(c[i + 1] - c[i], c[i + 2] - c[i]));
@@ -451,7 +451,7 @@ TEST_CASE("gltf: meshopt gives the numbers that were packed, through its filters
                           const char* filter) {
         const int real = sample.view(bytes);
         const Json from = sample.json["bufferViews"][std::size_t(real)];
-        // The view itself lies in a fallback buffer that holds nothing.
+        // The buffer view lies in a fallback buffer, which holds nothing.
         sample.json["bufferViews"][std::size_t(real)] = {{"buffer", 1},
                                                          {"byteLength", count * std::size_t(stride)},
                                                          {"extensions",
@@ -593,7 +593,7 @@ TEST_CASE("gltf: every real model loads") {
                 against += dot(cross(b - a, c - a), mesh.normals[mesh.indices[t]] + mesh.normals[mesh.indices[t + 1]] +
                                                         mesh.normals[mesh.indices[t + 2]]) < 0;
             }
-            CHECK(against * 50 <= mesh.indices.size() / 3);  // models are no saints: 2 %
+            CHECK(against * 50 <= mesh.indices.size() / 3);  // in real models a few triangles differ: 2 %
         }
     }
 }

@@ -19,7 +19,7 @@ TEST_CASE("obj: faces in all their notations, with negative indices and lines th
     CHECK(scene->instances[0].name == "first");
     CHECK(scene->meshes[0].triangle_count() == 2);
     CHECK(scene->meshes[0].normals.empty());
-    CHECK(scene->meshes[0].texcoords[0].empty());  // not every corner has them
+    CHECK(scene->meshes[0].texcoords[0].empty());  // only some corners have them
     CHECK(scene->meshes[1].normals == std::vector<Vec3f>(3, {0, 0, 1}));
     CHECK(scene->meshes[2].triangle_count() == 2);
     CHECK(scene->meshes[2].positions.size() == 4);
@@ -80,7 +80,7 @@ TEST_CASE("obj: materials become metallic-roughness") {
     const Material& paint = scene->materials[std::size_t(scene->meshes[1].material)];
     CHECK(paint.base_color == Vec3f{0.5f, 0.25f, 0.125f});
     CHECK(paint.metalness == 0);
-    CHECK(paint.roughness == doctest::Approx(0.5));  // alpha = sqrt(2 / 32) = 1/4
+    CHECK(paint.roughness == doctest::Approx(0.5));  // α = √(2 / 32) = 1/4
     CHECK(paint.specular_color == Vec3f{1, 1, 1});   // F0 = 0.08 Ks = 0.04
     CHECK((paint.opacity == 0.5f && paint.alpha_mode == Material::AlphaMode::blend));
     const Material& metal = scene->materials[std::size_t(scene->meshes[0].material)];
@@ -89,7 +89,7 @@ TEST_CASE("obj: materials become metallic-roughness") {
     CHECK(warns(*scene, "'unknown' is not defined"));
     CHECK(warns(*scene, "map_Bump is not read"));
     CHECK(warns(*scene, "approximated"));
-    // Neither libraries nor their images may lie elsewhere.
+    // Neither material libraries nor their images may lie outside the folder.
     std::ofstream(folder / "b.obj") << "mtllib ../a.mtl\n";
     CHECK(contains(error_of(load_scene(folder / "b.obj")), "leaves the folder"));
     std::ofstream(folder / "a.mtl") << "newmtl m\nmap_Kd -s 2 2 2 -clamp on ../../x y.png\n";

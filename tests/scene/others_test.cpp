@@ -11,7 +11,7 @@ using namespace domelight;
 
 namespace {
 
-/// Opens it as an environment and reads it to the end; the error's text, or "".
+/// Opens the file as an environment and reads it to the end. Returns the text of the error, or "".
 std::string outcome(const std::filesystem::path& file) {
     auto environment = open_environment({file});
     if (!environment) return environment.error().what;

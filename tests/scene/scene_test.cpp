@@ -21,7 +21,7 @@ TEST_CASE("scene: bounds and triangles count every instance") {
     CHECK(scene.triangle_count() == 2);
     CHECK(scene.bounds().low == Vec3f{0, 0, 0});
     CHECK(scene.bounds().high == Vec3f{10, 2, 3});
-    // A turned triangle whose box sticks out of the others, but not the triangle itself.
+    // A turned triangle whose own box extends beyond the bounds of the others, although the triangle itself does not.
     scene.instances.push_back({0, {{7, 7, 0}, {-7, 7, 0}, {0, 0, 1}, {7, -5.5f, 0}}, "c"});
     CHECK(scene.bounds().low == Vec3f{0, -5.5f, 0});
     CHECK(scene.bounds().high == Vec3f{14, 2, 3});
@@ -31,7 +31,7 @@ TEST_CASE("scene: an affine map turns normals as planes, and products apply the 
     const Affine a{{2, 0, 0}, {0, 0, 1}, {1, 3, 0}, {5, 6, 7}}, b{{0, 1, 0}, {-1, 0.5f, 0}, {0, 0, 4}, {1, 1, 1}};
     const Vec3f p{0.3f, -0.7f, 2};
     CHECK(length((a * b).point(p) - a.point(b.point(p))) < 1e-5f);
-    // A normal stays perpendicular to the plane's directions, and on the same side.
+    // A normal remains perpendicular to the plane, and on the same side.
     const Vec3f u{1, 2, 0.5f}, v{-1, 0, 3}, n = cross(u, v);
     CHECK(std::abs(dot(a.normal(n), a.vector(u))) < 1e-4f);
     CHECK(std::abs(dot(a.normal(n), a.vector(v))) < 1e-4f);
@@ -66,7 +66,7 @@ TEST_CASE("built-in scenes: closed, facing outwards, in front of their camera") 
             for (const Vec3f& n : mesh.normals) off = std::max(off, std::abs(length(n) - 1));
             CHECK(off < 1e-6f);
         }
-        // What the camera looks at is the middle of the object.
+        // The camera looks at the middle of the object.
         const Affine& view = scene->cameras[0].to_world;
         CHECK(length(cross(view.x, view.y) - view.z) < 1e-6f);
         const Vec3f middle = scene->meshes[0].positions.empty() ? Vec3f{} : scene->instances[0].to_world.translation;

@@ -95,7 +95,7 @@ sl::Plane plane(const std::filesystem::path& file, bool repeat = true) {
     return plane(std::move(levels), repeat);
 }
 
-/// A light that differs in all directions, so gently that what bilinear lookups leave is less than 0.3 %.
+/// A light that differs in all directions, and is so smooth that the error of bilinear lookups is less than 0.3 %.
 ImageF gentle_light() {
     ImageF image(128, 64, 3);
     for (int y = 0; y < 64; ++y)
@@ -165,7 +165,7 @@ TEST_CASE("shaders: each environment matrix of the table finds a direction in fi
                 {"default", half_turn, z_up_to_y_up},
                 {"mod", k_mod, {}},
                 {"default", k_default, {}},
-                // A light that the world turns.
+                // A light that is turned with the world.
                 {"default", k_default * rotation_y(0.7).transposed(), rotation_y(0.7).transposed()}};
     for (const auto& row : rows) {
         s::u_environment = to_shader(row.environment);
@@ -209,8 +209,8 @@ TEST_CASE("shaders: sampleEnvmap draws what the sampler's walk draws, and its me
         CHECK(length(from_shader(light.direction) - expected.direction) < 2e-3);
         drawn += near(from_shader(light.radiance), expected.radiance, k_rounding);
     }
-    CHECK(drawn >= 998);  // sums in float and in double part at a texel's very edge
-    // What rounding leaves at both ends of the unit square still has light.
+    CHECK(drawn >= 998);  // at the very edge of a texel, sums in float and in double may find different texels
+    // The ends of the unit square still give texels with light, in spite of rounding.
     for (const float x : {0.f, 0x1.fffffep-1f})
         for (const float y : {0.f, 0x1.fffffep-1f}) {
             CHECK(length(s::sampleEnvmap({x, y}).radiance) > 0);

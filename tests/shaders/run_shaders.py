@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compiles the shaders of docs/shaders with whatever compilers are here; says what it skips."""
+"""Compiles the shaders of docs/shaders with the compilers that are installed, and prints which ones it skips."""
 
 import pathlib
 import shutil
@@ -57,7 +57,7 @@ def skip(name, reason):
 
 def compile_with(name, words, broken=False):
     process = subprocess.run([str(w) for w in words], capture_output=True, text=True)
-    if broken:  # a compiler that accepts everything proves nothing
+    if broken:  # a compiler that accepted everything would prove nothing
         process.returncode = 0 if process.returncode else 1
     report(name, process)
 

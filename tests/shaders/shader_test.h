@@ -1,5 +1,5 @@
 #pragma once
-// What the tests of docs/shaders share: values on their way to a shader and back, and a surface for the C++.
+// Helpers of the tests of docs/shaders: conversions of values to those of a shader and back, and a surface for the C++.
 
 #include "domelight/base/vec.h"
 #include "domelight/scene/scene.h"
@@ -29,7 +29,7 @@ inline bool near(const Vec3f& a, const Vec3f& b, float tolerance) {
     return length(a - b) <= tolerance * length(b);
 }
 
-/// What a rounding of each operation to float leaves.
+/// The error of rounding each operation to float.
 constexpr float k_rounding = 2e-5f;
 
 /// glTF's metallic-roughness material.

@@ -48,9 +48,10 @@ TEST_SUITE("study") {
         const Vec3d at = latlong_direction({(x + 0.5) / width, (y + 0.5) / height});
         double lamp = 0;
         for (int i = -1; i <= 1; ++i) lamp += 3 * 499.5 * latlong_solid_angle(y + i, width, height);
-        // The mean comes out of the prefilter, which is exact to about 1e-4.
+        // The mean is computed by the prefilter, which is exact to about 1e-4.
         CHECK(survey->mean_radiance.y == doctest::Approx(0.5 + lamp / (4 * k_pi)).epsilon(1e-4));
-        // The even light gives pi / 2 on every side, the lamp its power times the cosine; it is small, not a point.
+        // The even light gives π/2 on every side, the lamp its power times the cosine. The tolerance is for the lamp's
+        // size: it is not a point.
         const double cosines[6] = {at.x, -at.x, at.y, -at.y, at.z, -at.z};
         for (int f = 0; f < 6; ++f)
             CHECK(survey->irradiance[std::size_t(f)].x ==
@@ -84,7 +85,7 @@ TEST_SUITE("study") {
         options.strategies = {"cosine", "mis-balance"};
         const auto study = study_strategies(sampler, options);
         REQUIRE(bool(study));
-        CHECK(study->strategies.size() == 3);  // environment always runs
+        CHECK(study->strategies.size() == 3);  // the strategy "environment" is always run
         REQUIRE(study->find("cosine"));
         CHECK(study->find("cosine")->expected_error() > 3 * study->find("environment")->expected_error());
         CHECK(study->efficiency_ratio("environment", "environment") == 1);

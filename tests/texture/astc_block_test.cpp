@@ -24,7 +24,7 @@ TEST_CASE("astc_ise: numbers come back from every range, whatever their count") 
             ise_encode(range, numbers, bits, 17);
             ise_decode(range, bits, 17, back);
             CHECK(back == numbers);
-            // Nothing outside of the bits that they take.
+            // Bits outside of those that they occupy are not touched.
             CHECK(bits.get(0, 17) == 0);
             for (int at = 17 + range.size(count); at < 128; ++at) CHECK(bits.get(at, 1) == 0);
         }
@@ -63,7 +63,7 @@ TEST_CASE("astc_ise: colours of a range are spread over 0 to 255") {
 }
 
 TEST_CASE("astc_partition: the common seeds draw BC6H's patterns") {
-    // In BC6H's order; the five that ASTC has not are left out. Which of the two subsets is the first may differ.
+    // In the order of BC6H, without the five that ASTC does not have. Which of the two subsets is the first may differ.
     constexpr int k_of_bc6h[k_uastc_partitions] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13,
                                                    14, 15, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 29};
     for (int k = 0; k < k_uastc_partitions; ++k) {
@@ -118,7 +118,7 @@ TEST_CASE("astc_block: bytes of any kind are refused or decode as Arm's decoder 
     for (int i = 0; i < 20000; ++i) {
         std::array<std::uint8_t, 16> bytes;
         for (auto& byte : bytes) byte = std::uint8_t(noise.below(256));
-        // Steer some to the forms that are known here.
+        // Some are changed so that the forms known here occur.
         if (i % 2) bytes[0] = std::uint8_t(0x40 | (bytes[0] & 0x13)), bytes[1] = std::uint8_t(bytes[1] & 0xea);
         const auto block = unpack_astc(bytes);
         if (!block) continue;

@@ -46,7 +46,7 @@ std::vector<std::uint8_t> encoded(const std::vector<float>& texels, EncodingQual
     return blocks;
 }
 
-/// Sum of squared differences of half floats' bits: what the encoder minimises.
+/// Sum of the squared differences of the bits of half floats, which the encoder minimises.
 double bit_error(const float* a, const float* b, int count) {
     double sum = 0;
     for (int i = 0; i < count; ++i) {
@@ -201,7 +201,7 @@ TEST_CASE("bc6h: each quality is at least as good as the one below, and no worse
         const std::vector<float> texels = many_blocks(count, 9), back = decoded(encoded(texels, quality));
         total.push_back(bit_error(texels.data(), back.data(), compared * 48));
         for (int b = 0; b < count; ++b) {
-            // One colour, the mean of the bits, is within reach of mode 14.
+            // Mode 14 can represent a single colour, the mean of the bits.
             double flat = 0;
             for (int c = 0; c < 3; ++c) {
                 double mean = 0, square = 0;
@@ -236,7 +236,7 @@ TEST_CASE("bc6h: texels on any line of colours, up or down in each channel, are 
     constexpr int k_lines = 200;
     for (int i = 0; i < k_lines; ++i) {
         // In half floats' bits, which the format interpolates: 16 even steps over up to two stops, in any order; the
-        // channels' changes add up to nothing, so that no fixed direction would do.
+        // channels' changes add up to nothing, so that no fixed direction would fit.
         float middle[3], span[3];
         for (int c = 0; c < 3; ++c) middle[c] = 8000 + 12000 * noise(state), span[c] = 2000 * (noise(state) - 0.5f);
         span[2] = -span[0] - span[1];
@@ -289,7 +289,7 @@ TEST_CASE("bc6h: textures of any size, what is out of range clipped and counted"
 }
 
 TEST_CASE("bc6h: real environments, the default within half a decibel of the exhaustive search") {
-    // Of each environment some blocks from all over it, as one strip.
+    // Some blocks from all over each environment, as one strip.
     for (const char* name : {"env_latlong/studio_small_03_1k.hdr", "env_latlong/blocky_photo_studio_1k.hdr",
                              "env_latlong/forest_slope_1k.hdr"}) {
         const auto data = data_folder();

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int k_size = 8;
 
-/// A smooth function of direction: a different value wherever one looks.
+/// A smooth function of direction, with a different value in every direction.
 void colour_of(const Vec3d& direction, float* rgb) {
     const Vec3d d = normalize(direction);
     rgb[0] = float(2 + d.x), rgb[1] = float(2 + d.y), rgb[2] = float(2 + d.z);
@@ -32,7 +32,7 @@ Bytes as_hdr(const ImageF& image) {
     return file;
 }
 
-/// How far a cube is from colour_of at its texels' centres.
+/// The largest difference between a cube and colour_of at the centres of its texels.
 double error_of(const Cubemap& cube) {
     double largest = 0;
     for (int f = 0; f < 6; ++f)
@@ -74,8 +74,8 @@ constexpr double k_rgbe_step = 1.0 / 64;  // mantissas are cut off, not rounded
 
 TEST_CASE("cube reader: crosses are unfolded so that the picture continues across every joint") {
     TemporaryFolder folder;
-    // Told by geometry alone: walking right from +Z comes to +X, then -Z, then -X; up from +Z lies +Y, down lies -Y,
-    // and on down -Z.
+    // The faces follow from geometry alone: to the right of +Z are +X, −Z and −X in turn; above +Z is +Y, below it −Y
+    // and then −Z.
     const auto cross = [](bool vertical) {
         return [vertical](int column, int row, double s, double t) -> std::optional<Vec3d> {
             if (row == 1 && column == 0) return Vec3d{-1, -t, s};

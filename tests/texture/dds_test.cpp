@@ -175,7 +175,7 @@ TEST_CASE("dds: RGBM and its like are RGBA bytes, which mean what one says they 
         const auto back = read_texture(file, encoding_name(encoding));
         REQUIRE(back);
         CHECK(same_texels(*back, texture));
-        const auto screen = read_texture(file);  // sRGB where nothing is said
+        const auto screen = read_texture(file);  // sRGB if the file states nothing
         REQUIRE(screen);
         CHECK(screen->encoding == Encoding::rgba16f);
         const std::uint8_t red = texture.levels[1][4];
@@ -210,7 +210,7 @@ std::vector<std::uint8_t> old_dds(const std::array<std::uint32_t, 7>& pixel_form
 /// Texel (x, y) as 8-bit numbers.
 std::array<int, 4> screen_texel(const std::vector<std::uint8_t>& bytes, int x, int y) {
     MemorySource source(bytes);
-    const auto texture = dds_texture(source, "rgbm");  // which hands the bytes on as they are
+    const auto texture = dds_texture(source, "rgbm");  // which returns the bytes unchanged
     REQUIRE(texture);
     const std::uint8_t* p = texture->levels[0].data() + 4 * (4 * y + x);
     return {p[0], p[1], p[2], p[3]};

@@ -67,7 +67,7 @@ TEST_CASE("encode_texture: decoding gives back what the encoding can hold") {
             case Encoding::rgbd:
                 return 1 / 110.0 / std::sqrt(std::min(largest, 1.0));
             case Encoding::bc6h:
-                return 1.0;  // noise is what blocks cannot hold; see bc6h_test.cpp
+                return 1.0;  // blocks cannot represent noise; see bc6h_test.cpp
             default:
                 return std::exp2(-11);
         }
@@ -221,9 +221,9 @@ TEST_CASE("encode_row: the fast rows agree with the plain ones") {
             CHECK(b.error == doctest::Approx(a.error).epsilon(1e-4));
             CHECK(b.norm == doctest::Approx(a.norm).epsilon(1e-5));
             CHECK(b.log_norm == doctest::Approx(a.log_norm).epsilon(1e-5));
-            CHECK(b.log_error == doctest::Approx(a.log_error).epsilon(1e-3));  // vectors have a logarithm of their own
+            CHECK(b.log_error == doctest::Approx(a.log_error).epsilon(1e-3));  // the vector code has its own logarithm
         }
-    // What blocks compare with: texels that come back a little off.
+    // The texels as they would be decoded, with a small error.
     std::vector<float> stored(rgb.size());
     for (std::size_t i = 0; i < rgb.size(); ++i) stored[i] = limit_to(rgb[i], 0, 65504) * (0.9f + 0.2f * noise(state));
     for (int count : {0, 5, 16, 1031}) {

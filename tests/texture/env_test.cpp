@@ -179,7 +179,7 @@ TEST_CASE("env: a picture that promises more than its bytes can hold is refused 
 }
 
 TEST_CASE("babylon_polynomial: what Babylon makes of it is E / pi of the light, in its mirrored world") {
-    // An environment of the first three bands, whose irradiance is known by quadrature alone.
+    // An environment of the first three bands only, whose irradiance is found by quadrature.
     std::vector<Vec3d> radiance(9);
     for (int i = 0; i < 9; ++i) radiance[std::size_t(i)] = {1 / (1.0 + i), std::sin(i + 1.0), 2.0 - 0.3 * i};
     const QuadraticPolynomial p = babylon_polynomial(radiance);
@@ -196,7 +196,7 @@ TEST_CASE("babylon_polynomial: what Babylon makes of it is E / pi of the light, 
                         p.zx * (1.16538 * pi),
                         (p.xx * 1.16538 - p.yy * 1.16538) * pi};
     for (const Vec3d& n : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, normalize(Vec3d{1, -2, 0.5}), normalize(Vec3d{-1, 1, 3})}) {
-        // E / pi by the midpoint rule over the sphere; its error is some (pi / 200)^2.
+        // E / π by the midpoint rule over the sphere; its error is some (π / 200)^2.
         const int rows = 200;
         Vec3d truth;
         for (int y = 0; y < rows; ++y)
@@ -248,7 +248,7 @@ TEST_CASE("env: Babylon's shader finds every direction's light, and so do we on 
     CHECK(opened->format == "Babylon .env");
     CHECK(worst_direction(*opened->cube(), [](const Vec3d& d) { return d; }) < 0.03);
     CHECK(opened->report().warnings.empty());
-    // Diffuse light: its linear part points where the light does, half a sphere's mean of it.
+    // Diffuse light: the linear part of the polynomial points in the direction of the light.
     const Vec3d x = env->irradiance->x;
     CHECK(x.x == doctest::Approx(-4.0 / 9).epsilon(0.01));
     CHECK(std::abs(x.y) < 1e-3);
@@ -266,7 +266,7 @@ TEST_CASE("env: Babylon's own file shows its source, in the convention that Baby
     REQUIRE(opened);
     const auto image = read_latlong(**opened->rows());
     REQUIRE(image);
-    // Correlation of logarithms, 16 x 16 means a face, which sun and clipping do not decide.
+    // The correlation of the logarithms of 16 x 16 means in each face, which the sun and clipping hardly affect.
     double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0, n = 0;
     const int block = theirs->cube()->size() / 16;
     for (int f = 0; f < 6; ++f)

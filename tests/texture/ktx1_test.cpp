@@ -113,8 +113,8 @@ TEST_CASE("ktx1: Filament's own files") {
     CHECK(info->faces == 6);
     const auto texture = read_texture(file);
     REQUIRE(texture);
-    // The first harmonic in its metadata is the mean radiance; so is that of the roughest level, nearly
-    // (texels are not weighed by solid angle here).
+    // The first harmonic in its metadata is the mean radiance, and nearly that of the roughest level (texels are not
+    // weighed by solid angle here).
     std::istringstream sh(texture->metadata.at("sh"));
     double mean[3];
     sh >> mean[0] >> mean[1] >> mean[2];

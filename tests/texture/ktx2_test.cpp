@@ -204,7 +204,7 @@ TEST_CASE("ktx2: headers that promise too much are refused before memory is take
     const auto texture = ktx2_texture(source);
     REQUIRE(!texture);
     CHECK(texture.error().what == "level 0 holds another number of bytes than its size needs");
-    // The same in a frame that keeps its size to itself: one block, a byte repeated 1024 times.
+    // The same in a frame that does not state its size: one block, a byte repeated 1024 times.
     const std::vector<std::uint8_t> frame{0x28, 0xb5, 0x2f, 0xfd, 0x00, 0x00, 0x03, 0x20, 0x00, 0x55};
     changed.resize(u64(changed, 80));
     changed.insert(changed.end(), frame.begin(), frame.end());

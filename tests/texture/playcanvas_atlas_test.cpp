@@ -88,7 +88,7 @@ TEST_CASE("resize_latlong: power is kept, a constant stays constant, means are t
     std::fill(constant.pixels().begin(), constant.pixels().end(), 3.5f);
     const ImageF resized = resize_latlong(constant.view(), 6, 5);
     for (const float v : resized.pixels()) CHECK(v == doctest::Approx(3.5f).epsilon(1e-6));
-    // Two by two texels: rows weigh by their solid angles.
+    // Two by two texels, weighted by the solid angles of their rows.
     const ImageF half = resize_latlong(image.view(), 32, 16);
     const double w0 = latlong_solid_angle(2, 64, 32), w1 = latlong_solid_angle(3, 64, 32);
     const double expected = ((double(image.at(8, 2)[0]) + double(image.at(9, 2)[0])) * w0 +
@@ -115,7 +115,7 @@ TEST_CASE("playcanvas_atlas: every level shows every direction where the shader 
             worst = std::max(worst,
                              length(sample(atlas, shader_lookup(d, r.x, r.y, r.width, r.height)) - Vec3d{2, 2, 2} - d));
         }
-        // Bilinear between texels 2 pi / width apart, and some steps of the encoding.
+        // Bilinear between texels 2π / width apart, and some steps of the encoding.
         CHECK(worst < 1.5 * std::pow(2 * k_pi / r.width, 2) + 0.03);
     }
 }

@@ -9,7 +9,7 @@ using namespace domelight;
 
 namespace {
 
-/// One of the three with its decoder as the engines state it, in double.
+/// One of the three encodings, with its decoder in double as the engines define it.
 struct Form {
     const char* name;
     Rgba8 (*encode)(const Vec3f&);
@@ -33,7 +33,7 @@ double distance(const Vec3f& a, const Vec3f& b) {
     return length(a - b);
 }
 
-/// The least distance that any bytes decode to.
+/// The least difference between a value and what any bytes decode to.
 double best_distance(const Form& form, const Vec3f& rgb) {
     const float channel[3] = {rgb.x, rgb.y, rgb.z};
     double best = 1e30;

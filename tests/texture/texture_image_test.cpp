@@ -78,7 +78,7 @@ TEST_CASE("texture image: PNG and WebP give back the texels, alpha included") {
         const auto image = decode_texture_image(file);
         REQUIRE_MESSAGE(image, image.error().format());
         CHECK((image->width == 13 && image->height == 7));
-        // What is invisible may lose its colour on the way through WebP.
+        // Invisible texels may lose their colour in WebP.
         for (std::size_t i = 0; i < rgba.size(); i += 4)
             CHECK((image->rgba[i + 3] == rgba[i + 3] &&
                    (rgba[i + 3] == 0 || std::memcmp(&image->rgba[i], &rgba[i], 3) == 0)));

@@ -15,7 +15,7 @@ using namespace domelight::test;
 
 namespace {
 
-/// A chain of noise, with texels beyond every encoding's range and none of its own.
+/// A chain of noise, with texels beyond the range of every encoding.
 std::vector<FilteredMap> noise_chain(bool cube, int size, int levels) {
     std::vector<FilteredMap> chain(static_cast<std::size_t>(levels));
     std::uint32_t state = 11;

@@ -98,7 +98,7 @@ TEST_CASE("uastc_hdr: every block is one of the format's modes, and Arm's decode
     std::vector<float> theirs(rgb.size());
     decode_astc_hdr(4, bytes.data(), 3000, theirs.data());
     CHECK(ours == theirs);
-    // What the search knows of, it uses.
+    // The search uses all forms that it implements.
     for (const char* mode : {"mode 11, 1 subsets, 16 weights", "mode 11, 1 subsets, 12 weights",
                              "mode 7, 1 subsets, 16 weights", "mode 7, 2 subsets, 8 weights"})
         CHECK_MESSAGE(modes[mode] > 20, mode);
@@ -161,7 +161,7 @@ TEST_CASE("uastc_hdr: what cannot be held is clipped, and what is no number is b
     for (const float v : decoded(encoded(brightest))) CHECK(v == k_uastc_hdr_max);
     std::vector<float> darkest(48, 0.0f);
     for (const float v : decoded(encoded(darkest))) CHECK(v == 0);
-    // Next to the limit no end may round beyond it.
+    // Next to the limit, no endpoint may be rounded beyond it.
     test::Noise noise;
     std::vector<float> bright(48 * 500);
     for (float& v : bright) v = k_uastc_hdr_max * std::exp2(-0.05f * noise.unit());
@@ -175,7 +175,8 @@ TEST_CASE("uastc_hdr: one bright texel in the dark is neither lost nor spread") 
         std::vector<float> rgb(48, 0.01f);
         for (int c = 0; c < 3; ++c) rgb[std::size_t(3 * at + c)] = 5000;
         const auto back = decoded(encoded(rgb));
-        // So far apart, only the plain form of endpoints reaches: half of its steps of 1/8 octave, blue 1/4.
+        // Endpoints so far apart can only be stored in the plain form: the error is half of its steps of 1/8 octave, of
+        // 1/4 for blue.
         for (std::size_t t = 0; t < 48; ++t) CHECK(std::abs(std::log2(back[t] / rgb[t])) < 0.15);
     }
 }

@@ -27,7 +27,7 @@ inline std::string mode_name(const AstcBlock& block) {
            std::to_string(k_ise_ranges[std::size_t(block.weight_range)].levels) + " weights";
 }
 
-/// A valid block of the format, of mode `i` (of 24, over and over), its numbers random.
+/// A valid block of mode `i` (modulo 24) with random contents.
 inline AstcBlock random_uastc_block(Noise& noise, int i) {
     AstcBlock block;
     const int mode = i % 24;

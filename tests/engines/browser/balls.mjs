@@ -51,11 +51,11 @@ function writeGlb(path, radius, rings, balls) {
 
 const metal = roughness => ({pbrMetallicRoughness: {baseColorFactor: [1, 1, 1, 1], metallicFactor: 1, roughnessFactor: roughness}});
 const plastic = roughness => ({pbrMetallicRoughness: {baseColorFactor: [0.5, 0.5, 0.5, 1], metallicFactor: 0, roughnessFactor: roughness}});
-// An index of refraction of 1 and no specular weight: whichever of the two an engine knows, nothing but diffuse light is left.
+// An index of refraction of 1 and a specular weight of 0: whichever of the two an engine supports, only diffuse light is left.
 const lambert = {pbrMetallicRoughness: {baseColorFactor: [1, 1, 1, 1], metallicFactor: 0, roughnessFactor: 1},
                  extensions: {KHR_materials_ior: {ior: 1}, KHR_materials_specular: {specularFactor: 0}}};
 
-/// One mirror ball from a corner of the room: all six axes show in it. Radius 1 at the origin.
+/// One mirror ball of radius 1 at the origin, seen from a corner of the room, so that it shows all six axes.
 export const mirrorScene = {
     file: 'mirror.glb', width: 256, height: 256, fovDeg: 20, target: [0, 0, 0],
     eye: [1, 0.8, 1.3].map(x => 6 * x / Math.hypot(1, 0.8, 1.3)),
@@ -78,14 +78,14 @@ export const ballsScene = {
 
 export const writeScene = (folder, scene) => writeGlb(`${folder}/${scene.file}`, scene.radius, scene.rings, scene.balls);
 
-// What a pixel of a scene sees, by plain geometry.
+// What a pixel of a scene sees, computed by plain geometry.
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const add = (a, b, t) => [a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]];
 const unit = a => a.map(x => x / Math.hypot(...a));
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
-/// The ball at point (x, y) of the picture, in pixels from the upper left corner: {ball, normal, toEye, reflected}, or null beside all balls.
+/// The ball at point (x, y) of the picture, in pixels from the upper left corner: {ball, normal, toEye, reflected}, or null outside all balls.
 export function look(scene, x, y) {
     const forward = unit(add(scene.target, scene.eye, -1));
     const right = unit(cross(forward, [0, 1, 0])), up = cross(right, forward);

@@ -1,4 +1,4 @@
-// What each engine loads of a bake, and which level it should read: the tests' own statement of it, apart from src/engines/.
+// What each engine loads of a bake, and which level it should read. The tests state this independently of src/engines/.
 
 import {repaintAtlas, repaintEnv, repaintLevels, repaintUastcHdr} from './files.mjs';
 
@@ -11,10 +11,10 @@ const linear = (roughness, last) => last * roughness;
 
 const find = (names, end) => names.find(name => name.endsWith(end));
 
-// What a white metal shows of filtered light, where an engine's formula is simple enough to be said here. L(d, roughness) is the exactly filtered
-// radiance, E(d) the irradiance over pi.
+// What a white metal shows of filtered light, if an engine's formula is simple enough to be stated here. L(d, roughness) is the exactly filtered
+// radiance, E(d) the irradiance over π.
 
-/// Looks along a direction that leans to the normal with roughness^4.
+/// Looks up a direction that is bent towards the normal by a share of roughness^4.
 const leaning = (reflected, normal, roughness) => reflected.map((v, k) => v + (normal[k] - v) * roughness ** 4);
 
 const babylon = {
@@ -34,13 +34,13 @@ const babylon = {
 /// engine, picks      of `domelight bake --for`; the file among the bake's names that the entry is about, if the bake has it
 /// files              (url of the bake's folder, names, url of its source) => the argument of the page's `load`
 /// chain, repaint     the file whose levels are replaced by constants for the test of levels, and by what
-/// roughness          (the material's, step) => what the shader looks up; step: how far the normal turns from a pixel to the next
-/// level              (roughness, last level, size of level 0) => where it looks
-/// shown              (value there, {first, last, alpha, albedo}) => what it makes of it; first, last: the outer levels' values
+/// roughness          (the material's, step) => the roughness that the shader looks up; step: the angle between the normals of neighbouring pixels
+/// level              (roughness, last level, size of level 0) => the level that it reads
+/// shown              (value there, {first, last, alpha, albedo}) => what it shows; first, last: the values of the outer levels
 /// metal              what a white metal shows: ({L, E, normal, reflected, roughness, albedo}) => radiance
 /// tolerance, furnace of the balls' means under the sky; of white in white light
-/// plastics           false where the engine's plastics are nobody else's
-/// theirs             a bake by the engine's own tool, in DOMELIGHT_DATA, of a picture that we bake too: it must be turned and as bright alike
+/// plastics           false if the engine draws plastics differently from all others
+/// theirs             a bake by the engine's own tool, in DOMELIGHT_DATA, of a picture that we bake too: both must have the same orientation and brightness
 /// lights             whether its page loads the lights that `domelight lights` takes out of an environment
 /// axesOnly, slow     only its directions are tested; only with --all
 export const entries = [
@@ -57,9 +57,9 @@ export const entries = [
         files: (url, names) => ({pmrem: url + find(names, '.pmrem.ktx2')}),
         chain: names => find(names, '.pmrem.ktx2'), repaint: repaintUastcHdr,
         level: quadratic, lights: true,
-        // It widens roughness by the normal's change across the pixel, against sparkling.
+        // It increases the roughness by the change of the normal across the pixel, which prevents sparkling.
         roughness: (roughness, step) => Math.min(1, Math.max(roughness, 0.045) + step),
-        // What single scattering loses comes back as diffuse light, which is the last level.
+        // The energy that single scattering loses is added as diffuse light, taken from the last level.
         shown: (value, {last, albedo}) => albedo * value + (1 - albedo) * last,
         metal: ({L, E, normal, reflected, roughness, albedo}) => blend(albedo, L(leaning(reflected, normal, roughness), roughness), E(normal)),
         tolerance: 0.01, furnace: 0.01,
@@ -88,7 +88,7 @@ export const entries = [
         files: (url, names) => ({prefiltered: url + find(names, '.env')}),
         chain: names => find(names, '.env'), repaint: repaintEnv,
         ...babylon,
-        // The irradiance is the file's own polynomial, which stays the furnace's.
+        // The irradiance is the polynomial of the file, which is not replaced: it remains that of the furnace.
         shown: (value, {alpha}) => value + (1 - value) * alpha,
         // Its own tool cuts light at 4096 before it makes the polynomial, which Babylon mixes in: ours has the whole sun.
         theirs: {by: 'its own tool', latlong: 'usd', files: url => ({prefiltered: `${url}symmetrical_garden.env`}), brightness: 0.05},
@@ -104,7 +104,7 @@ export const entries = [
         chain: names => find(names, '.png'), repaint: repaintAtlas,
         level: roughness => 5 * roughness, roughness: asIs,
         metal: ({L, reflected, roughness}) => L(reflected, roughness),
-        plastics: false,  // it adds F0 whatever the angle and roughness
+        plastics: false,  // it adds F0 at every angle and roughness
         tolerance: 0.02, furnace: 0.01,
     },
     {

@@ -1,4 +1,4 @@
-// The few file formats that the tests read and write themselves, so that nothing of Domelight's own judges its files.
+// The file formats that the tests read and write themselves, so that Domelight's files are not checked by its own code.
 
 import fs from 'node:fs';
 import zlib from 'node:zlib';
@@ -48,7 +48,7 @@ export function writeConstantHdr(path, radiance = 1, width = 64) {
     fs.writeFileSync(path, Buffer.concat([header, ...Array(width / 2).fill(row)]));
 }
 
-/// The half float nearest to a positive number that has one.
+/// The half float nearest to a positive number in the range of half floats.
 export function toHalf(value) {
     if (value <= 0) return 0;
     const exponent = Math.max(-14, Math.floor(Math.log2(value)));
@@ -63,7 +63,7 @@ function toSmallFloat(value, bits) {
     return ((exponent + 14) << bits) + Math.round(value * 2 ** (bits - exponent));
 }
 
-// Texels of one grey, in the encodings that the files here have.
+// Texels of one grey, in the encodings that are used here.
 const greyTexel = {
     rgba16f: value => Buffer.from(Uint16Array.of(toHalf(value), toHalf(value), toHalf(value), 0x3c00).buffer),
     r11g11b10f: value => Buffer.from(Uint32Array.of((toSmallFloat(value, 6) | (toSmallFloat(value, 6) << 11) | (toSmallFloat(value, 5) << 22)) >>> 0).buffer),
@@ -73,7 +73,7 @@ const fillLevel = (bytes, at, length, texel) => {
     for (let k = 0; k < length; k += texel.length) texel.copy(bytes, at + k);
 };
 
-/// Where the levels of a cube's file lie: [{level, ranges: [[offset, length], ...]}], with its texels' encoding.
+/// The positions of the levels in a cube's file: [{level, ranges: [[offset, length], ...]}], with its texels' encoding.
 function cubeLevels(bytes) {
     const u32 = at => bytes.readUInt32LE(at);
     const levels = [];
@@ -172,7 +172,7 @@ export function repaintUastcHdr(from, to, value, {size = 64, count = 5} = {}) {
     return values;
 }
 
-// PNG, for what a person looks at.
+// PNG, for pictures that people look at.
 
 /// An 8-bit PNG of RGB or RGBA rows from the top.
 export function png(width, height, pixels, channels = 3) {

@@ -1,4 +1,4 @@
-// Files judged by readers that are not Domelight's: ktx-parse, parse-dds, OpenEXR's exrheader, the GPU's BC6H, Basis Universal.
+// Files read by programs other than Domelight: ktx-parse, parse-dds, OpenEXR's exrheader, the GPU's BC6H, Basis Universal.
 
 import fs from 'node:fs';
 import path from 'node:path';
@@ -77,7 +77,7 @@ export async function testFormats({claim, skip, domelight, work, modules, browse
         claim(`exrheader reads ${name}`, missing);
     }
 
-    // Blocks, decoded by others. Their floats, put into a KTX2 in RGBA32F, must be what Domelight reads in the blocks, texel by texel.
+    // Blocks decoded by other programs. Their floats, written into a KTX2 in RGBA32F, must equal what Domelight decodes, texel by texel.
     const page = await open(browser, server.url, 'blocks', log);
     const sameTexels = async (what, decoder, by, name) => {
         const levels = await call(page, decoder, {url: `/files/${name}`}), decoded = path.join(work, `${name}.decoded.ktx2`);

@@ -1,4 +1,4 @@
-// What is read off the pictures.
+// What is measured in the pictures.
 
 import {latlongPixel, look} from './balls.mjs';
 
@@ -10,7 +10,7 @@ const texel = (image, d) => {
     const at = 3 * (Math.min(image.height - 1, Math.floor(y)) * image.width + Math.floor(x) % image.width);
     return [image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]];
 };
-/// Bilinear, so for smooth pictures.
+/// Bilinear, so only for smooth pictures.
 function smooth(image, d) {
     const [x, y] = latlongPixel(image, d).map(v => v - 0.5);
     const left = Math.floor(x), top = Math.floor(y), u = x - left, v = y - top, sum = [0, 0, 0];
@@ -55,7 +55,7 @@ export function albedoOf(NdotV, roughness) {
     return albedos.get(key);
 }
 
-/// Replaces the white metals of a picture by what `metal` says of them. `light` is as `filteredLight` makes it; `widened` an engine's `roughness`.
+/// Replaces the white metals of a picture by the values of `metal`. `light` is as `filteredLight` makes it; `widened` an engine's `roughness`.
 export function drawMetals(scene, picture, light, metal, widened) {
     const step = 2 / scene.radius / scene.height;  // the picture is 4 units high
     const E = normal => light(normal, 1);  // at roughness 1 the lobe is the clamped cosine
@@ -99,7 +99,8 @@ export function findLabels(scene, environment, picture) {
         for (let x = 0; x < scene.width; ++x) {
             const seen = look(scene, x + 0.5, y + 0.5);
             if (!seen || seen.NdotV < 0.25) continue;
-            // A label's pixels are those that see it within 6 degrees; judged are those that see nothing else there, so not its rim and letters.
+            // The pixels of a label are those that see it within 6 degrees. Only those are compared that see nothing else, so neither its rim nor its
+            // letters.
             const d = seen.reflected, side = Math.abs(d[1]) < 0.9 ? [-d[2], 0, d[0]] : [0, d[2], -d[1]];
             const up = [side[1] * d[2] - side[2] * d[1], side[2] * d[0] - side[0] * d[2], side[0] * d[1] - side[1] * d[0]];
             const labels = [nearest(texel(environment, d), 0.05)];

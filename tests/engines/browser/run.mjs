@@ -1,4 +1,4 @@
-// Real engines load what the program bakes, in a headless browser, and are measured by their pictures. Called by run_browser.sh.
+// Real engines load the files that the program bakes, in a headless browser, and their pictures are measured. Called by run_browser.sh.
 //
 //   node run.mjs PROGRAM CHROMIUM MODULES WORK [--only NAME] [--all] [--sheet FILE]
 
@@ -19,7 +19,7 @@ const here = path.dirname(fileURLToPath(import.meta.url));
 
 let passed = 0, failed = 0, skipped = 0;
 
-/// Counts a claim. `wrong` lists what contradicts it; `measured` is what a reader wants to know when it holds.
+/// Counts a claim. `wrong` lists what contradicts it; `measured` is printed if the claim holds.
 function claim(what, wrong, measured = '') {
     if (wrong.length) {
         ++failed;
@@ -41,7 +41,7 @@ const filesIn = folder => fs.readdirSync(folder, {recursive: true}).filter(name 
 // The evening sky's brightest part then comes to 0.87: some engines' pictures end at 1.
 const exposure = environment => (environment === 'sky.hdr' ? ['--exposure', 1.3] : []);
 
-// What the help says that an option accepts: names between bars, or a table of a line each, indented deeper than the options.
+// The names that an option accepts, read from the help: between bars, or in a table with a line for each, which is indented deeper than the options.
 const help = domelight('bake', '--help');
 const accepted = option => new RegExp(`${option} ([a-z0-9-]+(?:\\|[a-z0-9-]+)+)`).exec(help)[1].split('|');
 const listed = option => {
@@ -116,7 +116,8 @@ async function testLevels(entry, page, bakeOf, load, furnace) {
     await call(page, 'load', load(copy));
     const picture = await shot(page, ballsScene);
     keep(`${entry.name}-levels`, picture);
-    // About the centre, where the normal turns by 1 / radius from pixel to pixel. Over the furnace, whatever else the material does cancels.
+    // About the centre, where the normal turns by 1 / radius from pixel to pixel. Dividing by the picture in the furnace cancels all other effects of
+    // the material.
     const seen = ballMeans(ballsScene, picture, 0.2), white = ballMeans(ballsScene, furnace, 0.2);
     const radius = ballsScene.radius * ballsScene.height / 4;
     const size = JSON.parse(fs.readFileSync(path.join(work, folder, 'manifest.json'))).specular?.levels?.[0]?.size;

@@ -3,7 +3,7 @@
 #
 #   run_browser.sh [--all] [--only NAME] [--sheet FILE]
 #
-# --all: also what takes minutes without a GPU (also with DOMELIGHT_BROWSER_ENGINES=all). Pictures: build/engines/work/pictures.
+# --all: also the engines that take minutes without a GPU (also with DOMELIGHT_BROWSER_ENGINES=all). Pictures: build/engines/work/pictures.
 set -uo pipefail
 here=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
 root=$(cd -- "$here/../../.." && pwd)
@@ -18,7 +18,7 @@ program=${DOMELIGHT_PROGRAM:-$root/build/dev/cli/domelight}
 folder=$root/build/engines
 mkdir -p "$folder"
 
-# What is missing of the browser and of Node, wherever the latter came from.
+# What the browser and Node lack, wherever Node was installed from.
 declare -A command_of=([chromium]=chromium [nodejs]=node [npm]=npm [openexr]=exrheader)
 wanted=()
 for package in "${engine_packages[@]}"; do
@@ -29,7 +29,7 @@ if [ ${#wanted[@]} -gt 0 ]; then
     apt_install "${wanted[@]}" || skip "no ${wanted[*]} to be had"
 fi
 
-# The engines, as the lock file says; again only when that changes.
+# Installs the engines of the lock file, and again only if that file changes.
 if ! cmp -s "$here/package-lock.json" "$folder/installed.json"; then
     rm -f "$folder/installed.json"
     cp "$here/package.json" "$here/package-lock.json" "$folder/"

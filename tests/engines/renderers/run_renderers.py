@@ -2,7 +2,7 @@
 """Mitsuba and Blender look up what `bake --for mitsuba` and `--for blender` wrote of the six-axis environment.
 
 Every direction must show the light that the environment has there: six square views, 90 degrees wide, along the axes. Needs PyPI's mitsuba (in the
-Python that runs this) and Debian's blender; what is missing is skipped with a word. DOMELIGHT_PICTURES names a folder to keep a mirror ball in.
+Python that runs this) and Debian's blender; a missing program is skipped, and the output says so. DOMELIGHT_PICTURES names a folder to keep a mirror ball in.
 """
 
 import math
@@ -44,7 +44,7 @@ def run(*words):
 
 
 def read_hdr(file):
-    """Rows of (r, g, b) of a Radiance file of new run lengths: an own reader, so that ours is not judged by itself."""
+    """Rows of (r, g, b) of a Radiance file of new run lengths: this reader is independent, so that the program's reader is not used to test itself."""
     data = file.read_bytes()
     at = data.index(b"\n\n") + 2
     end = data.index(b"\n", at)

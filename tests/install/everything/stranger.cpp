@@ -1,4 +1,4 @@
-// Uses an installed domelight as anyone would: the one header, a filter, a file.
+// Uses an installed domelight as any user would: the one header, a filter, a file.
 #include <domelight/domelight.h>
 
 #include <cstdio>

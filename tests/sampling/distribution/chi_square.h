@@ -11,14 +11,14 @@
 
 namespace domelight::test {
 
-/// Upper regularised incomplete gamma function Q(a, x) = Gamma(a, x) / Gamma(a); a > 0, x >= 0; in [0, 1], to about
+/// Upper regularised incomplete gamma function Q(a, x) = Gamma(a, x) / Gamma(a); a > 0, x ≥ 0; in [0, 1], to about
 /// 1e-12.
 ///
 /// Below x = a + 1 the series of P (DLMF 8.7.1), above it the continued fraction of Q (DLMF 8.9.2) by Lentz's method.
 inline double regularised_gamma_q(double a, double x) {
     if (!(x > 0)) return 1;
     const double scale = std::exp(a * std::log(x) - x - std::lgamma(a));
-    constexpr int k_terms = 1'000'000;  // some 8 sqrt(a) are needed near x = a
+    constexpr int k_terms = 1'000'000;  // some 8 √a are needed near x = a
     if (x < a + 1) {
         double term = 1 / a, sum = term;
         for (int n = 1; n < k_terms && term > sum * 1e-16; ++n) sum += term *= x / (a + n);
@@ -42,12 +42,12 @@ inline double regularised_gamma_q(double a, double x) {
 /// 1) degrees of freedom.
 ///
 /// observed   counts in each cell
-/// expected   counts expected in each cell, >= 0; scaled to the observed total if theirs differs (the caller tests the
+/// expected   counts expected in each cell, ≥ 0; scaled to the observed total if theirs differs (the caller tests the
 /// total itself) returns    p-value in [0, 1]; 0 where a cell that expects nothing has a count; 1 where only one cell
 /// is left
 ///
-/// Pearson's statistic is chi-square distributed only where every cell expects some 5 counts or more, so cells that
-/// expect fewer are pooled, in order of what they expect.
+/// Pearson's statistic is chi-square distributed only if about 5 counts or more are expected in every cell, so cells
+/// with fewer expected counts are pooled, in rising order of these.
 inline double chi_square_p_value(std::span<const double> observed, std::span<const double> expected) {
     constexpr double least = 5;
     const double total = std::accumulate(observed.begin(), observed.end(), 0.0),
@@ -67,7 +67,7 @@ inline double chi_square_p_value(std::span<const double> observed, std::span<con
         if (!(expected[order[k]] >= 0) || (e == 0 && o > 0)) return 0;
         pooled_observed += o;
         pooled_expected += e;
-        // A small rest joins the last cell (the largest), rather than making a cell of its own.
+        // A small remainder is added to the last cell (the largest) instead of forming a cell of its own.
         if (pooled_expected < least && k + 1 < order.size()) continue;
         if (!(pooled_expected > 0)) continue;
         statistic += (pooled_observed - pooled_expected) * (pooled_observed - pooled_expected) / pooled_expected;

@@ -17,7 +17,7 @@ TEST_CASE("regularised_gamma_q: closed forms and tabulated quantiles") {
     // Upper 5 % and 0.1 % points of chi-square with 10 and 100 degrees of freedom, as printed in every table.
     CHECK(regularised_gamma_q(5, 18.307 / 2) == doctest::Approx(0.05).epsilon(1e-4));
     CHECK(regularised_gamma_q(50, 149.449 / 2) == doctest::Approx(0.001).epsilon(1e-3));
-    // The median of a wide one lies a third below its mean: k = 100 000 needs many terms.
+    // The median lies about 2/3 below the mean k; k = 100 000 needs many terms of the series.
     CHECK(regularised_gamma_q(5e4, (1e5 - 2.0 / 3) / 2) == doctest::Approx(0.5).epsilon(1e-3));
 }
 
@@ -30,7 +30,7 @@ TEST_CASE("chi_square_p_value: uniform over fair draws, tiny over unfair ones") 
         for (int i = 0; i < 5000; ++i) observed[draw(random)] += 1;
         p_values.push_back(chi_square_p_value(observed, expected));
     }
-    // Kolmogorov-Smirnov against the uniform distribution: 1.95 / sqrt(n) is the 0.1 % point.
+    // Kolmogorov-Smirnov against the uniform distribution: 1.95 / √n is the 0.1 % point.
     std::sort(p_values.begin(), p_values.end());
     double largest = 0;
     for (std::size_t i = 0; i < p_values.size(); ++i)

@@ -1,5 +1,5 @@
 #pragma once
-// Weights that samplers get wrong, and points to draw with.
+// Weights that are difficult for samplers, and points to draw with.
 
 #include "domelight/sampling/distribution/distribution.h"
 #include "domelight/projection/projection.h"
@@ -36,7 +36,7 @@ inline NamedWeights hot_texel(int width, int height, int x, int y, float hot = 1
     return w;
 }
 
-/// Luminance times sin theta of an environment, averaged down to `height` rows at most.
+/// Luminance times sin θ of an environment, averaged down to `height` rows at most.
 inline NamedWeights light_weights(std::string name, const ImageF& rgb, int height) {
     const int step = std::max(1, rgb.height() / height), w = rgb.width() / step, h = rgb.height() / step;
     NamedWeights weights{std::move(name), ImageF(w, h, 1)};
@@ -77,7 +77,7 @@ inline NamedWeights patched_weights(int width, int height, unsigned seed) {
     return w;
 }
 
-/// Rows that have nothing to do with each other: a few spikes at random in each, over a little noise.
+/// Independent rows: in each a few random spikes over a little noise.
 inline NamedWeights spiky_weights(int width, int height, unsigned seed) {
     NamedWeights w = random_weights(width, height, seed);
     w.name = "spikes " + std::to_string(width) + "x" + std::to_string(height);
@@ -87,7 +87,7 @@ inline NamedWeights spiky_weights(int width, int height, unsigned seed) {
     return w;
 }
 
-/// The background that float tables lose: 0.01 beside six texels of 1e5 on 3996.
+/// A background that is lost in tables of floats: 0.01 beside six texels of 1e5, in 3996 texels.
 inline NamedWeights sun_and_background() {
     NamedWeights w{"six of 1e5 over .01", ImageF(74, 54, 1, 0.01f)};
     for (int k = 0; k < 6; ++k) *w.image.at(30 + k % 3, 20 + k / 3) = 1e5f;

@@ -1,4 +1,4 @@
-// What every method of drawing from a distribution must do, tested on all of them.
+// Requirements of every method of sampling a distribution, tested on all of them.
 #include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/sampling/distribution/distribution.h"
@@ -18,11 +18,11 @@ namespace {
 
 constexpr int k_draws = 60'000;
 
-/// How near densities must be to the weights, relative.
+/// The largest relative difference between densities and weights.
 double density_tolerance(DistributionMethod method) {
     switch (method) {
-        // What follows counts from texels of 1e-3 of the mean on, and rows of 300 of them: a float's 2^-24 is 2 % of
-        // such a texel, 2^-32 is 7e-5.
+        // The checks below apply to texels of at least 1e-3 of the mean, in rows of 300 texels: the resolution of a
+        // float, 2^-24, is 2 % of such a texel, and 2^-32 is 7e-5.
         case DistributionMethod::binary:
             return 5e-2;
         case DistributionMethod::guided:
@@ -31,7 +31,7 @@ double density_tolerance(DistributionMethod method) {
         case DistributionMethod::bilinear:
             return 2e-5;  // 16-bit shapes: 2^-17 of the brightest neighbour's density
         default:
-            return 1e-6;  // hierarchical: floats summed level by level
+            return 1e-6;  // hierarchical: sums of floats, level by level
     }
 }
 
@@ -156,8 +156,8 @@ TEST_CASE("distribution: what sample says of the density is what pdf_uv says the
             for (UnitPoint p : points) {
                 const auto s = d->sample(p);
                 inside &= s.u >= 0 && s.u < 1 && s.v >= 0 && s.v < 1 && s.pdf_uv > 0 && std::isfinite(s.pdf_uv);
-                // Where a continuous density falls to zero a rounding of the place is a large part of what is left:
-                // seen from the peak it is small.
+                // Where a continuous density falls to zero, the rounding of the position changes it by a large relative
+                // amount, which is small relative to the peak.
                 const double scale = d->continuous() ? s.pdf_uv + 1e-3 : s.pdf_uv;
                 worst = std::max(worst, std::abs(d->pdf_uv(s.u, s.v) - s.pdf_uv) / scale);
             }
@@ -172,8 +172,8 @@ TEST_CASE("distribution: the numerical Jacobian of the map is one over the densi
         for (DistributionMethod method : k_all_methods) {
             CAPTURE(weights.name);
             CAPTURE(method_name(method));
-            // An alias table lays several pieces over each texel, whose densities add up; chi-square and the count of
-            // quanta test those.
+            // In an alias table several pieces lie over each texel and their densities add up, so the Jacobian of one
+            // piece is not the density. The chi-square test and the count of quanta cover them.
             if (method == DistributionMethod::alias) continue;
             const auto d = made(weights, method);
             int seen = 0, wrong = 0;
@@ -228,7 +228,7 @@ TEST_CASE("distribution: invert takes a sample back to its point") {
 }
 
 TEST_CASE("distribution: many points at once give the bits of one at a time") {
-    // Lengths around the batch of 64.
+    // Lengths around 64, the size of a batch.
     for (const NamedWeights& weights : hard_weights())
         for (DistributionMethod method : k_all_methods)
             for (int count : {0, 1, 63, 64, 65, 1000}) {
@@ -266,7 +266,8 @@ TEST_CASE("distribution: the fast methods draw what the plain ones draw") {
         double walk_off = 0, guided_off = 0, binary_off = 0, bilinear_off = 0;
         for (UnitPoint p : points) {
             const auto s = linear->sample(p);
-            // Compare where the plain map takes both to: a place's own error is large where the density is small.
+            // Compares the points of the square to which the plain map takes both, because the error of a position is
+            // large where the density is small.
             const auto off = [&](const Distribution2D& plain, const DistributionSample& other) {
                 const auto back = plain.invert(other.u, other.v);
                 if (!back) return 0.0;
@@ -320,12 +321,12 @@ TEST_CASE("distribution: no texel of positive weight is lost beside a sun") {
         CHECK(lost == 0);
         CHECK(total(texel_probabilities(*d)) == doctest::Approx(1).epsilon(1e-9));
         if (method == DistributionMethod::alias) continue;
-        // And there is a point that draws it.
+        // There is a point for which it is drawn.
         int missed = 0;
         for (int y = 0; y < d->height(); ++y)
             for (int x = 0; x < d->width(); ++x) {
-                // Any quarter will do: where the density rises to the sun's row within the texel, that row rules but
-                // the first of its quanta.
+                // Any quarter of the texel is accepted: where the density rises towards the row of the sun within the
+                // texel, nearly all quanta fall near that row.
                 bool drawn = false;
                 for (double du : {0.25, 0.75})
                     for (double dv : {0.25, 0.75}) {

@@ -42,7 +42,7 @@ TEST_CASE("GuidedDistribution1D: draws what the plain form draws, and goes back 
             CHECK(int(s.x * guided->size()) == s.index);
             CHECK(guided->pdf(s.x) == s.pdf);
             CHECK(guided->invert(s.x).value() == p.x);
-            // The quanta that each item is given first take a share of a quantum from every other.
+            // Each item gets one quantum first, which takes a share of a quantum from every other item.
             CHECK(std::abs(plain.invert(s.x) - p.x * 0x1p-32) < (row.size() + 1) * 0x1p-32);
         }
     }
@@ -114,8 +114,8 @@ TEST_CASE("GuidedRows: every item owns as many quanta as the table says, the gui
 }
 
 TEST_CASE("GuidedDistribution: a stratified set stays stratified") {
-    // 64 x 64 strata: each draws into its own image of the square, so row counts differ from the marginal by less than
-    // a stratum's row.
+    // With 64 x 64 strata, each sample lies in the image of its own stratum, so the counts of rows differ from the
+    // marginal by less than one row of strata.
     const NamedWeights weights = sky_weights(32);
     const auto d = made(weights, DistributionMethod::guided);
     double last_v = 0;

@@ -1,4 +1,4 @@
-// Decoders that are not Domelight's: the GPU's of BC6H, and Basis Universal's of UASTC HDR.
+// Decoders other than Domelight's: the GPU's for BC6H, and Basis Universal's for UASTC HDR.
 import {read} from 'ktx-parse';
 import {script} from './pixels.mjs';
 
@@ -16,7 +16,7 @@ function text(floats) {
     return btoa(s);
 }
 
-/// Draws every texel of a square texture, as it is stored, into floats: RGBA of rows from the first.
+/// Draws every texel of a square texture, as it is stored, into floats: RGBA, from the first row on.
 const program = (() => {
     const shader = (type, source) => {
         const s = gl.createShader(type);

@@ -28,7 +28,7 @@ export async function load({ibl, skybox}) {
     scene.setIndirectLight(light);
     scene.setSkybox(engine.createSkyFromKtx1(await bytes(skybox)));
     // end
-    scene.setSkybox(null);  // only the balls are looked at
+    scene.setSkybox(null);  // only the balls are measured
 }
 
 const models = new Map();

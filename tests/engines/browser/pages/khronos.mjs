@@ -48,7 +48,7 @@ export async function load({panorama, specular, sheen, diffuse, brdf, levels}) {
     // end
 }
 
-// The matrix that the viewer wants, by columns: right, up, backward, position.
+// The matrix for the viewer, by columns: right, up, backward, position.
 function cameraToWorld(eye, target) {
     const unit = a => a.map(x => x / Math.hypot(...a));
     const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];

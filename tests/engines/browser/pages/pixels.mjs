@@ -1,6 +1,6 @@
-// What every page does with its pixels.
+// Functions that every page uses for its pixels.
 
-/// Classic scripts, for engines that come as one.
+/// Loads classic scripts, for engines that are published in that form.
 export function script(url) {
     return new Promise((resolve, reject) => {
         const element = Object.assign(document.createElement('script'), {src: url, onload: resolve, onerror: () => reject(new Error(`no ${url}`))});
@@ -8,7 +8,7 @@ export function script(url) {
     });
 }
 
-/// Float RGBA rows as text for the way out of the browser; GL's rows run upward, ours downward.
+/// Float RGBA rows as text, to be returned from the browser. Rows of GL run upward, ours downward.
 export function packed(rgba, width, height, upward = true) {
     const floats = new Float32Array(width * height * 4);
     for (let y = 0; y < height; ++y)
