@@ -23,7 +23,7 @@ struct BakeWords {
     std::vector<std::string> environments, engines;
     std::string output, lobe, method = "exact", riemann_steps, riemann_sum = "normalised", layout, encoding,
                               encoding_quality, format, cube_picture = "cross";
-    std::string irradiance;
+    std::string irradiance, latlong_out;
     std::string sh_window = "none", brdf_g = "correlated", brdf_form;
     std::optional<int> size, levels, irradiance_size, sh_bands, brdf_size;
     std::vector<double> roughness, exponents;
@@ -89,6 +89,9 @@ void declare(Arguments& a, BakeWords& w) {
              "exr-mip one file with all levels and OpenEXR's envmap attribute (the engine's)");
     a.choice("--cube-picture", w.cube_picture, {"cross", "strip", "faces"},
              "layout of a cube in exr and hdr: one picture or six (cross)");
+    a.text("--latlong-out", "CONVENTION", w.latlong_out,
+           "convention of lat-long maps and of the environment as a lat-long image: default, usd, mitsuba, openexr, "
+           "materialx, mod or centre=+X,right=+Z[,up=+Y] (the engine's)");
     a.flag("--zstd", w.zstd, "compress ktx2 without loss");
     a.flag("--no-zstd", w.no_zstd, "do not compress, even if the engine's default is to do so");
     a.flag("--brdf-float", w.brdf_float, "32-bit floats in the BRDF table");
@@ -137,6 +140,7 @@ Result<BakeOptions> bake_options(const BakeWords& w) {
     if (!w.encoding.empty()) o.encoding = *encoding_from_name(w.encoding);
     if (!w.encoding_quality.empty()) o.encoding_quality = *encoding_quality_from_name(w.encoding_quality);
     if (!w.format.empty()) o.format = *container_from_name(w.format);
+    if (!w.latlong_out.empty()) o.latlong_out = w.latlong_out;
     if (w.zstd && w.no_zstd) return Error{"contradicts --no-zstd", "--zstd", "Give one of them."};
     if (w.zstd || w.no_zstd) o.zstd = w.zstd;
     o.cube_picture = pictures.at(w.cube_picture);

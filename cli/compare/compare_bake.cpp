@@ -7,7 +7,9 @@
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/texture/texture.h"
 
+#include "compare/latlong_level.h"
 #include "io/file/json.h"
+#include "projection/convention_text.h"
 #include "cli/console/environment_options.h"
 #include "cli/console/field_options.h"
 #include "io/environment/cube_texture_reader.h"
@@ -61,10 +63,31 @@ void read_keys(const std::map<std::string, std::string>& keys, Bake& bake) {
     if (!roughness.empty() || !exponents.empty()) bake.stated_by = "the file";
 }
 
-Result<Bake> read_chain(const std::string& file) {
+/// The projection of a bake's lat-long file: by the manifest beside it, by its own key, or the default.
+Projection latlong_of(const std::string& file, const std::string& convention) {
+    const auto stated = projection_in_manifest(file);
+    return *projection_from_name(stated ? *stated : latlong_of_convention(convention).value_or("latlong"));
+}
+
+/// The levels of a lat-long texture, each as a cube.
+Result<std::vector<Cubemap>> decode_latlongs(const Texture& texture, const std::string& file, int threads) {
+    if (texture.width != 2 * texture.height)
+        return Error{fmt::format("{} x {} texels are not a cube, nor a lat-long map", texture.width, texture.height),
+                     "", "Wanted is a specular cube or lat-long map, as a bake has it."};
+    if (encoding_channels(texture.encoding) != 3)
+        return Error{"texture has fewer than three channels: no colour", "", ""};
+    const auto key = texture.metadata.find("domelight.convention");
+    const Projection projection = latlong_of(file, key == texture.metadata.end() ? "" : key->second);
+    std::vector<Cubemap> cubes;
+    for (int l = 0; l < int(texture.levels.size()); ++l)
+        cubes.push_back(cube_of_latlong_level({projection, decode_texture(texture, l, 0)}, threads));
+    return cubes;
+}
+
+Result<Bake> read_chain(const std::string& file, int threads) {
     const auto texture = read_texture(file);
     if (!texture) return texture.error().at(file);
-    auto cubes = decode_cubes(*texture);
+    auto cubes = texture->faces == 1 ? decode_latlongs(*texture, file, threads) : decode_cubes(*texture);
     if (!cubes) return cubes.error().at(file);
     const auto info = read_texture_info(file);
     Bake bake;
@@ -80,27 +103,34 @@ bool is_texture_file(const std::string& name) {
     return bytes && !texture_container((*bytes)->bytes()).empty();
 }
 
-/// One level a word: a picture of a cube, or a folder of six faces.
+/// A level that is a picture, as a cube.
+Result<Cubemap> cube_of(const Environment& picture, const std::string& word, int threads) {
+    if (picture.cube()) return *picture.cube();
+    const auto image = picture.latlong();
+    if (!image) return image.error().at(word);
+    return cube_of_latlong_level({projection_from_name("latlong")->turned(picture.world_to_source), **image}, threads);
+}
+
+/// One level a word: a picture of a cube or in any other projection, or a folder of six faces.
 Result<Bake> read_pictures(const std::vector<std::string>& words, int threads) {
     Bake bake;
     EnvironmentOptions options;
     options.threads = threads;
     for (const std::string& word : words) {
-        auto cube = open_environment(environment_files({word}), options);
+        options.projection = projection_in_manifest(word).value_or("auto");
+        const auto picture = open_environment(environment_files({word}), options);
+        if (!picture) return picture.error();
+        auto cube = cube_of(*picture, word, threads);
         if (!cube) return cube.error();
-        if (!cube->cube())
-            return Error{
-                "is not a picture of a cube", word,
-                "Give a KTX2, KTX or DDS with its levels, or a cube picture or folder of six faces for each level."};
-        bake.format = cube->format;
-        bake.levels.emplace_back().cube = *cube->cube();
+        bake.format = picture->format;
+        bake.levels.emplace_back().cube = *std::move(cube);
     }
     return bake;
 }
 
 Result<Bake> read_bake(const BakeWords& w, int threads) {
     auto bake =
-        w.bake.size() == 1 && is_texture_file(w.bake[0]) ? read_chain(w.bake[0]) : read_pictures(w.bake, threads);
+        w.bake.size() == 1 && is_texture_file(w.bake[0]) ? read_chain(w.bake[0], threads) : read_pictures(w.bake, threads);
     if (bake && !w.lobe.empty()) bake->lobe = *lobe_from_name(w.lobe);
     if (!bake || w.engine.empty()) return bake;
     const auto engine = find_engine(w.engine);
@@ -249,8 +279,8 @@ void add_bake_options(Arguments& a, BakeWords& w) {
     for (const Engine& engine : engines()) names.push_back(engine.name);
     a.group("A bake against its source");
     a.texts("--bake", "FILE", w.bake,
-            "a baked specular cube: KTX2, KTX or DDS with its levels, or a cube picture or folder of faces for each "
-            "level");
+            "a baked specular cube or lat-long map: KTX2, KTX or DDS with its levels, or a picture or folder of faces "
+            "for each level");
     a.texts("--env", "SRC", w.env, "the environment it was baked from");
     a.choice("--for", w.engine, names,
              "the engine whose roughness curve the bake should have (not needed for a Domelight file, which states "

@@ -1,6 +1,7 @@
 #include "domelight/bake/bake.h"
 
 #include "domelight/bake/brdf_file.h"
+#include "domelight/filtering/resample/reproject.h"
 #include "domelight/base/parallel.h"
 #include "domelight/io/file/atomic_file.h"
 #include "domelight/io/write_image.h"
@@ -15,6 +16,7 @@
 #include "bake/sh_report.h"
 #include "bake/staging.h"
 #include "io/file/sha256.h"
+#include "projection/convention_text.h"
 
 #include <fmt/core.h>
 
@@ -67,9 +69,14 @@ std::string per_level(const std::vector<LevelPlan>& levels, Number number) {
 std::string map_convention(const EnginePlan& plan, const BakedMap& map) {
     const Engine& engine = *plan.engine;
     if (!map.projection.empty()) return projection_convention(map.projection);
-    if (map.layout == Layout::latlong) return projection_convention("latlong/" + engine.latlong);
     return fmt::format("texture(cube, {}) is the light from world direction {}, +Y up",
                        cube_mirror_direction(engine.mirror), engine.mirror == CubeMirror::none ? "d" : "(x, y, z)");
+}
+
+/// OpenEXR's envmap attribute for a projection: samples from edge to edge are OpenEXR's own.
+std::string envmap_of(const std::string& projection) {
+    const auto named = projection_from_name(projection);
+    return named && named->grid() == SampleGrid::both_on_edges ? named->name() : "";
 }
 
 /// The metadata of a texture file, so that it can be used without the manifest.
@@ -195,14 +202,29 @@ class EngineBake {
         map.lobe = lobe;
         map.quantity = quantity;
         map.layout = plan_.layout;
+        if (map.layout == Layout::latlong) map.projection = plan_.projection;
         map.levels = baked_levels(levels, plan_.layout);
         MapFormat format = map_format(name, encoding);
         format.order = plan_.order;
+        format.envmap = envmap_of(plan_.projection);
         format.irradiance_over_pi = irradiance_over_pi;
         format.radiance_sh = report_.sh.radiance;
         format.metadata = map_metadata(plan_, map, levels);
         if (engine_.sh_metadata && map.role == "specular") format.metadata["sh"] = filament_sh_metadata(report_.sh);
-        write_map(map, maps, format, options_, staging_, background_);
+        if (!plan_.reprojected) return write_map(map, maps, format, options_, staging_, background_);
+        write_map(map, reprojected(maps), format, options_, staging_, background_);
+    }
+
+    /// The maps in the projection of the files.
+    std::vector<FilteredMap> reprojected(std::span<const FilteredMap> maps) const {
+        const Projection projection = *projection_from_name(plan_.projection);
+        std::vector<FilteredMap> levels;
+        for (const FilteredMap& map : maps) {
+            const ProjectedImage source{*projection_from_name(layout_name(map.layout)), map.image};
+            levels.emplace_back(map.layout,
+                                reproject(source, projection, map.width(), map.height(), options_.threads).pixels);
+        }
+        return levels;
     }
 
     /// The environment as one image, in the engine's projection.
@@ -216,6 +238,7 @@ class EngineBake {
         map.levels.front().width = plan_.panorama->width;
         MapFormat format = map_format(name, engine_.environment_only ? plan_.encoding : Encoding::rgba16f);
         if (!engine_.environment_only) format.container = Container::exr;
+        format.envmap = envmap_of(map.projection);
         format.metadata = map_metadata(plan_, map, level);
         write_map(map, {&panorama, 1}, format, options_, staging_, background_);
     }

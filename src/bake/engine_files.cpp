@@ -1,9 +1,7 @@
 #include "bake/engine_files.h"
 
-#include "domelight/image/cube_layout.h"
 #include "domelight/texture/container/babylon_env.h"
 #include "domelight/io/write_image.h"
-#include "domelight/filtering/resample/reproject.h"
 
 #include "scene/gltf/gltf_image_light.h"
 #include "texture/container/playcanvas_atlas.h"
@@ -57,27 +55,16 @@ void write_playcanvas(BakedMap& report, std::span<const FilteredMap> levels, con
                   [atlas](const auto& file) { return write_playcanvas_atlas(file, *atlas); });
 }
 
-/// Levels as required for OpenEXR's `envmap`: samples on the edges, and its own lat-long centre.
-ImageF openexr_level(const FilteredMap& level, int threads) {
-    const std::string projection = layout_name(level.layout);
-    const ProjectedImage source{*projection_from_name(projection), level.image};
-    return reproject(source, *projection_from_name(projection + "/openexr"), level.width(), level.height(), threads)
-        .pixels;
-}
-
 void write_openexr(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
                    const std::filesystem::path& path, Background& background) {
     ExrWriteOptions exr;
     exr.half = format.encoding == Encoding::rgba16f;
     exr.attributes = format.metadata;
     exr.threads = options.threads;
-    // The attribute would be wrong for another convention.
-    const bool envmap = format.order.keeps_places() && report.projection.empty();
-    if (envmap) exr.envmap = layout_name(levels.front().layout);
+    exr.envmap = format.envmap;
     if (exr.half) encode_chain(report, levels, format, options);  // half floats clip alike in every container
     auto pictures = std::make_shared<std::vector<ImageF>>();
-    for (const FilteredMap& level : levels)
-        pictures->push_back(envmap ? openexr_level(level, options.threads) : format.order.apply(level).image);
+    for (const FilteredMap& level : levels) pictures->push_back(format.order.apply(level).image);
     start_writing(report, options, path, background, [pictures, exr](const auto& file) {
         std::vector<ImageView<const float>> views(pictures->begin(), pictures->end());
         return write_exr_levels(file, views, exr);

@@ -5,8 +5,8 @@
 #include "domelight/projection/projections.h"
 
 #include "io/file/json.h"
-#include "bake/panorama.h"
 #include "io/file/sha256.h"
+#include "projection/convention_text.h"
 
 #include <fmt/core.h>
 
@@ -88,6 +88,7 @@ Json options_json(const EnginePlan& plan, const BakeOptions& o) {
     json["zstd"] = plan.zstd;
     if (plan.container == Container::exr || plan.container == Container::hdr)
         json["cube_picture"] = cube_picture_name(o.cube_picture);
+    if (o.latlong_out) json["latlong_out"] = *o.latlong_out;
     if (o.irradiance_quantity) json["irradiance"] = quantity_name(*o.irradiance_quantity);
     json["irradiance_size"] = plan.irradiance_size;
     json["sh_bands"] = o.sh_bands;
@@ -135,7 +136,10 @@ Json map_json(const BakedMap& map) {
     if (map.lobe == Lobe::charlie) json["least_roughness"] = k_charlie_least_roughness;
     const auto projection = projection_from_name(map.projection);
     json["layout"] = map.layout == Layout::cube ? "cube" : projection ? projection->name() : "latlong";
-    if (!map.projection.empty()) json["convention"] = latlong_text(map.projection);
+    if (!map.projection.empty()) {
+        json["projection"] = map.projection;
+        json["convention"] = latlong_text(map.projection);
+    }
     json["container"] = map.container;
     json["encoding"] = map.encoding;
     json["zstd"] = map.zstd;
@@ -176,8 +180,8 @@ Json brdf_json(const BrdfReport& brdf) {
 
 Json convention_json(const EnginePlan& plan) {
     const Engine& engine = *plan.engine;
-    if (engine.environment_only) return latlong_text(engine.panorama);
-    if (plan.layout == Layout::latlong) return latlong_text("latlong/" + engine.latlong);
+    if (engine.environment_only) return latlong_text(plan.panorama->projection);
+    if (plan.layout == Layout::latlong) return latlong_text(plan.projection);
     if (engine.mirror == CubeMirror::none) return k_cube_convention;
     return fmt::format("{}; mirrored for {}, which reads texture(cube, {})", k_cube_convention, engine.name,
                        cube_mirror_direction(engine.mirror));

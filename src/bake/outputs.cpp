@@ -130,6 +130,7 @@ void write_picture(BakedFile& file, ImageF picture, const MapFormat& format, con
             ExrWriteOptions exr;
             exr.half = format.encoding == Encoding::rgba16f;
             exr.attributes = format.metadata;
+            if (format.envmap == "latlong") exr.envmap = format.envmap;  // pictures of cubes are not OpenEXR's
             if (auto ok = write_exr(path, pixels->view(), exr); !ok) return ok;
         }
         return hash_into(file, path, hashes);

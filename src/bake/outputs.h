@@ -39,8 +39,9 @@ struct MapFormat {
     Container container = Container::ktx2;
     bool zstd = false;
     CubePicture cube_picture = CubePicture::cross;
-    TexelOrder order;  ///< from the maps to the file
-    std::string name;  ///< without extension
+    TexelOrder order;    ///< from the maps to the file
+    std::string envmap;  ///< OpenEXR's attribute: "latlong" or "cube"; empty: none
+    std::string name;    ///< without extension
     std::map<std::string, std::string> metadata;
     /// For containers that also hold diffuse light: radiance coefficients, and E / pi as a map.
     std::span<const Vec3d> radiance_sh = {};

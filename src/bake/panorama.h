@@ -24,7 +24,4 @@ PanoramaSpec panorama_like(const Environment& environment, const std::string& pr
 /// The image as a lat-long one in the default convention, at most `height` texels high, for looking at.
 ImageF panorama_as_latlong(const ImageF& image, const std::string& projection, int height, int threads);
 
-/// The directions of a projection's centre, right and top, in one line: "lat-long, centre +X, right +Z, up +Y".
-std::string projection_convention(const std::string& projection);
-
 }  // namespace domelight

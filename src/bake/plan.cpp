@@ -1,9 +1,10 @@
 #include "bake/plan.h"
 
+#include "domelight/projection/projections.h"
+
 #include "bake/panorama.h"
 #include "bake/phong_gaps.h"
 #include "base/field_place.h"
-#include "projection/latlong_convention.h"
 #include "texture/container/scaled_bytes.h"
 
 #include <fmt/core.h>
@@ -130,12 +131,30 @@ Result<void> plan_encoding(EnginePlan& plan, const BakeOptions& o) {
 /// Height of a lat-long image where the source's own is not known yet. Nothing that a plan checks depends on it.
 constexpr int k_unknown_height = 1024;
 
+/// The projection that a lat-long convention names: "latlong/usd".
+Result<std::string> latlong_projection(const std::string& convention) {
+    const std::size_t slash = convention.find('/');
+    const std::string before = convention.substr(0, slash);
+    const bool prefixed = before == "latlong" || before == "equirectangular";
+    std::string name = "latlong/" + (!prefixed                      ? convention
+                                     : slash == std::string::npos ? std::string("default")
+                                                                    : convention.substr(slash + 1));
+    if (const auto projection = projection_from_name(name); !projection)
+        return projection.error().at(field_place("latlong_out"));
+    return name;
+}
+
+/// The projection of the environment as one image.
+std::string panorama_projection(const Engine& engine, const BakeOptions& o) {
+    return o.latlong_out ? *latlong_projection(*o.latlong_out) : engine.panorama;
+}
+
 /// The environment as one image: `height` texels high, or as large as the source where no height is given.
-PanoramaSpec plan_panorama(const Engine& engine, std::optional<int> height, const Environment* environment) {
-    if (height) return panorama_spec(engine.panorama, *height);
-    if (!environment) return panorama_spec(engine.panorama, k_unknown_height);
-    const PanoramaSpec own = panorama_like(*environment, engine.panorama);
-    return panorama_spec(engine.panorama, std::min(own.height, k_max_size));
+PanoramaSpec plan_panorama(const std::string& projection, std::optional<int> height, const Environment* environment) {
+    if (height) return panorama_spec(projection, *height);
+    if (!environment) return panorama_spec(projection, k_unknown_height);
+    const PanoramaSpec own = panorama_like(*environment, projection);
+    return panorama_spec(projection, std::min(own.height, k_max_size));
 }
 
 Result<void> plan_environment_only(EnginePlan& plan, const BakeOptions& o, const Environment* environment) {
@@ -151,7 +170,7 @@ Result<void> plan_environment_only(EnginePlan& plan, const BakeOptions& o, const
     plan.layout = Layout::latlong;
     std::optional<int> height = o.size;
     if (!height && plan.engine->size) height = 2 * plan.engine->size;
-    plan.panorama = plan_panorama(*plan.engine, height, environment);
+    plan.panorama = plan_panorama(panorama_projection(*plan.engine, o), height, environment);
     plan.size_of_source = !height;
     plan.specular = {glossy_level(Lobe::ggx, plan.panorama->height, 0)};
     return {};
@@ -191,9 +210,13 @@ Result<void> plan_irradiance(EnginePlan& plan, const BakeOptions& o) {
     return {};
 }
 
-/// Quarter turns from the default convention to the engine's.
-int quarters_of(const std::string& convention) {
-    const Vec3d centre = latlong_convention(convention)->centre;
+/// Quarter turns about +Y from the default lat-long convention to this one; nothing where texels do not only change
+/// their columns.
+std::optional<int> quarter_turns(const Projection& projection) {
+    const Mat3 to_world = projection.world_to_picture().transposed();
+    const Vec3d centre = to_world * Vec3d{0, 0, 1}, right = to_world * Vec3d{1, 0, 0}, up = to_world * Vec3d{0, 1, 0};
+    if (projection.grid() != SampleGrid::centres || !(up == Vec3d{0, 1, 0}) || !(right == cross(centre, up)))
+        return std::nullopt;
     return int(std::lround(std::atan2(centre.z, centre.x) * 2 / k_pi)) & 3;
 }
 
@@ -215,20 +238,48 @@ Result<void> plan_chain(EnginePlan& plan, const BakeOptions& o) {
             plan.sheen.push_back(glossy_level(Lobe::charlie, level_size, roughness));
     }
     if (!engine.panorama_file.empty())
-        plan.panorama = panorama_spec(engine.panorama, 4 * plan.specular.front().spec.size / scale);
+        plan.panorama = panorama_spec(panorama_projection(engine, o), 4 * plan.specular.front().spec.size / scale);
     return {};
 }
 
-/// From the maps in their default convention to the engine's.
-Result<void> plan_order(EnginePlan& plan) {
-    if (plan.engine->environment_only) return {};
+/// Whether lat-long images in the convention that was asked for can be written for the engine.
+Result<void> check_latlong_out(const EnginePlan& plan, const BakeOptions& o) {
+    if (!o.latlong_out) return {};
+    const Engine& engine = *plan.engine;
+    const bool has_maps = plan.layout == Layout::latlong && !engine.environment_only;
+    const bool has_panorama = engine.environment_only || !engine.panorama_file.empty();
+    if (has_maps && own_container(plan.container))
+        return field_error("latlong_out", fmt::format("does not apply to `engines` {}: its file has a fixed convention, {}",
+                                                      engine.name, engine.latlong));
+    if (has_maps || (has_panorama && projection_from_name(engine.panorama)->name() == "latlong")) return {};
+    if (has_panorama)
+        return field_error("latlong_out", fmt::format("does not apply to `engines` {}: its image is a fixed one, {}",
+                                                      engine.name, projection_from_name(engine.panorama)->name()));
+    return field_error("latlong_out",
+                       fmt::format("does not apply to `engines` {}: no lat-long image is written", engine.name),
+                       "Use `layout` latlong.");
+}
+
+/// The projection of the chain's files, and how the maps get there.
+Result<void> plan_projection(EnginePlan& plan, const BakeOptions& o) {
+    const Engine& engine = *plan.engine;
+    if (auto ok = check_latlong_out(plan, o); !ok) return ok.error();
+    if (engine.environment_only) return {};
+    // The envmap attribute of these files says that samples lie as OpenEXR has them.
+    const bool envmap = plan.container == Container::exr_mip;
     if (plan.layout == Layout::cube) {
-        plan.order = TexelOrder::of_cube(cube_mirror_matrix(plan.engine->mirror));
+        plan.order = TexelOrder::of_cube(cube_mirror_matrix(engine.mirror));
+        plan.reprojected = envmap && engine.mirror == CubeMirror::none;
+        if (plan.reprojected) plan.projection = "cube/openexr";
         return {};
     }
-    const int quarters = quarters_of(plan.engine->latlong);
-    plan.order = TexelOrder::of_latlong(quarters);
-    if (quarters % 2 == 0) return {};
+    plan.projection = o.latlong_out ? *latlong_projection(*o.latlong_out) : "latlong/" + engine.latlong;
+    if (envmap && !o.latlong_out && engine.latlong == "default") plan.projection = "latlong/openexr";
+    const auto quarters = quarter_turns(*projection_from_name(plan.projection));
+    plan.reprojected = !quarters;
+    if (!quarters) return {};
+    plan.order = TexelOrder::of_latlong(*quarters);
+    if (*quarters % 2 == 0) return {};
     for (const LevelPlan& level : plan.specular)
         if (level.spec.size % 2)
             return field_error("size",
@@ -248,13 +299,15 @@ Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& o, const
     plan.brdf_size = o.brdf_size.value_or(engine.brdf_size);
     if (auto ok = plan_encoding(plan, o); !ok) return ok.error();
     if (auto ok = plan_irradiance(plan, o); !ok) return ok.error();
+    if (o.latlong_out)
+        if (auto ok = latlong_projection(*o.latlong_out); !ok) return ok.error();
     if (auto ok = engine.environment_only ? plan_environment_only(plan, o, environment) : plan_chain(plan, o); !ok)
         return ok.error();
     if (is_phong(plan.lobe) && o.method == BakeMethod::exact) plan.gap_probes = phong_gap_probes(plan.specular);
     plan.irradiance_size =
         o.irradiance_size.value_or(engine.irradiance_size) * (plan.layout == Layout::latlong ? 2 : 1);
     if (const auto ok = check_own_container(plan, o); !ok) return ok.error();
-    if (const auto ok = plan_order(plan); !ok) return ok.error();
+    if (const auto ok = plan_projection(plan, o); !ok) return ok.error();
     return plan;
 }
 

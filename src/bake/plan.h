@@ -27,7 +27,10 @@ struct EnginePlan {
     BrdfForm brdf_form = BrdfForm::none;
     std::optional<PanoramaSpec> panorama;  ///< the environment as one image, where the engine takes it
     bool size_of_source = false;           ///< the only map is a panorama, as large as the environment
-    TexelOrder order;                      ///< from the maps to the engine's convention
+    /// Of the files of the chain and the irradiance: name and convention, as projections.h takes them.
+    std::string projection = "cube";
+    TexelOrder order;          ///< from the maps to that projection
+    bool reprojected = false;  ///< the maps are reprojected instead, because texels do not only change their places
 };
 
 /// Plans the bake for each of BakeOptions::engines. Errors: options that contradict each other or an engine; `where` is

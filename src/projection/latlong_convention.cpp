@@ -81,6 +81,12 @@ Result<Vec3d> signed_axis(const std::string& name) {
     return Error{"unknown axis \"" + name + "\"", "", "Accepted: +X, -X, +Y, -Y, +Z, -Z."};
 }
 
+std::vector<std::string_view> latlong_convention_names() {
+    std::vector<std::string_view> names;
+    for (const Named& named : k_named) names.push_back(named.name);
+    return names;
+}
+
 Result<LatlongConvention> latlong_convention(const std::string& name) {
     for (const Named& named : k_named)
         if (named.name == name) return named.convention;

@@ -5,6 +5,8 @@
 #include "domelight/base/vec.h"
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace domelight {
 
@@ -23,6 +25,9 @@ struct LatlongConvention {
 
 /// "default", "usd", "mitsuba", "openexr", "materialx", "mod", or "centre=+X,right=+Z[,up=+Y]" of signed axes.
 Result<LatlongConvention> latlong_convention(const std::string& name);
+
+/// The names without the axes: "default", "usd", ...
+std::vector<std::string_view> latlong_convention_names();
 
 /// "+X", "x", "-z", ...
 Result<Vec3d> signed_axis(const std::string& name);

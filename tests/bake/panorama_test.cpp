@@ -7,6 +7,7 @@
 #include "domelight/texture/texture.h"
 
 #include "oriented.h"
+#include "projection/convention_text.h"
 #include "test.h"
 
 #include <fmt/core.h>
@@ -48,14 +49,6 @@ TEST_CASE("panorama_as_latlong: every direction lies where the default conventio
     CHECK(shown.height() == 32);
     CHECK(worst_of(shown, "latlong") < 0.06);  // means over texels 0.1 wide, compared with the values at their centres
     CHECK(panorama_as_latlong(image, "latlong", 512, 1).height() == 64);
-}
-
-TEST_CASE("projection_convention: says where the picture's centre, right and top look") {
-    CHECK(projection_convention("latlong") == "lat-long, centre +X, right +Z, up +Y");
-    CHECK(projection_convention("latlong/usd") == "lat-long, centre +Z, right -X, up +Y");
-    CHECK(projection_convention("latlong/mitsuba") ==
-          "lat-long, centre +Z, right -X, up +Y, the first and last row on the poles");
-    CHECK(projection_convention("pbrt") == "equal-area-octahedral, centre +Y, right +X, up +Z");
 }
 
 TEST_CASE("bake: engines of both layouts share one reading, and each gets what it would alone") {
@@ -200,4 +193,72 @@ TEST_CASE("bake: unity and unreal get a cube as they look it up, and a lat-long 
         const UV uv = latlong_uv(opened->world_to_source * Vec3d{1, 0.2, 0.1});
         CHECK(direction_of(texel_at(*read, uv.u, uv.v)).x > 0.9);
     }
+}
+
+TEST_CASE("bake: everything lat-long lies in the convention that is asked for, and the manifest names it") {
+    const ImageF image = direction_image(64);
+    const auto baked = [&](const std::string& engine, Container format, const std::string& convention,
+                           const TemporaryFolder& folder) {
+        BakeOptions options;
+        options.engines = {engine};
+        if (engine == "generic") options.layout = Layout::latlong;
+        options.size = engine == "unity" ? 16 : 32;
+        options.levels = 1;
+        options.latlong_out = convention;
+        if (engine != "unity") options.format = format;
+        options.irradiance_size = 8;
+        options.preview = false;
+        const auto report = bake(environment_of(image), options, folder.path());
+        REQUIRE(report);
+        const std::string& manifest = report->engines[0].manifest;
+        CHECK(manifest.find("\"latlong_out\": \"" + convention + "\"") != std::string::npos);
+        CHECK(manifest.find("\"projection\": \"latlong/" + convention + "\"") != std::string::npos);
+        CHECK(manifest.find(projection_convention("latlong/" + convention)) != std::string::npos);
+    };
+    const std::tuple<const char*, Container, const char*> files[] = {{"generic", Container::exr, "specular.exr"},
+                                                                     {"generic", Container::exr_mip, "specular.exr"},
+                                                                     {"generic", Container::hdr, "specular.hdr"},
+                                                                     {"blender", Container::exr, "sky.exr"},
+                                                                     {"usd", Container::hdr, "sky.hdr"},
+                                                                     {"materialx", Container::exr_mip, "sky.exr"},
+                                                                     {"unity", Container::dds, "sky_latlong.exr"}};
+    for (const char* convention : {"usd", "mitsuba", "openexr", "materialx", "mod", "centre=-Y,right=+X,up=+Z",
+                                   "centre=+X,right=-Z"})  // the last one mirrors
+        for (const auto& [engine, format, file] : files) {
+            INFO(convention << ", " << engine << ", " << container_name(format));
+            const TemporaryFolder folder;
+            baked(engine, format, convention, folder);
+            const auto opened = open_environment({folder / file}, {.projection = "latlong", .latlong = convention});
+            REQUIRE(opened);
+            for (const Vec3d& d : {Vec3d{1, 0.2, 0.1}, Vec3d{-1, -0.5, 0.3}, Vec3d{0.1, 1, 1}, Vec3d{0.2, 0.3, -1}}) {
+                const auto radiance = opened->radiance(d);
+                REQUIRE(radiance);
+                CHECK(length(direction_of(&radiance->x) - normalize(d)) < 0.15);
+            }
+        }
+}
+
+TEST_CASE("bake: OpenEXR's attribute stands where samples lie as it says, and nowhere else") {
+    const ImageF image = direction_image(64);
+    const auto opened = [&](std::optional<std::string> convention, Container format) {
+        const TemporaryFolder folder;
+        BakeOptions options;
+        options.layout = Layout::latlong;
+        options.size = 32;
+        options.levels = 1;
+        options.format = format;
+        options.latlong_out = std::move(convention);
+        options.preview = false;
+        REQUIRE(bake(environment_of(image), options, folder.path()));
+        // Read without a word about its convention.
+        const auto read = open_environment({folder / "specular.exr"});
+        REQUIRE(read);
+        return length(direction_of(&read->radiance({1, 0.2, 0.1})->x) - normalize(Vec3d{1, 0.2, 0.1})) < 0.15;
+    };
+    CHECK(opened({}, Container::exr_mip));  // OpenEXR's own convention
+    CHECK(opened("openexr", Container::exr_mip));
+    CHECK(opened("openexr", Container::exr));
+    CHECK(opened("default", Container::exr_mip));
+    CHECK_FALSE(opened("mitsuba", Container::exr_mip));
+    CHECK_FALSE(opened("usd", Container::exr_mip));
 }

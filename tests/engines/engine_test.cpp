@@ -253,6 +253,15 @@ TEST_CASE("plan: contradictions are errors that name the field") {
     CHECK(where([](BakeOptions& o) { o.irradiance_quantity = Quantity::radiance; }) == "`irradiance_quantity`");
     CHECK(where([](BakeOptions& o) { o.irradiance_quantity = Quantity::irradiance_over_pi; }).empty());
     CHECK(where([](BakeOptions& o) { o.layout = Layout::latlong, o.size = 100, o.levels = 4; }) == "`size`");
+    CHECK(where([](BakeOptions& o) { o.latlong_out = "usd"; }) == "`latlong_out`");
+    CHECK(where([](BakeOptions& o) { o.layout = Layout::latlong, o.latlong_out = "up"; }) == "`latlong_out`");
+    CHECK(where([](BakeOptions& o) { o.engines = {"unity"}, o.latlong_out = "up"; }) == "`latlong_out`");
+    CHECK(where([](BakeOptions& o) { o.layout = Layout::latlong, o.latlong_out = "mitsuba"; }).empty());
+    CHECK(where([](BakeOptions& o) { o.engines = {"unity"}, o.latlong_out = "latlong/mod"; }).empty());
+    CHECK(where([](BakeOptions& o) { o.engines = {"blender"}, o.latlong_out = "centre=+Z,right=-X"; }).empty());
+    CHECK(where([](BakeOptions& o) { o.engines = {"pbrt"}, o.latlong_out = "usd"; }) == "`latlong_out`");
+    CHECK(where([](BakeOptions& o) { o.engines = {"playcanvas"}, o.latlong_out = "mod"; }) == "`latlong_out`");
+    CHECK(where([](BakeOptions& o) { o.engines = {"filament"}, o.latlong_out = "usd"; }) == "`latlong_out`");
 }
 
 TEST_CASE("engine: filament's cube lies as cmgen's does, from the same image with its convention") {

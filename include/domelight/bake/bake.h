@@ -45,6 +45,10 @@ struct BakeOptions {
     std::optional<Container> format;
     std::optional<bool> zstd;
     CubePicture cube_picture = CubePicture::cross;
+    /// Convention of every lat-long image that is written, with or without "latlong/" before it: default, usd, mitsuba,
+    /// openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]". By default the engine's own. Engines that take no
+    /// lat-long image, or a file of a fixed convention, refuse it.
+    std::optional<std::string> latlong_out;
     std::optional<Quantity> irradiance_quantity;  ///< irradiance or irradiance_over_pi
     std::optional<int> irradiance_size;           ///< face size, or half the height of a lat-long map
     int sh_bands = 3;
@@ -95,8 +99,9 @@ struct BakedMap {
     Lobe lobe = Lobe::ggx;
     Quantity quantity = Quantity::radiance;
     Layout layout = Layout::cube;
-    std::string projection;  ///< for an environment stored as one image: the name and convention of its projection;
-                             ///< otherwise empty
+    /// Of a map that is not a cube: the name and convention of its projection, as projections.h takes them:
+    /// "latlong/usd". Empty for a cube.
+    std::string projection;
     std::string encoding, container;
     bool widened = false;  ///< `encoding` is rgba32f, because halves, the default of OpenEXR files, would clip
     bool zstd = false;
