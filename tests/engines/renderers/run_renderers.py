@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
-"""Mitsuba and Blender look up what `bake --for mitsuba` and `--for blender` wrote of the six-axis environment.
+"""Mitsuba and Blender look up what `bake --for mitsuba` and `--for blender` wrote of the six-axis environment, and Blender takes the lights of `lights`.
 
-Every direction must show the light that the environment has there: six square views, 90 degrees wide, along the axes. Needs PyPI's mitsuba (in the
-Python that runs this) and Debian's blender; a missing program is skipped, and the output says so. DOMELIGHT_PICTURES names a folder to keep a mirror ball in.
+Every direction must show the light that the environment has there: six square views, 90 degrees wide, along the axes. A matte ball under the remainder
+and the lights of an environment must be as bright as under the whole. Needs PyPI's mitsuba in the Python that runs this, and a program `blender` or PyPI's
+bpy; a missing program is skipped, and the output says so. With DOMELIGHT_BROWSER_ENGINES=all (`./test --engines`) both are fetched from PyPI into build/renderers, which takes
+1 GB. DOMELIGHT_PICTURES names a folder to keep a mirror ball in.
 """
 
+import importlib.util
 import math
 import os
 import pathlib
@@ -144,28 +147,84 @@ def test_mitsuba(environment, folder):
         mi.util.write_bitmap(str(pathlib.Path(os.environ["DOMELIGHT_PICTURES"], "mitsuba-ball.png")), mi.render(scene))
 
 
+def blender_command(script):
+    """The words that run a script in Blender: the program, or PyPI's module in this Python; None without either."""
+    if blender := shutil.which("blender"):
+        return [blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python", HERE / script]
+    return [sys.executable, HERE / script] if importlib.util.find_spec("bpy") else None
+
+
+def run_in_blender(script, numbers, *words):
+    """The numbers that a script wrote into the file; None if it failed, which is counted."""
+    process = subprocess.run([str(w) for w in [*blender_command(script), "--", *words]], capture_output=True, text=True, timeout=600)
+    if process.returncode or not numbers.exists():
+        return check(f"blender, {script}", False, (process.stdout + process.stderr)[-1500:])
+    return [float(w) for w in numbers.read_text().split()]
+
+
 def test_blender(environment, folder):
-    blender = shutil.which("blender")
-    if not blender:
-        return skip("blender", "it is not installed")
+    if not blender_command("blender_views.py"):
+        return skip("blender", "there is neither the program nor Python's module bpy (pip install bpy)")
     run("bake", folder / "axes.hdr", "-o", folder / "blender", "--for", "blender", "--size", "512", "--no-preview")
-    words = [blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python", HERE / "blender_views.py", "--", folder / "blender/axes.exr", folder / "views.txt",
-             SIZE, os.environ.get("DOMELIGHT_PICTURES", "")]
-    process = subprocess.run([str(w) for w in words], capture_output=True, text=True, timeout=600)
-    if process.returncode:
-        return check("blender", False, (process.stdout + process.stderr)[-1500:])
-    numbers = [float(w) for w in (folder / "views.txt").read_text().split()]
+    numbers = run_in_blender("blender_views.py", folder / "views.txt", folder / "blender/axes.exr", folder / "views.txt", SIZE, os.environ.get("DOMELIGHT_PICTURES", ""))
+    if not numbers:
+        return
     colours = [numbers[i:i + 3] for i in range(0, len(numbers), 3)]
     compare("blender (Cycles)", environment, [colours[v * SIZE * SIZE:(v + 1) * SIZE * SIZE] for v in range(6)])
 
 
+def sunny_environments(folder):
+    """Photographs with a sun, where there are any; else the built-in sky."""
+    photographs = pathlib.Path(os.environ.get("DOMELIGHT_DATA", "none"), "env_latlong")
+    found = [photographs / f"{name}.hdr" for name in ("noon_grass_1k", "spiaggia_di_mondello_1k", "kloppenheim_05_1k")]
+    found = [file for file in found if file.exists()]
+    if not found:
+        found = [folder / "sunny.hdr"]
+        run("sky", "--height", "512", "-o", found[0])
+    return found
+
+
+def test_lights_in_blender(folder):
+    if not blender_command("blender_lights.py"):
+        return  # said by test_blender()
+    for file in sunny_environments(folder):
+        parts = folder / f"parts-{file.stem}"
+        run("lights", file, "-o", parts, "--no-preview")
+        remainder = next(parts.glob("remainder.*"))
+        for environment in (file, remainder):
+            run("bake", environment, "-o", parts / "baked", "--for", "blender", "--no-preview")
+        numbers = run_in_blender("blender_lights.py", parts / "numbers.txt", parts / "numbers.txt", parts / f"baked/{file.stem}.exr", parts / "baked/remainder.exr",
+                                 parts / "lights.gltf")
+        if numbers:
+            off = max(abs(b / a - 1) for a, b in zip(numbers[:3], numbers[3:]))
+            check(f"blender: lights and remainder light a matte ball as the whole of {file.stem} does", off < 0.005, f"{100 * off:.2f} % off: {numbers}")
+            print(f"blender: lights and remainder of {file.stem} are {100 * off:.2f} % off the whole")
+
+
+def install_renderers():
+    """Runs this once more in a Python of its own that has the renderers, if they are asked for."""
+    place = pathlib.Path(os.environ.get("DOMELIGHT_BUILD", HERE.parents[2] / "build/dev")).parent / "renderers"
+    python = place / "bin/python"
+    if os.environ.get("DOMELIGHT_BROWSER_ENGINES") != "all" or sys.prefix == str(place):
+        return
+    try:
+        if not python.exists():
+            subprocess.run([sys.executable, "-m", "venv", place], check=True)
+        subprocess.run([python, "-m", "pip", "install", "--quiet", "numpy", "mitsuba", "bpy==4.2.0"], check=True)
+    except subprocess.CalledProcessError as error:
+        return print(f"the renderers cannot be installed: {error}")
+    os.execv(python, [str(python), __file__])
+
+
 def main():
+    install_renderers()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         run("sky", "--axes", "--height", "512", "-o", folder / "axes.hdr")
         environment = read_hdr(folder / "axes.hdr")
         test_mitsuba(environment, folder)
         test_blender(environment, folder)
+        test_lights_in_blender(folder)
     print(f"engines: {passed} passed, {failed} failed, {skipped} skipped")
     return 1 if failed else 0
 
