@@ -2,6 +2,7 @@
 
 #include "domelight/image/colour.h"
 #include "domelight/io/write_image.h"
+#include "domelight/study/explanation_picture.h"
 
 #include "io/file/json.h"
 #include "io/file/printable.h"

@@ -101,6 +101,7 @@
 #include "domelight/sampling/warps.h"
 #include "domelight/scene/scene.h"
 #include "domelight/study/environment_survey.h"
+#include "domelight/study/explanation_picture.h"
 #include "domelight/study/render_study.h"
 #include "domelight/study/render_study_pictures.h"
 #include "domelight/study/sample_explanation.h"

@@ -3,6 +3,8 @@
 #include "domelight/io/write_image.h"
 #include "domelight/projection/projection.h"
 #include "domelight/study/environment_survey.h"
+#include "domelight/study/explanation_picture.h"
+#include "domelight/study/render_study_pictures.h"
 #include "domelight/study/sample_explanation.h"
 #include "domelight/study/strategy_study.h"
 
@@ -96,6 +98,30 @@ TEST_SUITE("study") {
         REQUIRE(bool(coloured));
         CHECK(coloured->reference.x == doctest::Approx(0.5 * study->reference.x));
         CHECK(coloured->reference.y == doctest::Approx(0.25 * study->reference.y));
+    }
+
+    TEST_CASE("explanation_picture: the sample is marked where it lies in the image") {
+        const ImageF image(64, 32, 3, 1.0F);
+        const EnvironmentSampler sampler = sampler_of(image);
+        const SampleExplanation explanation = explain_sample(sampler, {0.25, 0.5});
+        const Image<std::uint8_t> picture = explanation_picture(sampler, explanation, "test");
+        const std::uint8_t* p =
+            picture.at(24 + int(explanation.column.position * 900), 70 + int(explanation.row.position * 450));
+        CHECK(p[0] > 200);  // the mark is yellow
+        CHECK(p[1] > 200);
+        CHECK(p[2] < 100);
+    }
+
+    TEST_CASE("stacked: one picture below the other, as wide as the widest") {
+        Image<std::uint8_t> small(2, 1, 3), large(3, 2, 3);
+        small.at(1, 0)[0] = 7;
+        large.at(2, 1)[2] = 9;
+        const Image<std::uint8_t> both = stacked({small, large});
+        CHECK(both.width() == 3);
+        CHECK(both.height() == 3);
+        CHECK(both.at(1, 0)[0] == 7);
+        CHECK(both.at(2, 0)[0] == 255);
+        CHECK(both.at(2, 2)[2] == 9);
     }
 
     TEST_CASE("study_strategies: errors name the option") {

@@ -1,17 +1,15 @@
-// The picture of --explain: the two cumulative functions are drawn along the image's edges, so that the lines from ξ to
-// the sample can be followed.
+#include "domelight/study/explanation_picture.h"
 
 #include "preview/sample_picture.h"
 #include "preview/strokes.h"
-#include "cli/sample/sample_explain.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-namespace domelight::cli {
+namespace domelight {
 namespace {
 
 constexpr Colour8 k_page{255, 255, 255}, k_ink{30, 34, 40}, k_quiet{110, 116, 124}, k_grid{225, 228, 232},
@@ -132,4 +130,4 @@ Image<std::uint8_t> explanation_picture(const EnvironmentSampler& sampler, const
     return picture;
 }
 
-}  // namespace domelight::cli
+}  // namespace domelight
