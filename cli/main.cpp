@@ -1,4 +1,4 @@
-#include "domelight/bake/bake.h"
+#include "domelight/base/version.h"
 #include "domelight/io/file/atomic_file.h"
 
 #include "cli/commands.h"

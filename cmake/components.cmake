@@ -6,6 +6,8 @@ set(domelight_common_headers <algorithm> <array> <cmath> <cstdint> <filesystem> 
 
 file(GLOB_RECURSE domelight_unassigned CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/src/*.cpp)
 
+configure_file(include/domelight/base/version.h.in include/domelight/base/version.h @ONLY)
+
 # domelight_component(NAME ROOMS folder ... [USES component ...] [LINKS library ...])
 # Takes the sources below those folders of src/ that no earlier component took.
 function(domelight_component name)
@@ -19,7 +21,7 @@ function(domelight_component name)
 
   add_library(domelight_${name} ${sources})
   add_library(domelight::${name} ALIAS domelight_${name})
-  target_include_directories(domelight_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>
+  target_include_directories(domelight_${name} PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include;${PROJECT_BINARY_DIR}/include>" $<INSTALL_INTERFACE:include>
                              PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_compile_features(domelight_${name} PUBLIC cxx_std_20)
   target_link_libraries(domelight_${name} PUBLIC ${component_USES} PRIVATE $<BUILD_INTERFACE:domelight_flags> ${component_LINKS})

@@ -44,8 +44,9 @@ def sources():
     """The files of the library, each with the path by which it is included."""
     for top in ("include", "src"):
         for path in sorted((ROOT / top).rglob("*")):
-            if path.suffix in (".h", ".cpp"):
-                yield path, path.relative_to(ROOT / top).as_posix()
+            # CMake makes version.h from version.h.in.
+            if path.suffix in (".h", ".cpp", ".in"):
+                yield path, path.relative_to(ROOT / top).as_posix().removesuffix(".in")
 
 
 def room_of(included):

@@ -1,5 +1,7 @@
 #include "cli/bake/bake_report.h"
 
+#include "domelight/base/version.h"
+
 #include "io/file/json.h"
 #include "cli/console/console.h"
 #include "cli/console/field_options.h"

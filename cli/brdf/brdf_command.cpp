@@ -1,5 +1,6 @@
 #include "domelight/bake/bake.h"
 #include "domelight/bake/brdf_file.h"
+#include "domelight/base/version.h"
 
 #include "io/file/json.h"
 #include "cli/commands.h"

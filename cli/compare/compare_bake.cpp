@@ -1,7 +1,8 @@
 #include "cli/compare/compare_bake.h"
 
-#include "domelight/bake/bake.h"
+#include "domelight/base/version.h"
 #include "domelight/compare/bake_audit.h"
+#include "domelight/engines/engine.h"
 #include "domelight/filtering/kernel/lobe_names.h"
 #include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"

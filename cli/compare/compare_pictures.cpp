@@ -1,6 +1,6 @@
 #include "cli/compare/compare_pictures.h"
 
-#include "domelight/bake/bake.h"
+#include "domelight/base/version.h"
 #include "domelight/compare/difference_map.h"
 #include "domelight/compare/picture_comparison.h"
 #include "domelight/io/write_image.h"

@@ -1,4 +1,4 @@
-#include "domelight/bake/bake.h"
+#include "domelight/base/version.h"
 #include "domelight/image/colour.h"
 #include "domelight/io/environment/convert.h"
 #include "domelight/io/environment/open_environment.h"

@@ -1,6 +1,6 @@
 #include "cli/convert/convert_picture.h"
 
-#include "domelight/bake/bake.h"
+#include "domelight/base/version.h"
 #include "domelight/compare/picture_reader.h"
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"

@@ -1,7 +1,8 @@
-#include "domelight/bake/bake.h"
+#include "domelight/base/version.h"
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/io/file/file_extension.h"
 #include "domelight/study/environment_survey.h"
+#include "domelight/texture/texture.h"
 
 #include "io/file/json.h"
 #include "io/file/sha256.h"

@@ -2,7 +2,7 @@
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/io/file/atomic_file.h"
 #include "domelight/filtering/resample/area_resample.h"
-#include "domelight/bake/bake.h"
+#include "domelight/base/version.h"
 #include "domelight/io/write_image.h"
 #include "domelight/sampling/light_extraction.h"
 

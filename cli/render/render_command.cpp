@@ -1,4 +1,4 @@
-#include "domelight/bake/bake.h"
+#include "domelight/base/version.h"
 
 #include "io/file/json.h"
 #include "cli/commands.h"

@@ -1,7 +1,7 @@
 #include "cli/render/render_study_command.h"
 
 #include "domelight/io/file/atomic_file.h"
-#include "domelight/bake/bake.h"
+#include "domelight/base/version.h"
 #include "domelight/io/write_image.h"
 #include "domelight/study/render_study_pictures.h"
 

@@ -1,6 +1,6 @@
 #include "cli/render/render_turntable.h"
 
-#include "domelight/bake/bake.h"
+#include "domelight/base/version.h"
 #include "domelight/io/picture/animation.h"
 #include "domelight/io/write_image.h"
 

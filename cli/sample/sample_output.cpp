@@ -1,7 +1,7 @@
 #include "cli/sample/sample_output.h"
 
 #include "domelight/io/file/atomic_file.h"
-#include "domelight/bake/bake.h"
+#include "domelight/base/version.h"
 #include "domelight/io/write_image.h"
 #include "domelight/texture/texture.h"
 

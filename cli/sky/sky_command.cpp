@@ -1,4 +1,4 @@
-#include "domelight/bake/bake.h"
+#include "domelight/base/version.h"
 #include "domelight/environment/sky/sky.h"
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"

@@ -49,6 +49,7 @@
 #include "domelight/base/result.h"
 #include "domelight/base/unit_point.h"
 #include "domelight/base/vec.h"
+#include "domelight/base/version.h"
 #include "domelight/compare/bake_audit.h"
 #include "domelight/compare/compare_sheet.h"
 #include "domelight/compare/difference_map.h"

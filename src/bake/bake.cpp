@@ -1,5 +1,6 @@
 #include "domelight/bake/bake.h"
 
+#include "domelight/base/version.h"
 #include "domelight/bake/brdf_file.h"
 #include "domelight/filtering/resample/reproject.h"
 #include "domelight/base/parallel.h"

@@ -1,5 +1,6 @@
 #include "domelight/bake/brdf_file.h"
 
+#include "domelight/base/version.h"
 #include "domelight/bake/bake.h"
 #include "domelight/io/file/atomic_file.h"
 #include "domelight/io/file/file_extension.h"

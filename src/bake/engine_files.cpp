@@ -1,5 +1,6 @@
 #include "bake/engine_files.h"
 
+#include "domelight/base/version.h"
 #include "domelight/texture/container/babylon_env.h"
 #include "domelight/io/write_image.h"
 

@@ -1,6 +1,7 @@
 #include "bake/manifest.h"
 
 #include "domelight/bake/brdf_file.h"
+#include "domelight/base/version.h"
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/projection/projections.h"
 

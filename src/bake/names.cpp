@@ -28,8 +28,4 @@ std::string cube_picture_name(CubePicture picture) {
     return {};
 }
 
-const char* version() {
-    return DOMELIGHT_VERSION;
-}
-
 }  // namespace domelight

@@ -27,7 +27,7 @@ std::string bake_method_name(BakeMethod method);
 enum class CubePicture { cross, strip, faces };
 std::string cube_picture_name(CubePicture picture);
 
-/// What to bake. Each engine has its own default for an option that is empty.
+/// What to bake. Each engine has its own default for a field that is empty.
 struct BakeOptions {
     std::vector<std::string> engines{"generic"};  ///< several engines share one reading of the environment
     std::optional<Layout> layout;                 ///< by default the engine's, which is mostly cube
@@ -156,7 +156,7 @@ struct BakeReport {
     std::vector<StageTime> stages;
 };
 
-/// Checks whether the options are consistent, before anything is read. The error's `where` names the option.
+/// Checks whether the options are consistent, before anything is read. The error's `where` names the field.
 Result<void> check_bake_options(const BakeOptions& options);
 
 /// Bakes an environment into `folder`: specular chain, irradiance, harmonics, BRDF table, picture, manifest. With
@@ -168,8 +168,5 @@ Result<BakeReport> bake(const Environment& environment, const BakeOptions& optio
 /// options and source hash, and every file with its hash.
 bool bake_is_up_to_date(const std::vector<std::filesystem::path>& source_files, const BakeOptions& options,
                         const std::filesystem::path& folder);
-
-/// "0.1.0".
-const char* version();
 
 }  // namespace domelight

@@ -12,7 +12,7 @@ namespace domelight {
 struct Error {
     std::string what;   ///< one sentence without a full stop: "image is 1000 x 600, but a lat-long map must be twice as
                         ///< wide as high"
-    std::string where;  ///< file, option or place; may be empty
+    std::string where;  ///< file, field or place; may be empty
     std::string hint;   ///< what to do; may be empty
 
     /// "WHERE: WHAT" and, on a second line, the hint.

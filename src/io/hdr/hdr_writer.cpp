@@ -2,6 +2,7 @@
 #include "domelight/io/file/atomic_file.h"
 #include "domelight/io/write_image.h"
 #include "domelight/base/parallel.h"
+#include "domelight/base/version.h"
 
 #include "texture/texel/rgbe.h"
 #include "io/file/output_file.h"
@@ -69,9 +70,9 @@ Result<void> write_hdr(const std::filesystem::path& file, RowSource& rows, int t
     const int width = rows.width(), height = rows.height();
     return write_file_atomically(file, [&](const std::filesystem::path& path) -> Result<void> {
         OutputFile out(path);
-        out.write(std::span<const char>("#?RADIANCE\nSOFTWARE=Domelight " DOMELIGHT_VERSION
-                                        "\nFORMAT=32-bit_rle_rgbe\n\n-Y " +
-                                        std::to_string(height) + " +X " + std::to_string(width) + "\n"));
+        out.write(std::span<const char>("#?RADIANCE\nSOFTWARE=Domelight " + std::string(version()) +
+                                        "\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(height) + " +X " +
+                                        std::to_string(width) + "\n"));
         ImageF block(width, std::min(height, k_block_rows), 3);
         for (int y = 0; y < height && !out.failed(); y += k_block_rows) {
             const int count = std::min(k_block_rows, height - y);

@@ -1,4 +1,5 @@
 // Writes KTX 2.0 (Khronos KTX File Format Specification, version 2.0; section numbers are its).
+#include "domelight/base/version.h"
 #include "domelight/texture/texture.h"
 
 #include "io/file/byte_buffer.h"
@@ -149,7 +150,7 @@ std::map<std::string, std::string> complete_metadata(const Texture& texture) {
                   [](const auto& pair) { return pair.first.starts_with("KTX") || pair.first.starts_with("ktx"); });
     note_scaled_bytes(texture.encoding, metadata);
     metadata["KTXorientation"] = "rd";  // right, down: rows run from top to bottom
-    metadata["KTXwriter"] = "Domelight " DOMELIGHT_VERSION;
+    metadata["KTXwriter"] = "Domelight " + std::string(version());
     return metadata;
 }
 
