@@ -66,7 +66,7 @@ void print_speeds(const ImageF& picture) {
             median_seconds([&] { simd::bc6h_encode(texels.data(), count, quality, blocks.data()); }, runs);
         const double whole = median_seconds([&] { encode_texture(map, Encoding::bc6h, 1, nullptr, quality); }, runs);
         const double two = median_seconds([&] { encode_texture(map, Encoding::bc6h, 2, nullptr, quality); }, runs);
-        fmt::print("| {:<8} | {:8.2f} | {:8.2f} | {:8.2f} |\n", encoding_quality_name(quality), megapixels / search,
+        fmt::print("| {:<8} | {:8.2f} | {:8.2f} | {:8.2f} |\n", name_of(quality), megapixels / search,
                    megapixels / whole, 2 * megapixels / two);
     }
     if (simd::instruction_set() != "SCALAR") {

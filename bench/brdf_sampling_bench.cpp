@@ -100,7 +100,7 @@ BENCHMARK(others)->DenseRange(0, 2);
 void sequence(benchmark::State& state) {
     const auto which = Sequence(state.range(0));
     const auto pair = std::uint32_t(state.range(1));
-    state.SetLabel(sequence_name(which));
+    state.SetLabel(name_of(which));
     std::uint64_t seed = 1;
     for (auto _ : state) {
         ++seed;

@@ -191,7 +191,7 @@ void run(const ImageF& weights, int rounds, int count) {
             const double start = cpu_seconds();
             auto d = make_distribution(Weights::of(weights.view()), method);
             build.push_back(1e3 * (cpu_seconds() - start));
-            if (!d) return fmt::print("{}: {}\n", method_name(method), d.error().format());
+            if (!d) return fmt::print("{}: {}\n", name_of(method), d.error().format());
             all[method] = std::move(*d);
         }
         figures[method].build_ms = median(build);
@@ -235,7 +235,7 @@ void run(const ImageF& weights, int rounds, int count) {
         fmt::print(
             "  {:<14} {:>8.1f} ({:>5.1f}) {:>8.1f} ({:>5.1f}) {:>8.2f} {:>8.2f} {:>10.1f} {:>8.2f} {:>12.2e} "
             "{:>12.2e}\n",
-            method_name(method), f.random, f.random_one, f.stratified, f.stratified_one, f.random / plain.random,
+            name_of(method), f.random, f.random_one, f.stratified, f.stratified_one, f.random / plain.random,
             f.stratified / plain.stratified, f.build_ms, f.megabytes, f.error, f.error_random);
     }
     // The reference is the faster of the two forms of binary search.

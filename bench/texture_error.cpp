@@ -86,8 +86,8 @@ Json compare(const ImageF& picture, const char* file) {
 }
 
 Json encode(char** args) {
-    const Encoding encoding = need(encoding_from_name(args[0]));
-    const EncodingQuality quality = need(encoding_quality_from_name(args[1]));
+    const Encoding encoding = need(from_name<Encoding>(args[0]));
+    const EncodingQuality quality = need(from_name<EncodingQuality>(args[1]));
     const std::vector<FilteredMap> maps{{Layout::latlong, read_picture(args[2])}};
     std::vector<double> seconds;
     Texture texture;

@@ -8,6 +8,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     domelight::MemorySource source({data, size});
     (void)!domelight::dds_info(source);
     (void)!domelight::dds_texture(source);
-    (void)!domelight::dds_texture(source, "rgbm");
+    (void)!domelight::dds_texture(source, domelight::Decode::rgbm);
     return 0;
 }

@@ -113,7 +113,7 @@ inline std::vector<Accuracy> measure_levels(ImageView<const float> image, Filter
     };
     for (std::size_t l = 0; l < options.specular.size(); ++l)
         if (!options.specular[l].mirror)
-            add(lobe_name(options.specular[l].kernel.lobe) + " level " + std::to_string(l), result->specular[l].cube(),
+            add(name_of(options.specular[l].kernel.lobe) + " level " + std::to_string(l), result->specular[l].cube(),
                 options.specular[l].kernel);
     if (options.irradiance_size > 0) add("irradiance", result->irradiance_over_pi.cube(), ZonalKernel::cosine());
     return rows;

@@ -32,7 +32,7 @@ void print_map(const BakedMap& map) {
     std::string line = fmt::format("  {:<28} {}: {}, {}", shown_name(map), map.role, shape, map.encoding);
     if (map.widened) line += fmt::format(" ({})", k_why_float_channels);
     if (map.levels.size() > 1) line += fmt::format(", {} levels to {}", map.levels.size(), map.levels.back().size);
-    if (map.quantity != Quantity::radiance) line += ", " + quantity_name(map.quantity);
+    if (map.quantity != Quantity::radiance) line += ", " + name_of(map.quantity);
     print("{}\n", line);
 }
 
@@ -62,8 +62,8 @@ void print_summary(const BakeOutcome& outcome) {
         print("  {:<28} harmonics: {} bands; E is off by {} RMS, {} at most\n", engine.sh.files.front().file,
               engine.sh.bands, percent(engine.sh.rms_error), percent(engine.sh.max_error));
         if (!engine.brdf.file.file.empty())
-            print("  {:<28} BRDF table: {}^2, {}, {}\n", engine.brdf.file.file, engine.brdf.size,
-                  engine.brdf.encoding, brdf_form_name(engine.brdf.form));
+            print("  {:<28} BRDF table: {}^2, {}, {}\n", engine.brdf.file.file, engine.brdf.size, engine.brdf.encoding,
+                  name_of(engine.brdf.form));
         if (engine.preview) print("  {:<28} a picture of it all\n", engine.preview->file);
         print("  {:<28} what everything is\n", "manifest.json");
         for (const Engine& e : engines())

@@ -16,7 +16,10 @@ namespace {
 
 struct BrdfWords {
     CommonOptions common;
-    std::string output, engine, form, g = "correlated", method = "exact";
+    std::string output, engine;
+    std::optional<BrdfForm> form;
+    BrdfG g = BrdfG::correlated;
+    BakeMethod method = BakeMethod::exact;
     std::optional<int> size;
     PointWords points;
     bool single_precision = false;
@@ -34,13 +37,14 @@ void declare(Arguments& a, BrdfWords& w) {
            "where to write it: .ktx2, .ktx, .dds, .exr, .hdr, or .png (8 bits, linear)");
     a.choice("--for", w.engine, engine_names(), "the engine whose form and size to use (generic)");
     a.choice(
-        "--form", w.form, {"scale-bias", "multiscatter", "scale-bias-charlie"},
+        "--form", w.form, with_names({BrdfForm::scale_bias, BrdfForm::multiscatter, BrdfForm::scale_bias_charlie}),
         "channels: scale and bias of F0; bias and scale + bias, as Filament reads them for multiple scattering; or "
         "scale, bias and the albedo of sheen (the engine's)");
     a.integer("--size", "N", w.size, "width and height, 1 to 4096 (the engine's)");
-    a.choice("--g", w.g, {"correlated", "smith", "karis"}, "masking function (correlated)");
+    a.choice("--g", w.g, "masking function (correlated)");
     a.flag("--float", w.single_precision, "32-bit floats in .ktx2, .ktx, .dds and .exr, instead of 16");
-    a.choice("--method", w.method, {"exact", "montecarlo"}, "exact to 1e-5, or the courses' sum of samples (exact)");
+    a.choice("--method", w.method, with_names({BakeMethod::exact, BakeMethod::montecarlo}),
+             "exact to 1e-5, or the courses' sum of samples (exact)");
     add_point_options(a, w.points);
     add_common_options(a, w.common);
 }
@@ -51,34 +55,34 @@ Result<BrdfFileOptions> brdf_options(const BrdfWords& w) {
     const auto engine = find_engine(w.engine.empty() ? engines().front().name : w.engine);
     if (!engine) return engine.error().at("--for");
     BrdfFileOptions o;
-    o.form = w.form.empty() ? (*engine)->brdf_form : *brdf_form_from_name(w.form);
+    o.form = w.form.value_or((*engine)->brdf_form);
     if (o.form == BrdfForm::none)
         return Error{w.engine + " loads no such table: it has its own", "--for",
                      "Say which channels: --form scale-bias."};
     o.size = w.size.value_or((*engine)->brdf_size);
     if (o.size < 1 || o.size > 4096) return Error{fmt::format("{} is not from 1 to 4096", o.size), "--size", ""};
-    o.g = *brdf_g_from_name(w.g);
+    o.g = w.g;
     o.single_precision = w.single_precision;
     o.threads = w.common.threads.value_or(0);
     auto points = montecarlo_points(w.points, w.method);
     if (!points) return points.error();
-    if (w.method == "montecarlo") o.points = *points;
+    if (w.method == BakeMethod::montecarlo) o.points = *points;
     return o;
 }
 
 void print_result(const BrdfWords& w, const BrdfFileOptions& o) {
     if (w.common.json) {
-        Json json{{"version", version()},        {"file", w.output}, {"form", brdf_form_name(o.form)},
-                  {"masking", brdf_g_name(o.g)}, {"size", o.size},   {"method", w.method},
+        Json json{{"version", version()},    {"file", w.output}, {"form", name_of(o.form)},
+                  {"masking", name_of(o.g)}, {"size", o.size},   {"method", name_of(w.method)},
                   {"axes", k_brdf_axes}};
         if (o.points) {
             json["samples"] = o.points->count;
-            json["sequence"] = sequence_name(o.points->sequence);
+            json["sequence"] = name_of(o.points->sequence);
             json["seed"] = o.points->seed;
         }
         print_document(json);
     } else if (!w.common.quiet) {
-        print("{}: {}, {} x {}, {}\n", w.output, brdf_form_name(o.form), o.size, o.size, k_brdf_axes);
+        print("{}: {}, {} x {}, {}\n", w.output, name_of(o.form), o.size, o.size, k_brdf_axes);
     }
 }
 

@@ -3,7 +3,6 @@
 #include "domelight/base/version.h"
 #include "domelight/compare/bake_audit.h"
 #include "domelight/engines/engine.h"
-#include "domelight/filtering/kernel/lobe_names.h"
 #include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/texture/texture.h"
@@ -55,7 +54,7 @@ void read_keys(const std::map<std::string, std::string>& keys, Bake& bake) {
         const auto key = keys.find(name);
         return key == keys.end() ? std::string() : key->second;
     };
-    bake.lobe = lobe_from_name(value("domelight.lobe")).value_or(Lobe::ggx);
+    bake.lobe = from_name<Lobe>(value("domelight.lobe")).value_or(Lobe::ggx);
     const auto roughness = numbers_in(value("domelight.roughness"), bake.levels.size(), 1);
     const auto exponents =
         numbers_in(value("domelight.exponent"), bake.levels.size(), std::numeric_limits<double>::infinity());
@@ -132,7 +131,7 @@ Result<Bake> read_pictures(const std::vector<std::string>& words, int threads) {
 Result<Bake> read_bake(const BakeWords& w, int threads) {
     auto bake =
         w.bake.size() == 1 && is_texture_file(w.bake[0]) ? read_chain(w.bake[0], threads) : read_pictures(w.bake, threads);
-    if (bake && !w.lobe.empty()) bake->lobe = *lobe_from_name(w.lobe);
+    if (bake) bake->lobe = w.lobe.value_or(bake->lobe);
     if (!bake || w.engine.empty()) return bake;
     const auto engine = find_engine(w.engine);
     if (!engine) return engine.error();
@@ -148,7 +147,7 @@ Result<Bake> read_bake(const BakeWords& w, int threads) {
 std::string convention_of(const Mat3& ours_from_theirs, const Mat3& world_to_source) {
     if (ours_from_theirs == Mat3()) return "";
     const Mat3 read = world_to_source * ours_from_theirs;
-    for (const char* name : {"default", "usd", "materialx", "mod"})
+    for (const std::string& name : latlong_convention_names())
         if (const auto convention = latlong_convention(name); convention && convention->world_to_default() == read)
             return name;
     return "";
@@ -196,7 +195,7 @@ void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, co
                     {"verdict", audit.verdict},
                     {"of_source", audit.of_source},
                     {"within", audit.within},
-                    {"lobe", lobe_name(audit.lobe)},
+                    {"lobe", name_of(audit.lobe)},
                     {"orientation",
                      {{"words", o.words},
                       {"ours_from_theirs", matrix},
@@ -241,7 +240,7 @@ void print_text(const BakeWords& w, const Bake& bake, const BakeAudit& audit, co
     const CubeOrientation& o = audit.orientation;
     print("{}: {}, {}², {} level{}\n", join(w.bake, " "), bake.format, bake.levels[0].cube.size(),
           bake.levels.size(), bake.levels.size() == 1 ? "" : "s");
-    print("against the exact filter ({}) of {}\n\n", lobe_name(audit.lobe),
+    print("against the exact filter ({}) of {}\n\n", name_of(audit.lobe),
           w.env.empty() ? "the built-in sky" : join(w.env, " "));
     print("  verdict       {}\n", audit.verdict);
     for (const std::string& note : audit.notes) print("                {}\n", note);
@@ -286,8 +285,7 @@ void add_bake_options(Arguments& a, BakeWords& w) {
     a.choice("--for", w.engine, names,
              "the engine whose roughness curve the bake should have (not needed for a Domelight file, which states "
              "it)");
-    a.choice("--lobe", w.lobe, {"ggx", "charlie", "phong", "phong-plain"},
-             "the lobe that the levels were filtered with (what the file states, otherwise ggx)");
+    a.choice("--lobe", w.lobe, "the lobe that the levels were filtered with (what the file states, otherwise ggx)");
     a.number("--within", "ERROR", w.within,
              "also exit with status 1 if the error of a level, at its stated roughness and brightness or else at the "
              "best fit, is above this: 0.01 is 1 %. Without it the status is 0 for any bake of this environment and 1 "

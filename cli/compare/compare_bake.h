@@ -1,6 +1,7 @@
 #pragma once
 // domelight compare --bake THEIRS --env SRC: a specular cube baked by any tool, compared with the exact filter.
 
+#include "domelight/filtering/kernel/zonal_kernel.h"
 #include "domelight/io/environment/open_environment.h"
 
 #include "cli/console/arguments.h"
@@ -15,7 +16,8 @@ namespace domelight::cli {
 
 struct BakeWords {
     std::vector<std::string> bake, env;
-    std::string engine, lobe;
+    std::string engine;
+    std::optional<Lobe> lobe;  ///< nothing: what the file states, otherwise ggx
     EnvironmentOptions environment;
     std::optional<int> texels;
     double within = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not given

@@ -179,12 +179,20 @@ Result<void> check_choice(const std::string& word, const std::vector<std::string
 
 }  // namespace
 
+void Arguments::choice_by_place(const std::string& name, const std::vector<std::string>& accepted,
+                                std::function<void(std::size_t)> take, const std::string& help) {
+    parser_->add(group_, name, join(accepted, "|"), help,
+                 [accepted, take = std::move(take)](const std::string& word) -> Result<void> {
+                     if (auto ok = check_choice(word, accepted); !ok) return ok;
+                     take(std::size_t(std::find(accepted.begin(), accepted.end(), word) - accepted.begin()));
+                     return {};
+                 });
+}
+
 void Arguments::choice(const std::string& name, std::string& value, const std::vector<std::string>& accepted,
                        const std::string& help) {
-    parser_->add(group_, name, join(accepted, "|"), help, [&value, accepted](const std::string& word) -> Result<void> {
-        value = word;
-        return check_choice(word, accepted);
-    });
+    choice_by_place(
+        name, accepted, [&value, accepted](std::size_t i) { value = accepted[i]; }, help);
 }
 
 void Arguments::choices(const std::string& name, std::vector<std::string>& values,

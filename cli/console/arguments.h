@@ -1,8 +1,10 @@
 #pragma once
 
+#include "domelight/base/names.h"
 #include "domelight/base/result.h"
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -34,6 +36,24 @@ class Arguments {
                  const std::string& help);
     void choice(const std::string& name, std::string& value, const std::vector<std::string>& accepted,
                 const std::string& help);
+    /// The name of one of `accepted`. Where the option is not given, `value` stays as it is.
+    template <typename T, typename V>
+    void choice(const std::string& name, T& value, const std::vector<NamedValue<V>>& accepted,
+                const std::string& help) {
+        std::vector<std::string> words;
+        for (const NamedValue<V>& a : accepted) words.emplace_back(a.name);
+        choice_by_place(
+            name, words, [&value, accepted](std::size_t i) { value = accepted[i].value; }, help);
+    }
+    /// The name of any value of an enumeration.
+    template <NamedEnum E>
+    void choice(const std::string& name, E& value, const std::string& help) {
+        choice(name, value, std::vector(std::begin(EnumNames<E>::table), std::end(EnumNames<E>::table)), help);
+    }
+    template <NamedEnum E>
+    void choice(const std::string& name, std::optional<E>& value, const std::string& help) {
+        choice(name, value, std::vector(std::begin(EnumNames<E>::table), std::end(EnumNames<E>::table)), help);
+    }
     /// Several of `accepted`, in several options or separated by commas.
     void choices(const std::string& name, std::vector<std::string>& values, const std::vector<std::string>& accepted,
                  const std::string& help);
@@ -52,6 +72,10 @@ class Arguments {
     std::string help() const;
 
   private:
+    /// `take` gets the place of the given word in `accepted`.
+    void choice_by_place(const std::string& name, const std::vector<std::string>& accepted,
+                         std::function<void(std::size_t)> take, const std::string& help);
+
     struct Parser;
     std::unique_ptr<Parser> parser_;
     std::string command_, summary_, group_ = "Options";

@@ -3,14 +3,11 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <vector>
 
 namespace domelight::cli {
 
 void add_display_options(Arguments& a, DisplayWords& w) {
-    std::vector<std::string> names;
-    for (const TonemapName& t : tonemap_names()) names.emplace_back(t.name);
-    a.choice("--tonemap", w.tonemap, names, "of a .png or .jpg (agx; none for a source of 8 bits)");
+    a.choice("--tonemap", w.tonemap, "of a .png or .jpg (agx; none for a source of 8 bits)");
     a.number("--ev", "STOPS", w.ev,
              "exposure of a .png or .jpg (from the log-average luminance; 0 for a source of 8 bits, or where "
              "--exposure is given)");
@@ -24,7 +21,7 @@ Result<void> check_display_options(const DisplayWords& w) {
 Display display_of(const DisplayWords& w, bool for_screen, const std::function<double()>& automatic_ev) {
     const Tonemap usual = for_screen ? Tonemap::none : Tonemap::agx;
     const double ev = !std::isnan(w.ev) ? w.ev : for_screen ? 0 : automatic_ev();
-    return {w.tonemap.empty() ? usual : tonemap_from_name(w.tonemap).value_or(usual), float(std::exp2(ev))};
+    return {w.tonemap.value_or(usual), float(std::exp2(ev))};
 }
 
 }  // namespace domelight::cli

@@ -5,13 +5,13 @@
 
 #include <functional>
 #include <limits>
-#include <string>
+#include <optional>
 
 namespace domelight::cli {
 
 /// How radiance becomes a picture for a screen, as it was asked for.
 struct DisplayWords {
-    std::string tonemap;                                   ///< empty: agx, for pictures of 8 bits none
+    std::optional<Tonemap> tonemap;                        ///< nothing: agx, for pictures of 8 bits none
     double ev = std::numeric_limits<double>::quiet_NaN();  ///< NaN: automatic
 };
 

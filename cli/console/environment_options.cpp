@@ -2,8 +2,10 @@
 
 #include "domelight/environment/sky/sky.h"
 #include "domelight/io/environment/open_environment.h"
+#include "domelight/projection/projections.h"
 
 #include "io/environment/cube_input.h"
+#include "projection/latlong_convention.h"
 
 #include <cmath>
 
@@ -56,19 +58,29 @@ Result<Environment> built_in_sky(const EnvironmentOptions& options) {
 
 }  // namespace
 
+std::string projection_list(const std::map<std::string, std::string>& remarks) {
+    std::string list;
+    for (const ProjectionInfo& info : projections()) {
+        list += (list.empty() ? "" : ", ") + std::string(info.name);
+        if (const auto remark = remarks.find(info.name); remark != remarks.end()) list += remark->second;
+        if (std::string_view(info.name) == "mirror-ball") list += "/fov=DEGREES";
+    }
+    return list;
+}
+
 void add_environment_options(Arguments& arguments, EnvironmentOptions& options) {
     arguments.group("Reading the environment");
     arguments.text(
         "--projection", "NAME", options.projection,
-        "the projection of the image: latlong (also latlong/usd ...), cube, cube-cross, cube-strip, cube-faces, sphere-map, "
-        "mirror-ball/fov=DEGREES, angular, hemisphere, paraboloid, paraboloid-opposite, dual-paraboloid, octahedral, "
-        "equal-area-octahedral, each with /centre=+Z,right=+X,up=+Y if it differs (auto: latlong or a "
-        "cube, from its shape and attributes)");
+        "the projection of the image: " +
+            projection_list(
+                {{"latlong", " (also latlong/usd ...)"}, {"cube", ", cube-cross, cube-strip, cube-faces"}}) +
+            ", each with /centre=+Z,right=+X,up=+Y if it differs (auto: latlong or a cube, from its shape and "
+            "attributes)");
     arguments.text(
         "--latlong", "NAME", options.latlong,
-        "lat-long convention: default, usd, mitsuba, openexr, materialx, mod, pbrt, or centre=+X,right=+Z[,up=+Y]");
-    arguments.choice("--decode", options.decode, {"auto", "srgb", "gamma22", "linear", "rgbm", "rgbd", "rgbp"},
-                     "transfer function of PNG and JPEG (auto: srgb)");
+        "lat-long convention: " + join(latlong_convention_names(), ", ") + ", pbrt, or centre=+X,right=+Z[,up=+Y]");
+    arguments.choice("--decode", options.decode, "transfer function of PNG and JPEG (auto: srgb)");
     arguments.number("--rotate-y-deg", "DEGREES", options.rotate_y_deg, "turn the light about +Y: +X moves towards +Z");
     arguments.text("--up", "AXIS", options.up, "the axis at the top of the image: +Y, +Z, ... (+Y)");
     arguments.number("--exposure", "STOPS", options.exposure, "multiply radiance by 2^STOPS");

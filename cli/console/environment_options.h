@@ -6,6 +6,7 @@
 #include "cli/console/arguments.h"
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,6 +15,9 @@ namespace domelight::cli {
 
 /// The options of every command that takes an environment.
 void add_environment_options(Arguments& arguments, EnvironmentOptions& options);
+
+/// The names of all projections for a help text, each followed by its remark, if any: "latlong, cube, sphere-map, ...".
+std::string projection_list(const std::map<std::string, std::string>& remarks = {});
 
 /// The environment in `files` (one image, the six faces of a cube, or a folder with these); the built-in sky where
 /// there is none.

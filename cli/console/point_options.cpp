@@ -8,23 +8,23 @@ namespace domelight::cli {
 
 void add_point_options(Arguments& a, PointWords& w) {
     a.integer("--samples", "N", w.samples, "montecarlo: samples for each texel (1024)");
-    a.choice("--sequence", w.sequence, sequence_names(),
+    a.choice("--sequence", w.sequence,
              "montecarlo: the points of the unit square, the same ones for each texel (hammersley)");
     a.text("--seed", "N", w.seed, "montecarlo: selects the randomisation; 0: the textbook's plain points (0)");
 }
 
-Result<PointSet> montecarlo_points(const PointWords& w, const std::string& method) {
+Result<PointSet> montecarlo_points(const PointWords& w, BakeMethod method) {
     const std::pair<const char*, bool> options[] = {
-        {"--samples", w.samples.has_value()}, {"--sequence", !w.sequence.empty()}, {"--seed", !w.seed.empty()}};
+        {"--samples", w.samples.has_value()}, {"--sequence", w.sequence.has_value()}, {"--seed", !w.seed.empty()}};
     for (const auto& [option, given] : options)
-        if (given && method != "montecarlo")
-            return Error{fmt::format("has no meaning with --method {}", method), option,
-                         "It belongs to --method montecarlo."};
+        if (given && method != BakeMethod::montecarlo)
+            return Error{fmt::format("has no meaning with --method {}", name_of(method)), option,
+                         fmt::format("It belongs to --method {}.", name_of(BakeMethod::montecarlo))};
     PointSet points;
     points.count = w.samples.value_or(points.count);
     if (points.count < 1 || points.count > (1 << 24))
         return Error{fmt::format("{} is not from 1 to 2^24", points.count), "--samples", ""};
-    if (!w.sequence.empty()) points.sequence = *sequence_from_name(w.sequence);
+    points.sequence = w.sequence.value_or(points.sequence);
     if (w.seed.empty()) return points;
     const auto seed = parse_seed(w.seed);
     if (!seed) return seed.error().at("--seed");

@@ -1,5 +1,6 @@
 #include "domelight/base/version.h"
 #include "domelight/image/colour.h"
+#include "domelight/image/cube_layout.h"
 #include "domelight/io/environment/convert.h"
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/io/file/file_extension.h"
@@ -15,6 +16,7 @@
 #include "cli/convert/convert_output.h"
 #include "cli/convert/convert_picture.h"
 #include "preview/screen_picture.h"
+#include "projection/latlong_convention.h"
 
 #include <fmt/core.h>
 
@@ -36,6 +38,14 @@ struct ConvertWords {
     EnvironmentOptions environment;
 };
 
+/// "latlong/usd, latlong/mitsuba, ...": all but the default.
+std::string latlong_list() {
+    std::vector<std::string> names = latlong_convention_names();
+    names.erase(names.begin());
+    for (std::string& name : names) name = "latlong/" + name;
+    return join(names, ", ");
+}
+
 void declare(Arguments& a, ConvertWords& w) {
     a.positional("IN", w.files,
                  "an environment (or the six faces of a cube, a folder of them, front and back of a dual paraboloid), "
@@ -44,16 +54,14 @@ void declare(Arguments& a, ConvertWords& w) {
            "the output: .hdr, .exr, .ktx2, .ktx, .dds, or .png or .jpg for viewing");
     a.group("What to make");
     a.text("--to", "PROJECTION", w.to,
-           "latlong, cube, sphere-map, mirror-ball/fov=DEGREES, angular, hemisphere, paraboloid, paraboloid-opposite, "
-           "dual-paraboloid, octahedral, equal-area-octahedral; with its convention: latlong/usd, latlong/mitsuba, "
-           "latlong/openexr, latlong/materialx, latlong/mod, cube/openexr, or NAME/centre=+X,right=+Z,up=+Y (cube in a "
-           "texture, else latlong)");
+           projection_list() + "; with its convention: " + latlong_list() +
+               ", cube/openexr, or NAME/centre=+X,right=+Z,up=+Y (cube in a texture, else latlong)");
     a.integer("--size", "N", w.size, "height of the picture, of a cube's face, of one half (as fine as the source)");
     a.flag("--sharp", w.sharp,
            "keep more of the finest detail from lat-long to cube or lat-long; takes ten times as long");
     a.text("--layout", "NAME", w.output.layout,
-           "a cube: cross, vertical-cross, strip, vertical-strip, faces (name_px.hdr ...); a dual paraboloid: "
-           "side-by-side, files (name_front.hdr ...)");
+           "a cube: " + join(cube_layout_names(), ", ") +
+               ", faces (name_px.hdr ...); a dual paraboloid: side-by-side, files (name_front.hdr ...)");
     a.text("--encoding", "NAME", w.output.encoding,
            ".exr: auto, half, float (auto: half, or float where half would clip); textures: rgba16f, rgba32f, rgb9e5, "
            "r11g11b10f, bc6h, .ktx2 also uastc-hdr, astc4x4-hdr, astc6x6-hdr, rgbm, rgbd, rgbp (rgba16f)");

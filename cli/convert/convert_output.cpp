@@ -26,7 +26,9 @@ std::vector<std::string> layouts_of(const Projection& projection, const std::str
     if (projection.charts() == 1) return {"picture"};
     if (is_texture(extension)) return {"cube"};
     if (projection.grid() == SampleGrid::both_on_edges) return {"envmap"};
-    return {"cross", "vertical-cross", "strip", "vertical-strip", "faces"};
+    std::vector<std::string> all = cube_layout_names();
+    all.push_back("faces");
+    return all;
 }
 
 std::vector<std::string> encodings_of(const std::string& file) {
@@ -34,9 +36,13 @@ std::vector<std::string> encodings_of(const std::string& file) {
     if (extension == ".exr") return {"auto", "half", "float"};
     if (extension == ".hdr") return {"rgbe"};
     if (is_screen_picture(file)) return {"srgb"};
-    std::vector<std::string> all{"rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "bc6h"};
-    if (extension != ".dds") all.insert(all.end(), {"astc4x4-hdr", "astc6x6-hdr"});
-    if (extension == ".ktx2") all.insert(all.end(), {"uastc-hdr", "rgbm", "rgbd", "rgbp"});
+    std::vector<std::string> all;
+    const auto add = [&](std::initializer_list<Encoding> encodings) {
+        for (const Encoding encoding : encodings) all.push_back(name_of(encoding));
+    };
+    add({Encoding::rgba16f, Encoding::rgba32f, Encoding::rgb9e5, Encoding::r11g11b10f, Encoding::bc6h});
+    if (extension != ".dds") add({Encoding::astc4x4_hdr, Encoding::astc6x6_hdr});
+    if (extension == ".ktx2") add({Encoding::uastc_hdr, Encoding::rgbm, Encoding::rgbd, Encoding::rgbp});
     return all;
 }
 
@@ -128,7 +134,7 @@ Result<WrittenPicture> write_projected(const ProjectedImage& image, const Conver
         const FilteredMap level = as_level(image);
         std::vector<EncodingReport> reports;
         const Texture texture =
-            encode_texture({&level, 1}, *encoding_from_name(output.encoding), output.threads, &reports);
+            encode_texture({&level, 1}, *from_name<Encoding>(output.encoding), output.threads, &reports);
         written.encoding = reports[0];
         written.files = {output.file};
         const auto ok = extension == ".ktx2"  ? write_ktx2(output.file, texture)

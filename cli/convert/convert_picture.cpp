@@ -53,11 +53,7 @@ void print_result(const PictureConversion& c, const Picture& picture, const Disp
                   const CommonOptions& common) {
     const int width = picture.rgb.width(), height = picture.rgb.height();
     const bool screen = is_screen_picture(c.output);
-    const std::string tonemap = [&] {
-        for (const TonemapName& t : tonemap_names())
-            if (t.method == display.method) return std::string(t.name);
-        return std::string();
-    }();
+    const std::string tonemap = name_of(display.method);
     const double ev = std::log2(display.exposure);
     if (common.json) {
         Json json{{"version", version()},

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "domelight/io/decode.h"
+
 #include "cli/console/console.h"
 #include "cli/console/display_options.h"
 
@@ -12,7 +14,7 @@ namespace domelight::cli {
 struct PictureConversion {
     std::string input, output;
     std::string layer;     ///< OpenEXR: the layer or channel; empty: the picture itself
-    std::string decode;    ///< as of environments
+    Decode decode = Decode::automatic;
     std::string encoding;  ///< .exr: half, float, or auto (also where empty): float where half would clip
     double exposure = 0;   ///< stops that radiance is multiplied by
     DisplayWords display;

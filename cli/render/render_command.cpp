@@ -19,6 +19,13 @@
 namespace domelight::cli {
 namespace {
 
+/// The words of --shading.
+std::vector<NamedValue<std::optional<ShadingModel>>> shadings() {
+    std::vector<NamedValue<std::optional<ShadingModel>>> rows{{std::nullopt, k_reference}};
+    for (const auto& [model, name] : EnumNames<ShadingModel>::table) rows.push_back({model, name});
+    return rows;
+}
+
 void declare(Arguments& a, RenderWords& w) {
     a.positional("SCENE", w.scenes,
                  "a model (.glb, .gltf, .obj, .ply), or a built-in one: " + join(built_in_scene_names(), ", "));
@@ -32,15 +39,12 @@ void declare(Arguments& a, RenderWords& w) {
               "the eye (the scene's camera, or one that shows all of it)");
     a.numbers("--camera-target", "x,y,z", w.camera_target, "the point that the camera looks at (0,0,0)");
     a.number("--fov-deg", "DEGREES", w.fov_deg, "vertical field of view with --camera-position (35)");
-    a.choice("--background", w.background, {"environment", "blurred", "colour", "color", "transparent"},
-             "what is seen where there is no surface (environment)");
+    a.choice("--background", w.background, "what is seen where there is no surface (environment)");
     a.text("--background-color,--background-colour", "#rrggbb|R,G,B", w.background_color,
            "the colour of the background, sRGB or linear (#ffffff)");
     a.number("--background-roughness", "R", w.background_roughness, "how blurred the background is, 0 to 1 (0.35)");
     a.flag("--shadow-catcher", w.shadow_catcher, "an invisible ground under the scene that receives its shadow");
-    std::vector<std::string> tonemaps;
-    for (const TonemapName& t : tonemap_names()) tonemaps.emplace_back(t.name);
-    a.choice("--tonemap", w.tonemap, tonemaps, "tone map of a .png or .jpg (agx)");
+    a.choice("--tonemap", w.tonemap, "tone map of a .png or .jpg (agx)");
     a.number("--ev", "STOPS", w.ev,
              "exposure of a .png or .jpg (from the log-average luminance of what the surfaces show)");
     a.group("Going round");
@@ -59,30 +63,30 @@ void declare(Arguments& a, RenderWords& w) {
              "whose file does not state it (683)");
     add_environment_options(a, w.environment);
     a.group("How it is computed");
-    a.choice("--shading", w.shading, {"reference", "split-sum", "stretched", "phong", "mirror", "refract"},
+    a.choice("--shading", w.shading, shadings(),
              "reference = path tracing; the others draw like a real-time engine from baked maps (reference)");
-    a.choice("--strategy", w.strategy, {"mis", "env", "brdf"}, "reference: how light directions are sampled (mis)");
+    a.choice("--strategy", w.strategy, "reference: how light directions are sampled (mis)");
     a.integer("--spp", "N", w.spp, "samples of each pixel (64)");
     a.number("--noise", "X", w.noise,
              "reference: take more samples in pixels whose standard error of L/(1+L) is above this");
     a.number("--time", "SECONDS", w.time, "reference: as many samples as fit into this time");
     a.integer("--bounces", "N", w.bounces, "reference: bounces of indirect light; 0 is direct light with shadows (4)");
-    a.choice("--occlusion", w.occlusion, {"on", "off"},
+    a.choice("--occlusion", w.occlusion, std::vector<NamedValue<bool>>{{true, "on"}, {false, "off"}},
              "off: no shadows, no indirect light, no occlusion maps, like a shader without them (on)");
     a.flag("--multiple-scattering", w.multiple_scattering, "compensate the energy that single scattering loses on "
                                                            "rough surfaces");
     a.text("--maps", "DIR", w.maps, "split-sum, stretched, phong: the folder of a bake by `domelight bake` (baked in "
                                     "memory)");
-    a.choice("--irradiance", w.irradiance, {"cube", "sh"},
+    a.choice("--irradiance", w.sh_irradiance, std::vector<NamedValue<bool>>{{false, "cube"}, {true, "sh"}},
              "split-sum, stretched, phong: the irradiance cube, or nine harmonics (cube)");
-    a.choice("--lookup", w.lookup, {"environment", "cube", "latlong", "sphere-map", "dual-paraboloid"},
+    a.choice("--lookup", w.lookup,
              "mirror, refract: look up the environment through this kind of texture (none: the environment itself)");
     a.integer("--lookup-size", "N", w.lookup_size, "the size of the texture: of a face, its height, or of each disc "
                                                    "(512)");
     a.choice("--brdf", w.brdf, {"scene", "phong"},
              "phong: modified Phong lobes of matching width instead of GGX, the reference for --shading phong (scene)");
     a.flag("--bent-lookup", w.bent_lookup, "split-sum: move the lookup towards the normal on rough surfaces");
-    a.choice("--diffuse-weight", w.diffuse_weight, {"energy", "fresnel"},
+    a.choice("--diffuse-weight", w.diffuse_weight,
              "split-sum, stretched: weight of the diffuse layer, 1 - (F0 scale + bias), or 1 - F(NdotV) as in most "
              "courses (energy)");
     a.integer("--seed", "N", w.seed, "another randomisation (0)");
@@ -98,10 +102,9 @@ void print_result(const RenderWords& w, const Scene& scene, const RenderResult& 
     const std::vector<std::string> lost = non_finite_warning(r.non_finite_samples);
     print_warnings(lost, w.common, w.scene_name());
     if (w.common.json) {
-        Json json{
-            {"version", version()},      {"files", w.outputs},   {"width", o.width},
-            {"height", o.height},        {"shading", w.shading}, {"triangles", scene.triangle_count()},
-            {"samples", r.sample_count}, {"seconds", r.seconds}, {"ev", ev}};
+        Json json{{"version", version()},      {"files", w.outputs},          {"width", o.width},
+                  {"height", o.height},        {"shading", w.shading_name()}, {"triangles", scene.triangle_count()},
+                  {"samples", r.sample_count}, {"seconds", r.seconds},        {"ev", ev}};
         if (w.reference()) json["noise"] = r.noise, json["rays"] = r.rays;
         json["non_finite_samples"] = r.non_finite_samples;
         json["warnings"] = with_options(scene.warnings);
@@ -164,28 +167,17 @@ int run_picture(const RenderWords& w, const RayScene& scene, const EnvironmentSa
 
 }  // namespace
 
-/// For every shading except "reference".
-ShadingModel shading_model(const RenderWords& w) {
-    for (const ShadingModel m :
-         {ShadingModel::stretched, ShadingModel::phong, ShadingModel::mirror, ShadingModel::refract})
-        if (shading_model_name(m) == w.shading) return m;
-    return ShadingModel::split_sum;
-}
-
 Result<RenderResult> draw(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler,
                           const LightMaps* maps, const RenderOptions& o) {
     if (w.reference()) return render_reference(scene, sampler, o);
     ShadingOptions shading;
-    shading.model = shading_model(w);
-    for (const MapLookup l : {MapLookup::environment, MapLookup::cube, MapLookup::latlong, MapLookup::sphere_map,
-                              MapLookup::dual_paraboloid})
-        if (map_lookup_name(l) == w.lookup) shading.lookup = l;
+    shading.model = *w.shading;
+    shading.lookup = w.lookup;
     shading.lookup_size = w.lookup_size.value_or(shading.lookup_size);
-    shading.sh_irradiance = w.irradiance == "sh";
+    shading.sh_irradiance = w.sh_irradiance;
     shading.bent_lookup = w.bent_lookup;
     shading.multiple_scattering = w.multiple_scattering;
-    for (const DiffuseWeight d : {DiffuseWeight::energy, DiffuseWeight::fresnel})
-        if (diffuse_weight_name(d) == w.diffuse_weight) shading.diffuse_weight = d;
+    shading.diffuse_weight = w.diffuse_weight;
     shading.occlusion = o.occlusion;
     return render_shaded(scene, *maps, sampler, shading, o);
 }
@@ -235,7 +227,7 @@ int run_render(const std::vector<std::string>& words) {
         if (w.brdf == "phong")
             for (Material& m : scene->materials) m.phong = true;
         print_warnings(scene->warnings, w.common, name);
-        print_warnings(w.reference() ? not_rendered(*scene) : not_rendered(*scene, shading_model(w)), w.common, name);
+        print_warnings(w.shading ? not_rendered(*scene, *w.shading) : not_rendered(*scene), w.common, name);
     }
     w.environment.threads = w.threads();
     const auto open = [&] { return open_environment_or_sky(w.environment_files, w.environment); };

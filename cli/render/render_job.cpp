@@ -12,8 +12,7 @@ namespace domelight::cli {
 
 Result<std::optional<LightMaps>> maps_for(const RenderWords& w, const EnvironmentSampler& sampler) {
     if (w.reference() && w.backdrop != Background::blurred) return std::optional<LightMaps>{};
-    const Lobe lobe =
-        w.shading == shading_model_name(ShadingModel::phong) ? shading_lobe(ShadingModel::phong) : Lobe::ggx;
+    const Lobe lobe = w.shading == ShadingModel::phong ? shading_lobe(ShadingModel::phong) : Lobe::ggx;
     auto maps = w.maps.empty() ? LightMaps::bake(sampler.image(), sampler.world_to_source(), w.threads(), lobe)
                                : LightMaps::load(w.maps);
     if (!maps) return maps.error();

@@ -83,7 +83,7 @@ Result<void> check_company(const RenderWords& w, const Arguments& a) {
                  {"--fps", w.frames.has_value(), "--frames"},
                  {"--turn", w.frames.has_value(), "--frames"},
                  {"--resume", w.frames.has_value(), "--frames"},
-                 {"--diffuse-weight", w.shading == "split-sum" || w.shading == "stretched",
+                 {"--diffuse-weight", w.shading == ShadingModel::split_sum || w.shading == ShadingModel::stretched,
                   "--shading split-sum or stretched"},
                  {"--save-every", w.reference() && !w.frames && !w.study, "a single picture of --shading reference"}};
     // Arguments::given does not look for this spelling of the option.
@@ -137,14 +137,7 @@ Result<void> check_words(RenderWords& w, const Arguments& a) {
                      fmt::format("One model, or a built-in scene: {}.", join(built_in_scene_names(), ", "))};
     if (auto ok = check_outputs(w); !ok) return ok;
     if (auto ok = check_numbers(w); !ok) return ok;
-    const std::string background = !w.background.empty()        ? w.background
-                                   : w.background_color.empty() ? "environment"
-                                                                : "colour";
-    w.backdrop = background == "environment"   ? Background::environment
-                 : background == "blurred"     ? Background::blurred
-                 : background == "transparent" ? Background::transparent
-                                               : Background::colour;
-    w.background = w.backdrop == Background::colour ? "colour" : background;
+    w.backdrop = w.background.value_or(w.background_color.empty() ? Background::environment : Background::colour);
     if (w.backdrop == Background::colour) {
         const auto colour = parse_colour(w.background_color.empty() ? "#ffffff" : w.background_color);
         if (!colour) return colour.error().at("--background-color");
@@ -202,14 +195,12 @@ Result<RenderOptions> render_options(const RenderWords& w, const Scene& scene) {
                : w.camera_position.empty()
                    ? default_camera(scene, shape)
                    : look_at(vector(w.camera_position), vector(w.camera_target), float(w.fov_deg * k_pi / 180));
-    o.strategy = w.strategy == "env"    ? LightStrategy::environment
-                 : w.strategy == "brdf" ? LightStrategy::brdf
-                                        : LightStrategy::mis;
+    o.strategy = w.strategy;
     o.samples = w.spp.value_or(64);
     o.noise = w.noise;
     o.seconds = w.time;
     o.bounces = w.bounces.value_or(4);
-    o.occlusion = w.occlusion == "on";
+    o.occlusion = w.occlusion;
     o.multiple_scattering = w.multiple_scattering;
     o.background = w.backdrop;
     o.background_colour = w.backdrop_colour;

@@ -2,9 +2,11 @@
 
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/render/render.h"
+#include "domelight/render/shading/shading.h"
 
 #include "cli/console/arguments.h"
 #include "cli/console/console.h"
+#include "preview/tonemap.h"
 
 #include <limits>
 #include <optional>
@@ -13,13 +15,22 @@
 
 namespace domelight::cli {
 
+/// The word of --shading for path tracing.
+inline constexpr const char* k_reference = "reference";
+
 /// The command line of `render`.
 struct RenderWords {
     CommonOptions common;
     std::vector<std::string> scenes, environment_files, light_files, outputs;
     EnvironmentOptions environment;
-    std::string shading = "reference", strategy = "mis", occlusion = "on", background, maps, tonemap = "agx",
-                irradiance = "cube", lookup = "environment", brdf = "scene", diffuse_weight = "energy";
+    std::optional<ShadingModel> shading;  ///< nothing: the reference
+    LightStrategy strategy = LightStrategy::mis;
+    MapLookup lookup = MapLookup::environment;
+    DiffuseWeight diffuse_weight = DiffuseWeight::energy;
+    Tonemap tonemap = Tonemap::agx;
+    std::optional<Background> background;
+    bool occlusion = true, sh_irradiance = false;
+    std::string maps, brdf = "scene";
     std::optional<int> width, height, spp, bounces, seed, lookup_size;
     std::vector<double> camera_position, camera_target;
     std::string camera;
@@ -43,7 +54,8 @@ struct RenderWords {
     Vec3f backdrop_colour;  ///< linear
 
     int threads() const { return common.threads.value_or(0); }
-    bool reference() const { return shading == "reference"; }
+    bool reference() const { return !shading; }
+    std::string shading_name() const { return shading ? name_of(*shading) : k_reference; }
     std::string scene_name() const { return scenes.empty() ? "" : scenes.front(); }
 };
 

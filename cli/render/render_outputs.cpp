@@ -64,7 +64,7 @@ Result<void> write_layers(const std::string& file, const RenderResult& r, ImageV
 }  // namespace
 
 Image<std::uint8_t> display_picture(const RenderResult& r, const RenderWords& w, double ev) {
-    const Display display{tonemap_from_name(w.tonemap).value_or(Tonemap::agx), float(std::exp2(ev))};
+    const Display display{w.tonemap, float(std::exp2(ev))};
     if (w.backdrop == Background::colour) return over_display_colour(r, w.backdrop_colour, display);
     const bool transparent = w.backdrop == Background::transparent;
     return screen_picture(r.radiance, transparent ? r.opacity.view() : ImageView<const float>(), display, w.threads());

@@ -19,10 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const char* strategy_word(LightStrategy s) {
-    return s == LightStrategy::environment ? "env" : s == LightStrategy::brdf ? "brdf" : "mis";
-}
-
 Json json_of(const StrategyFigure& f) {
     Json cells = Json::array();
     for (const StrategyCell& c : f.cells) {
@@ -30,7 +26,7 @@ Json json_of(const StrategyFigure& f) {
         cells.push_back({{"occlusion", c.occlusion},
                          {"roughness", c.roughness},
                          {"light_deg", light.diameter_deg > 0 ? Json(light.diameter_deg) : Json("environment")},
-                         {"strategy", strategy_word(c.strategy)},
+                         {"strategy", name_of(c.strategy)},
                          {"tone_mapped_rmse", c.error}});
     }
     return {{"samples", f.samples}, {"reference_samples", f.reference_samples}, {"cells", std::move(cells)}};
@@ -42,7 +38,7 @@ Json json_of(const NoiseFigure& f) {
         Json points = Json::array();
         for (const auto& p : l.points) points.push_back({{"samples", p.samples}, {"tone_mapped_rmse", p.error}});
         lines.push_back({{"occlusion", l.occlusion},
-                         {"strategy", strategy_word(l.strategy)},
+                         {"strategy", name_of(l.strategy)},
                          {"slope", l.slope},
                          {"points", std::move(points)}});
     }

@@ -146,8 +146,8 @@ void print_turntable(const RenderWords& w, const RenderOptions& o, const Turntab
                      const std::vector<std::string>& animations, double ev) {
     print_warnings(non_finite_warning(tally.non_finite_samples), w.common, w.scene_name());
     if (w.common.json) {
-        Json json{{"version", version()}, {"width", o.width}, {"height", o.height},
-                                    {"shading", w.shading}, {"ev", ev},         {"turn", w.turn}};
+        Json json{{"version", version()},        {"width", o.width}, {"height", o.height},
+                  {"shading", w.shading_name()}, {"ev", ev},         {"turn", w.turn}};
         auto& frames = json["frames"] = Json::array();
         for (int i = 1; i <= turntable.frames(); ++i) frames.push_back(turntable.files(i));
         json["drawn"] = tally.drawn, json["kept"] = tally.kept;

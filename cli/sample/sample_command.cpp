@@ -22,14 +22,14 @@ std::vector<LightSample> draw(const SampleWords& w, const EnvironmentSampler& sa
     const int count = w.count.value_or(1024);
     std::vector<LightSample> samples(count);
     for (int i = 0; i < count; ++i)
-        samples[i] = sampler.sample(unit_point(w.points, w.seed_number, std::uint32_t(i), std::uint32_t(count)));
+        samples[i] = sampler.sample(unit_point(w.sequence, w.seed_number, std::uint32_t(i), std::uint32_t(count)));
     return samples;
 }
 
 std::string drawn_how(const SampleWords& w) {
-    std::string text = fmt::format("{} · {}", w.method, w.weight);
-    if (w.compensate) text += " · compensated";
-    if (w.uniform_share > 0) text += fmt::format(" · {:g} uniform", w.uniform_share);
+    std::string text = fmt::format("{} · {}", name_of(w.sampler.method), name_of(w.sampler.weight));
+    if (w.sampler.compensate) text += " · compensated";
+    if (w.sampler.uniform_share > 0) text += fmt::format(" · {:g} uniform", w.sampler.uniform_share);
     return text;
 }
 
@@ -40,18 +40,15 @@ Result<void> write_pictures(const SampleWords& w, const EnvironmentSampler& samp
     options.threads = w.threads();
     if (!w.picture.empty()) {
         options.subtitle = fmt::format("{} samples · {} · {}, seed {}", w.count.value_or(1024), drawn_how(w),
-                                       w.sequence, w.seed_number);
+                                       name_of(w.sequence), w.seed_number);
         if (auto ok = write_screen_picture(w.picture, sample_picture(sampler, draw(w, sampler), options).view()); !ok)
             return ok.error().at(w.picture);
     }
     if (!w.heat.empty()) {
-        const bool uv = w.heat_measure == "uv";
+        const bool uv = w.heat_measure == DensityMeasure::uv;
         options.subtitle = fmt::format("density {} · {}",
                                        uv ? "over the image, pdf_uv" : "per steradian, pdf_solid_angle", drawn_how(w));
-        if (auto ok = write_screen_picture(
-                w.heat,
-                density_picture(sampler, uv ? DensityMeasure::uv : DensityMeasure::solid_angle, options).view());
-            !ok)
+        if (auto ok = write_screen_picture(w.heat, density_picture(sampler, w.heat_measure, options).view()); !ok)
             return ok.error().at(w.heat);
     }
     return {};
@@ -121,12 +118,12 @@ int run_sample(const std::vector<std::string>& words) {
     auto sampler = EnvironmentSampler::build(*environment, w.sampler);
     if (!sampler) return print_error(sampler.error().at(w.environment_name()));
     print_warnings(environment->report().warnings, w.common, w.environment_name());
-    if (w.compensate && !w.common.quiet && sampler->compensation() > 0)
+    if (w.sampler.compensate && !w.common.quiet && sampler->compensation() > 0)
         print_warnings({"compensated samples leave out the light below the mean: use them only beside BRDF sampling"},
                        w.common);
 
-    const bool plain_points = w.seed_number == 0 && (w.points == Sequence::sobol || w.points == Sequence::halton);
-    if (w.sampler.method == DistributionMethod::alias && (w.points == Sequence::hammersley || plain_points))
+    const bool plain_points = w.seed_number == 0 && (w.sequence == Sequence::sobol || w.sequence == Sequence::halton);
+    if (w.sampler.method == DistributionMethod::alias && (w.sequence == Sequence::hammersley || plain_points))
         print_warnings({fmt::format("an alias table chooses by the lower bits of a point, which all points of {} "
                                     "share: these samples do not follow the density; "
                                     "take --sequence random or another method",
@@ -137,9 +134,9 @@ int run_sample(const std::vector<std::string>& words) {
               {"environment", w.environment_name()},
               {"width", sampler->image().width},
               {"height", sampler->image().height},
-              {"method", w.method},
-              {"weight", w.weight},
-              {"sequence", w.sequence},
+              {"method", name_of(w.sampler.method)},
+              {"weight", name_of(w.sampler.weight)},
+              {"sequence", name_of(w.sequence)},
               {"seed", w.seed_number}};
     const auto done = work(w, *sampler, json);
     if (!done) return print_error(done.error());

@@ -45,7 +45,7 @@ std::string slope_text(double s) {
 }
 
 /// "MIS compensation: 7.3 times the efficiency of mis-balance".
-std::string gain_text(const StrategyStudy& study, const char* what, const char* name, const char* than) {
+std::string gain_text(const StrategyStudy& study, const char* what, const std::string& name, const std::string& than) {
     const double gain = study.efficiency_ratio(name, than);
     if (!std::isfinite(gain) || !(gain > 0)) return "";
     return fmt::format("{}: {} times the efficiency of {} ({})\n", what, times_text(gain), than,
@@ -58,8 +58,8 @@ std::string table(const SampleWords& w, const StrategyStudy& study) {
     std::string text = fmt::format("{}: {}\n", escaped(w.environment_name()), surface_text(w));
     text += fmt::format("reference  {:.6g} {:.6g} {:.6g}  ± {:.1e}   ({})\n\n", study.reference.x, study.reference.y,
                         study.reference.z, luminance(study.reference_error), study.reference_method);
-    text += fmt::format("{} samples, {}, seed {}; errors over {} runs\n", study.samples, w.sequence, w.seed_number,
-                        study.runs);
+    text += fmt::format("{} samples, {}, seed {}; errors over {} runs\n", study.samples, name_of(w.sequence),
+                        w.seed_number, study.runs);
     text += fmt::format("{:<24}{:>30}{:>12}{:>11}{:>7}{:>11}{:>12}{:>11}\n", "strategy", "estimate (R G B)",
                         "std. error", "error", "slope", "ns/sample", "efficiency", "for 1 %");
     bool unmet = false;
@@ -79,8 +79,8 @@ std::string table(const SampleWords& w, const StrategyStudy& study) {
             "measured\n";
     text +=
         "\nerror: RMS of luminance over the reference's; efficiency: 1 / (squared error x CPU time), environment = 1\n";
-    text += gain_text(study, "MIS compensation", "mis-balance-compensated", "mis-balance");
-    text += gain_text(study, "product by resampling", "product", "environment");
+    text += gain_text(study, "MIS compensation", k_compensated_mis, name_of(Strategy::mis_balance));
+    text += gain_text(study, "product by resampling", name_of(Strategy::product), name_of(Strategy::environment));
     const double rays = study.product_gain_per_ray();
     if (rays > 0)
         text += fmt::format("   and {} times per shadow ray, of which it needs one for {} candidates\n",
@@ -108,17 +108,18 @@ Json document(const SampleWords& w, const StrategyStudy& study) {
     Json surface{{"brdf", w.brdf}, {"normal", vector_json(w.normal_world)}, {"view", vector_json(w.view_world)}};
     if (w.brdf == "ggx" || w.brdf == "charlie") surface["roughness"] = w.roughness;
     if (w.brdf == "phong") surface["exponent"] = w.exponent;
-    return {{"surface", std::move(surface)},
-            {"reference",
-             {{"radiance", vector_json(study.reference)},
-              {"standard_error", vector_json(study.reference_error)},
-              {"method", study.reference_method}}},
-            {"runs", study.runs},
-            {"gains",
-             {{"mis_compensation", number_json(study.efficiency_ratio("mis-balance-compensated", "mis-balance"))},
-              {"product", number_json(study.efficiency_ratio("product", "environment"))},
-              {"product_per_ray", number_json(study.product_gain_per_ray())}}},
-            {"strategies", std::move(strategies)}};
+    return {
+        {"surface", std::move(surface)},
+        {"reference",
+         {{"radiance", vector_json(study.reference)},
+          {"standard_error", vector_json(study.reference_error)},
+          {"method", study.reference_method}}},
+        {"runs", study.runs},
+        {"gains",
+         {{"mis_compensation", number_json(study.efficiency_ratio(k_compensated_mis, name_of(Strategy::mis_balance)))},
+          {"product", number_json(study.efficiency_ratio(name_of(Strategy::product), name_of(Strategy::environment)))},
+          {"product_per_ray", number_json(study.product_gain_per_ray())}}},
+        {"strategies", std::move(strategies)}};
 }
 
 /// Measured errors are dots. If the variance is known and shows that the runs missed most of it, the error that follows
@@ -126,8 +127,8 @@ Json document(const SampleWords& w, const StrategyStudy& study) {
 Plot convergence_plot(const SampleWords& w, const StrategyStudy& study) {
     Plot plot;
     plot.title = std::filesystem::path(w.environment_name()).filename().string();
-    plot.subtitle =
-        fmt::format("{}; {} points, {} runs; beside each name its slope", surface_text(w), w.sequence, study.runs);
+    plot.subtitle = fmt::format("{}; {} points, {} runs; beside each name its slope", surface_text(w),
+                                name_of(w.sequence), study.runs);
     plot.x = {"samples", PlotScale::logarithmic, {}};
     plot.y = {"RMS error over the reference's luminance", PlotScale::logarithmic, {}};
     bool computed = false;
@@ -139,7 +140,9 @@ Plot convergence_plot(const SampleWords& w, const StrategyStudy& study) {
         s.marks = true;
         // Some lines lie on top of others: on a Lambert surface "brdf" equals "cosine", and the two heuristics seldom
         // differ much.
-        s.line = r.name == "brdf" || r.name == "mis-power" || r.name == "product" ? PlotLine::dashed : PlotLine::solid;
+        const auto is = [&](Strategy strategy) { return r.name == name_of(strategy); };
+        s.line =
+            is(Strategy::brdf) || is(Strategy::mis_power) || is(Strategy::product) ? PlotLine::dashed : PlotLine::solid;
         // A strategy has the same colour in every plot.
         s.colour = plot_colour(std::size_t(std::find(names.begin(), names.end(), r.name) - names.begin()));
         plot.series.push_back(s);
@@ -172,7 +175,7 @@ StrategyStudyOptions study_options(const SampleWords& w, const Progress& progres
     o.normal = w.normal_world;
     o.view = w.view_world;
     o.samples = w.count.value_or(o.samples);
-    o.sequence = w.points;
+    o.sequence = w.sequence;
     o.seed = w.seed_number;
     o.strategies = w.strategies;
     o.threads = w.threads();

@@ -46,7 +46,7 @@ std::string position_text(const CumulativeSearch& f, const char* axis, bool cont
 std::string text_of(const SampleWords& w, const EnvironmentSampler& sampler, const SampleExplanation& e) {
     const int width = sampler.image().width, height = sampler.image().height;
     std::string t = fmt::format("{}, {} x {} texels, {}: the point ({:g}, {:g}) of the unit square\n\n",
-                                w.environment_name(), width, height, w.method, e.point[0], e.point[1]);
+                                w.environment_name(), width, height, name_of(w.sampler.method), e.point[0], e.point[1]);
     t += fmt::format("1. The row, from xi = {:g}: marginal cumulative function C, the share of the weight above v\n",
                      e.row.xi);
     t += neighbours(e.row, e.continuous ? "piece" : "row", "v") + position_text(e.row, "v", e.continuous);
@@ -80,7 +80,7 @@ std::string text_of(const SampleWords& w, const EnvironmentSampler& sampler, con
     const double light = luminance(Vec3d(s.radiance));
     t += fmt::format("   pdf_solid_angle = {:.6g}\n   luminance / pdf_solid_angle = {:.6g}", s.pdf_solid_angle,
                      light / s.pdf_solid_angle);
-    if (!w.compensate && w.weight == "radiant-power")
+    if (!w.sampler.compensate && w.sampler.weight == LightWeight::radiant_power)
         t += ": about the same wherever the point falls, so that little noise is left";
     return t + "\n";
 }

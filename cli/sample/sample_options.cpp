@@ -14,11 +14,6 @@
 namespace domelight::cli {
 namespace {
 
-constexpr DistributionMethod k_methods[] = {DistributionMethod::linear,   DistributionMethod::walk,
-                                            DistributionMethod::binary,   DistributionMethod::guided,
-                                            DistributionMethod::alias,    DistributionMethod::hierarchical,
-                                            DistributionMethod::bilinear, DistributionMethod::bilinear_plain};
-
 const std::string k_sample_endings[] = {".csv", ".json"};
 
 Result<void> within(const char* option, double value, double low, double high) {
@@ -41,7 +36,7 @@ Result<void> check_surface(const Arguments& arguments, SampleWords& w) {
             if (arguments.given(option)) return Error{"has no meaning without --estimate", option, ""};
         return {};
     }
-    if (w.compensate)
+    if (w.sampler.compensate)
         return Error{"is not needed with --estimate", "--compensate",
                      "The table has MIS with and without it; alone a compensated sampler would miss light."};
     const struct {
@@ -71,6 +66,17 @@ Result<void> check_surface(const Arguments& arguments, SampleWords& w) {
     return {};
 }
 
+bool searches_rows(DistributionMethod method) {
+    return method != DistributionMethod::alias && method != DistributionMethod::hierarchical;
+}
+
+std::vector<std::string> methods_that_search_rows() {
+    std::vector<std::string> names;
+    for (const auto& [method, name] : EnumNames<DistributionMethod>::table)
+        if (searches_rows(method)) names.emplace_back(name);
+    return names;
+}
+
 Result<void> check_explain(const Arguments& arguments, const SampleWords& w) {
     if (!arguments.given("--explain")) {
         if (!w.explain_picture.empty()) return Error{"has no meaning without --explain", "--explain-picture", ""};
@@ -79,20 +85,15 @@ Result<void> check_explain(const Arguments& arguments, const SampleWords& w) {
     if (w.explain.size() != 2) return Error{"needs two numbers", "--explain", "As in 0.25,0.5."};
     for (const double u : w.explain)
         if (!(u >= 0 && u < 1)) return Error{fmt::format("{:g} is not in [0, 1)", u), "--explain", ""};
-    if (w.method == "alias" || w.method == "hierarchical")
-        return Error{fmt::format("explains a search in rows and columns, which {} does not make", w.method),
-                     "--explain", "Accepted with --method linear, walk, binary, guided, bilinear, bilinear-plain."};
-    if (w.uniform_share > 0) return Error{"does not go with --uniform-share", "--explain", ""};
+    if (!searches_rows(w.sampler.method))
+        return Error{
+            fmt::format("explains a search in rows and columns, which {} does not make", name_of(w.sampler.method)),
+            "--explain", fmt::format("Accepted with --method {}.", join(methods_that_search_rows(), ", "))};
+    if (w.sampler.uniform_share > 0) return Error{"does not go with --uniform-share", "--explain", ""};
     return {};
 }
 
 }  // namespace
-
-std::string method_word(DistributionMethod method) {
-    std::string name = method_name(method);
-    std::replace(name.begin(), name.end(), '_', '-');
-    return name;
-}
 
 std::string SampleWords::environment_name() const {
     return inputs.empty() ? "built-in sky" : inputs[0];
@@ -105,33 +106,31 @@ void declare_sample_options(Arguments& a, SampleWords& w) {
                                           "strategy (4096)");
     a.text("-o,--output", "FILE", w.output,
            "file for the samples, .csv or .json; without it, and if nothing else is asked for, CSV on stdout");
-    std::vector<std::string> methods;
-    for (const DistributionMethod m : k_methods) methods.push_back(method_word(m));
-    a.choice("--method", w.method, methods,
+    a.choice("--method", w.sampler.method,
              "sampling method (bilinear): the first six sample texels, the last two their bilinear interpolation");
     a.choice(
-        "--weight", w.weight, {"radiant-power", "grayscale"},
+        "--weight", w.sampler.weight,
         "the weight of a texel (radiant-power): luminance times sin theta, or the textbook's grayscale without sin "
         "theta");
-    a.flag("--compensate", w.compensate, "subtract the mean (MIS compensation): only for use together with BRDF "
-                                         "sampling");
-    a.number("--uniform-share", "SHARE", w.uniform_share,
+    a.flag("--compensate", w.sampler.compensate,
+           "subtract the mean (MIS compensation): only for use together with BRDF "
+           "sampling");
+    a.number("--uniform-share", "SHARE", w.sampler.uniform_share,
              "draw this part of the samples uniformly over the sphere, 0 to 1 (0)");
-    a.choice("--sequence", w.sequence, sequence_names(),
+    a.choice("--sequence", w.sequence,
              "the points of the unit square (sobol; with --estimate random, for which its standard errors hold)");
     a.text("--seed", "N", w.seed, "selects the randomisation; 0: the textbook's plain points (1)");
     a.group("Pictures and tables");
     a.text("--picture", "FILE", w.picture, "the environment as it is stored, with the samples drawn on it, .png or "
                                            ".jpg");
     a.text("--heat", "FILE", w.heat, "the density as a heat map, .png or .jpg");
-    a.choice("--heat-measure", w.heat_measure, {"solid-angle", "uv"},
-             "the density per steradian or over the image (solid-angle)");
+    a.choice("--heat-measure", w.heat_measure, "the density per steradian or over the image (solid-angle)");
     a.integer("--picture-width", "PIXELS", w.picture_width, "width of the environment in these pictures, 256 to 8192 "
                                                             "(1024)");
     a.text("--tables", "DIR", w.tables,
            "textures for shaders: the cumulative functions rows.* and columns.*, RG float, and for the lectures' loop "
            "row_averages.*, R float");
-    a.choice("--tables-format", w.tables_format, {"ktx2", "exr"}, "their format (ktx2)");
+    a.choice("--tables-format", w.tables_format, with_names({Container::ktx2, Container::exr}), "their format (ktx2)");
     a.group("How good each strategy is");
     a.flag("--estimate", w.estimate, "estimate the light that a surface reflects by every strategy, and compare them");
     a.choices("--strategy", w.strategies, studied_strategies(), "compare only these with environment (all)");
@@ -163,7 +162,7 @@ Result<void> check_sample_options(const Arguments& arguments, SampleWords& w) {
     if (auto ok = check_ending("--plot", w.plot, screen_picture_extensions()); !ok) return ok;
     if (auto ok = check_ending("--explain-picture", w.explain_picture, screen_picture_extensions()); !ok) return ok;
     if (auto ok = within("--picture-width", w.picture_width.value_or(1024), 256, 8192); !ok) return ok;
-    if (auto ok = within("--uniform-share", w.uniform_share, 0, 1); !ok) return ok;
+    if (auto ok = within("--uniform-share", w.sampler.uniform_share, 0, 1); !ok) return ok;
     if (arguments.given("--heat-measure") && w.heat.empty())
         return Error{"has no meaning without --heat", "--heat-measure", ""};
     if (arguments.given("--tables-format") && w.tables.empty())
@@ -176,13 +175,7 @@ Result<void> check_sample_options(const Arguments& arguments, SampleWords& w) {
     if (auto ok = check_explain(arguments, w); !ok) return ok;
     if (auto ok = check_surface(arguments, w); !ok) return ok;
 
-    if (w.estimate && !arguments.given("--sequence")) w.sequence = "random";
-    w.points = sequence_from_name(w.sequence).value_or(Sequence::sobol);
-    for (const DistributionMethod m : k_methods)
-        if (method_word(m) == w.method) w.sampler.method = m;
-    w.sampler.weight = w.weight == "grayscale" ? LightWeight::grayscale : LightWeight::radiant_power;
-    w.sampler.compensate = w.compensate;
-    w.sampler.uniform_share = w.uniform_share;
+    if (w.estimate && !arguments.given("--sequence")) w.sequence = Sequence::random;
     w.sampler.threads = w.environment.threads = w.threads();
     return {};
 }

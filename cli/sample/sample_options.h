@@ -1,10 +1,12 @@
 #pragma once
 
+#include "domelight/engines/engine.h"
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/sampling/environment_sampler.h"
 #include "domelight/sampling/sequences.h"
 
 #include "cli/console/console.h"
+#include "preview/sample_picture.h"
 
 #include <string>
 #include <vector>
@@ -18,12 +20,13 @@ struct SampleWords {
     EnvironmentOptions environment;
 
     std::optional<int> count;
-    std::string output, method = "bilinear", weight = "radiant-power", sequence = "sobol";
-    std::string seed = "1";
-    bool compensate = false;
-    double uniform_share = 0;
+    std::string output, seed = "1";
+    Sequence sequence = Sequence::sobol;
+    EnvironmentSamplerOptions sampler;
 
-    std::string picture, heat, heat_measure = "solid-angle", tables, tables_format = "ktx2";
+    std::string picture, heat, tables;
+    DensityMeasure heat_measure = DensityMeasure::solid_angle;
+    Container tables_format = Container::ktx2;
     std::optional<int> picture_width;
 
     bool estimate = false;
@@ -36,8 +39,6 @@ struct SampleWords {
     std::string explain_picture;
 
     // Set by check_sample_options() from the words.
-    EnvironmentSamplerOptions sampler;
-    Sequence points = Sequence::sobol;
     std::uint64_t seed_number = 1;
     Vec3d normal_world, view_world;  ///< unit length
 
@@ -48,8 +49,5 @@ struct SampleWords {
 void declare_sample_options(Arguments& arguments, SampleWords& words);
 /// Checks the values and their combinations, and sets the members that follow from them. Errors name the option.
 Result<void> check_sample_options(const Arguments& arguments, SampleWords& words);
-
-/// "bilinear-plain" for DistributionMethod::bilinear_plain: names on the command line have dashes.
-std::string method_word(DistributionMethod method);
 
 }  // namespace domelight::cli

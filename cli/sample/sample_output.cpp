@@ -42,11 +42,11 @@ std::string json_head(const SampleWords& w, const EnvironmentSampler& sampler, i
                     {"environment", w.environment_name()},
                     {"width", sampler.image().width},
                     {"height", sampler.image().height},
-                    {"method", w.method},
-                    {"weight", w.weight},
-                    {"compensate", w.compensate},
-                    {"uniform_share", w.uniform_share},
-                    {"sequence", w.sequence},
+                    {"method", name_of(w.sampler.method)},
+                    {"weight", name_of(w.sampler.weight)},
+                    {"compensate", w.sampler.compensate},
+                    {"uniform_share", w.sampler.uniform_share},
+                    {"sequence", name_of(w.sequence)},
                     {"seed", w.seed_number},
                     {"count", count}};
     std::string text = escaped_json(head.dump(2));
@@ -62,7 +62,7 @@ bool put_samples(const SampleWords& w, const EnvironmentSampler& sampler, bool j
     std::string text = json ? json_head(w, sampler, count) : "u,v,x,y,z,r,g,b,pdf_solid_angle\n";
     for (int i = 0; i < count; ++i) {
         const LightSample s =
-            sampler.sample(unit_point(w.points, w.seed_number, std::uint32_t(i), std::uint32_t(count)));
+            sampler.sample(unit_point(w.sequence, w.seed_number, std::uint32_t(i), std::uint32_t(count)));
         if (json) {
             add_json(text, s);
             text += i + 1 < count ? ",\n" : "\n  ]\n}\n";
@@ -130,7 +130,7 @@ Result<SamplingTables> write_tables(const SampleWords& w, const EnvironmentSampl
     auto staging = Staging::open(w.tables);
     if (!staging) return staging.error();
     const std::map<std::string, std::string> notes{
-        {"domelight.weight", w.weight},
+        {"domelight.weight", name_of(w.sampler.weight)},
         {"domelight.compensation", fmt::format("{:.9g}", sampler.compensation())},
         {"domelight.total_average", fmt::format("{:.9g}", textures.total_average)},
         {"domelight.source", w.environment_name()}};
@@ -146,10 +146,11 @@ Result<SamplingTables> write_tables(const SampleWords& w, const EnvironmentSampl
     for (const auto& [name, quantity, table, encoding] : tables) {
         auto metadata = notes;
         metadata["domelight.quantity"] = quantity;
-        written.files.push_back(name + "." + w.tables_format);
+        written.files.push_back(name + "." + name_of(w.tables_format));
         const auto path = staging->stage(written.files.back());
-        const auto ok = w.tables_format == "exr" ? write_table_exr(path, table, std::move(metadata), w.threads())
-                                                 : write_table_ktx2(path, table, encoding, std::move(metadata));
+        const auto ok = w.tables_format == Container::exr
+                            ? write_table_exr(path, table, std::move(metadata), w.threads())
+                            : write_table_ktx2(path, table, encoding, std::move(metadata));
         if (!ok) return ok.error().at(w.tables);
     }
     if (auto ok = staging->commit(written.files.back()); !ok) return ok.error();

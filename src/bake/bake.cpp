@@ -84,10 +84,10 @@ std::string envmap_of(const std::string& projection) {
 std::map<std::string, std::string> map_metadata(const EnginePlan& plan, const BakedMap& map,
                                                 const std::vector<LevelPlan>& levels) {
     std::map<std::string, std::string> metadata{{"domelight.version", version()},
-                                                {"domelight.quantity", quantity_name(map.quantity)}};
+                                                {"domelight.quantity", name_of(map.quantity)}};
     metadata["domelight.convention"] = map_convention(plan, map);
     if (map.quantity != Quantity::radiance) return metadata;
-    metadata["domelight.lobe"] = lobe_name(map.lobe);
+    metadata["domelight.lobe"] = name_of(map.lobe);
     if (map.lobe == Lobe::ggx || map.lobe == Lobe::charlie) {
         metadata["domelight.roughness"] = per_level(levels, [](const LevelPlan& l) { return l.roughness; });
         metadata["domelight.alpha"] = per_level(levels, [](const LevelPlan& l) { return l.alpha; });
@@ -221,7 +221,7 @@ class EngineBake {
         const Projection projection = *projection_from_name(plan_.projection);
         std::vector<FilteredMap> levels;
         for (const FilteredMap& map : maps) {
-            const ProjectedImage source{*projection_from_name(layout_name(map.layout)), map.image};
+            const ProjectedImage source{*projection_from_name(name_of(map.layout)), map.image};
             levels.emplace_back(map.layout,
                                 reproject(source, projection, map.width(), map.height(), options_.threads).pixels);
         }
@@ -283,7 +283,7 @@ class EngineBake {
         brdf.g = options_.brdf_g;
         brdf.size = plan_.brdf_size;
         const Texture texture = brdf_texture(table, options);
-        brdf.encoding = encoding_name(texture.encoding);
+        brdf.encoding = name_of(texture.encoding);
         brdf.file.file = fmt::format("{}.ktx2", engine_.brdf_file.empty() ? "brdf" : engine_.brdf_file);
         const auto path = staging_.stage(brdf.file.file);
         background_.done([&]() -> Result<void> {
@@ -351,9 +351,8 @@ void add_warnings(BakeReport& report, const Environment& environment, const Bake
             "repaired texels: {} not a number, {} infinite, {} negative (down to {:.4g})", report.repaired.not_a_number,
             report.repaired.infinite, report.repaired.negative, report.repaired.negative_radiance));
     if (options.method != BakeMethod::exact && environment.cube())
-        report.warnings.push_back(
-            fmt::format("`method` {} works on lat-long images: the cube was resampled to one first",
-                        bake_method_name(options.method)));
+        report.warnings.push_back(fmt::format(
+            "`method` {} works on lat-long images: the cube was resampled to one first", name_of(options.method)));
     for (const EngineReport& engine : report.engines)
         for (const BakedMap& map : engine.maps)
             for (const BakedLevel& level : map.levels)

@@ -1,7 +1,6 @@
 #include "domelight/bake/brdf_file.h"
 
 #include "domelight/base/version.h"
-#include "domelight/bake/bake.h"
 #include "domelight/io/file/atomic_file.h"
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
@@ -17,9 +16,6 @@
 
 namespace domelight {
 namespace {
-
-constexpr std::pair<BrdfG, std::string_view> k_masking_names[] = {
-    {BrdfG::correlated, "correlated"}, {BrdfG::smith, "smith"}, {BrdfG::karis, "karis"}};
 
 /// The first channels of an image; those it lacks are 0.
 ImageF with_channels(ImageView<const float> image, int channels) {
@@ -39,7 +35,7 @@ ImageF channels_of(ImageView<const float> table, BrdfForm form) {
 
 std::map<std::string, std::string> brdf_metadata(BrdfForm form) {
     return {{"domelight.version", version()},
-            {"domelight.quantity", fmt::format("brdf {}", brdf_form_name(form))},
+            {"domelight.quantity", fmt::format("brdf {}", name_of(form))},
             {"domelight.convention", k_brdf_axes}};
 }
 
@@ -53,17 +49,6 @@ Result<void> write_linear_png(const std::filesystem::path& file, const ImageF& r
 }
 
 }  // namespace
-
-std::string brdf_g_name(BrdfG g) {
-    const auto at = std::ranges::find(k_masking_names, g, &std::pair<BrdfG, std::string_view>::first);
-    return std::string(at->second);
-}
-
-std::optional<BrdfG> brdf_g_from_name(std::string_view name) {
-    const auto at = std::ranges::find(k_masking_names, name, &std::pair<BrdfG, std::string_view>::second);
-    if (at == std::end(k_masking_names)) return std::nullopt;
-    return at->first;
-}
 
 ImageF brdf_table(const BrdfFileOptions& options) {
     const BrdfTableOptions table{options.size, options.g, options.threads};

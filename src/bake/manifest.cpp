@@ -30,10 +30,6 @@ std::string latlong_text(const std::string& projection) {
     return projection_convention(projection) + "; right-handed, +Y up";
 }
 
-const char* window_name(ShWindow window) {
-    return window == ShWindow::hann ? "hann" : window == ShWindow::lanczos ? "lanczos" : "none";
-}
-
 /// File names may hold bytes that are not UTF-8: those become replacement characters.
 std::string json_text(const Json& json) {
     return json.dump(2) + "\n";
@@ -54,7 +50,7 @@ Json exponent_json(double exponent) {
 }
 
 Json environment_json(const EnvironmentOptions& e) {
-    return {{"projection", e.projection},     {"latlong", e.latlong}, {"decode", e.decode},
+    return {{"projection", e.projection},     {"latlong", e.latlong}, {"decode", name_of(e.decode)},
             {"rotate_y_deg", e.rotate_y_deg}, {"up", e.up},           {"exposure", e.exposure}};
 }
 
@@ -62,40 +58,40 @@ Json environment_json(const EnvironmentOptions& e) {
 /// equal.
 Json options_json(const EnginePlan& plan, const BakeOptions& o) {
     Json json{{"for", plan.engine->name},
-              {"layout", plan.layout == Layout::cube ? "cube" : "latlong"},
+              {"layout", name_of(plan.layout)},
               {"size", plan.specular.front().spec.size},
               {"levels", plan.specular.size()},
-              {"lobe", lobe_name(plan.lobe)}};
+              {"lobe", name_of(plan.lobe)}};
     if (plan.size_of_source) json["size_of_source"] = true;
     Json widths = Json::array();
     const bool phong = is_phong(plan.lobe);
     for (const LevelPlan& level : plan.specular)
         widths.push_back(phong ? exponent_json(level.exponent) : Json(level.roughness));
     json[phong ? "exponents" : "roughness"] = widths;
-    json["method"] = bake_method_name(o.method);
+    json["method"] = name_of(o.method);
     if (o.method == BakeMethod::montecarlo) {
         json["samples"] = o.points.count;
-        json["sequence"] = sequence_name(o.points.sequence);
+        json["sequence"] = name_of(o.points.sequence);
         json["seed"] = o.points.seed;
     }
     if (o.method == BakeMethod::riemann) {
         json["riemann_steps"] = {{"phi", o.riemann.phi_steps}, {"theta", o.riemann.theta_steps}};
         json["riemann_sum"] = o.riemann.normalised ? "normalised" : "plain";
     }
-    json["encoding"] = plan.container == Container::hdr ? "rgbe" : encoding_name(plan.encoding);
+    json["encoding"] = plan.container == Container::hdr ? "rgbe" : name_of(plan.encoding);
     if (plan.container != Container::hdr && encoding_block(plan.encoding) > 1)
-        json["encoding_quality"] = encoding_quality_name(o.encoding_quality);
-    json["format"] = container_name(plan.container);
+        json["encoding_quality"] = name_of(o.encoding_quality);
+    json["format"] = name_of(plan.container);
     json["zstd"] = plan.zstd;
     if (plan.container == Container::exr || plan.container == Container::hdr)
-        json["cube_picture"] = cube_picture_name(o.cube_picture);
+        json["cube_picture"] = name_of(o.cube_picture);
     if (o.latlong_out) json["latlong_out"] = *o.latlong_out;
-    if (o.irradiance_quantity) json["irradiance"] = quantity_name(*o.irradiance_quantity);
+    if (o.irradiance_quantity) json["irradiance"] = name_of(*o.irradiance_quantity);
     json["irradiance_size"] = plan.irradiance_size;
     json["sh_bands"] = o.sh_bands;
-    json["sh_window"] = window_name(o.sh_window);
-    json["brdf_form"] = brdf_form_name(plan.brdf_form);
-    json["brdf_g"] = brdf_g_name(o.brdf_g);
+    json["sh_window"] = name_of(o.sh_window);
+    json["brdf_form"] = name_of(plan.brdf_form);
+    json["brdf_g"] = name_of(o.brdf_g);
     json["brdf_size"] = plan.brdf_size;
     json["brdf_float"] = o.brdf_float;
     json["preview"] = o.preview;
@@ -132,11 +128,11 @@ Json level_json(const BakedMap& map, const BakedLevel& level) {
 Json map_json(const BakedMap& map) {
     Json json = Json::object();
     if (!map.file.file.empty()) add_file(json, map.file);
-    json["quantity"] = quantity_name(map.quantity);
-    if (map.quantity == Quantity::radiance) json["lobe"] = lobe_name(map.lobe);
+    json["quantity"] = name_of(map.quantity);
+    if (map.quantity == Quantity::radiance) json["lobe"] = name_of(map.lobe);
     if (map.lobe == Lobe::charlie) json["least_roughness"] = k_charlie_least_roughness;
     const auto projection = projection_from_name(map.projection);
-    json["layout"] = map.layout == Layout::cube ? "cube" : projection ? projection->name() : "latlong";
+    json["layout"] = map.layout == Layout::latlong && projection ? projection->name() : name_of(map.layout);
     if (!map.projection.empty()) {
         json["projection"] = map.projection;
         json["convention"] = latlong_text(map.projection);
@@ -154,14 +150,14 @@ Json map_json(const BakedMap& map) {
 Json sh_summary(const ShReport& sh) {
     Json json = Json::object();
     if (!sh.files.empty()) add_file(json, sh.files[0]);
-    json["quantity"] = "radiance";
+    json["quantity"] = name_of(Quantity::radiance);
     json["bands"] = sh.bands;
-    json["window"] = window_name(sh.window);
+    json["window"] = name_of(sh.window);
     json["irradiance_error"] = {{"rms", sh.rms_error}, {"max", sh.max_error}};
     for (std::size_t i = 1; i < sh.files.size(); ++i) {
         Json text;
         add_file(text, sh.files[i]);
-        text["quantity"] = "irradiance_over_pi";
+        text["quantity"] = name_of(Quantity::irradiance_over_pi);
         json["text"] = text;
     }
     return json;
@@ -171,8 +167,8 @@ Json brdf_json(const BrdfReport& brdf) {
     if (brdf.file.file.empty()) return nullptr;
     Json json = Json::object();
     add_file(json, brdf.file);
-    json["form"] = brdf_form_name(brdf.form);
-    json["masking"] = brdf_g_name(brdf.g);
+    json["form"] = name_of(brdf.form);
+    json["masking"] = name_of(brdf.g);
     json["size"] = brdf.size;
     json["encoding"] = brdf.encoding;
     json["axes"] = k_brdf_axes;
@@ -243,7 +239,7 @@ std::string manifest_json(const EngineReport& report, const EnginePlan& plan, co
 
 std::string sh_json(const ShReport& sh) {
     Json json{{"bands", sh.bands},
-              {"window", window_name(sh.window)},
+              {"window", name_of(sh.window)},
               {"convention",
                "real orthonormal spherical harmonics without the Condon-Shortley sign, order l^2 + l + m, polar axis "
                "+Z of a right-handed world "

@@ -152,7 +152,7 @@ std::vector<std::pair<std::string, ImageF>> level_pictures(FilteredMap level, Cu
     } else if (layout == CubePicture::faces) {
         for (int f = 0; f < 6; ++f) pictures.emplace_back(std::string("_") + k_face_names[f], copy_face(level, f));
     } else {
-        pictures.emplace_back("", cube_layout(std::move(level).cube(), cube_picture_name(layout)));
+        pictures.emplace_back("", cube_layout(std::move(level).cube(), name_of(layout)));
     }
     return pictures;
 }
@@ -190,8 +190,8 @@ void write_map(BakedMap& report, std::span<const FilteredMap> levels, const MapF
     MapFormat format = planned;
     report.widened = is_widened(levels, planned);
     if (report.widened) format.encoding = Encoding::rgba32f;
-    report.encoding = format.container == Container::hdr ? "rgbe" : encoding_name(format.encoding);
-    report.container = container_name(format.container);
+    report.encoding = format.container == Container::hdr ? "rgbe" : name_of(format.encoding);
+    report.container = name_of(format.container);
     report.zstd = format.zstd;
     if (format.container == Container::exr || format.container == Container::hdr) {
         write_pictures(report, levels, format, options, staging, background);

@@ -42,7 +42,7 @@ Result<void> check_values(const BakeOptions& o) {
         return field_error("roughness", "does not apply to `lobe` phong",
                            "Give its exponents with `exponents` n0,n1,...");
     if (o.encoding && encoding_channels(*o.encoding) != 3)
-        return field_error("encoding", encoding_name(*o.encoding) + " has no room for a colour",
+        return field_error("encoding", name_of(*o.encoding) + " has no room for a colour",
                            "Accepted are rgba16f, rgba32f, rgb9e5, r11g11b10f, bc6h, uastc-hdr, astc4x4-hdr, "
                            "astc6x6-hdr, rgbm, rgbd, rgbp.");
     if (o.irradiance_size && (*o.irradiance_size < 1 || *o.irradiance_size > 4096))
@@ -107,21 +107,20 @@ Result<void> plan_encoding(EnginePlan& plan, const BakeOptions& o) {
     plan.encoding = o.encoding.value_or(plan.container == engine.container ? engine.encoding : Encoding::rgba16f);
     plan.zstd = o.zstd.value_or(plan.container == Container::ktx2 && engine.zstd);
     if (plan.zstd && plan.container != Container::ktx2)
-        return field_error("zstd", container_name(plan.container) + " has no supercompression", "Use `format` ktx2.");
+        return field_error("zstd", name_of(plan.container) + " has no supercompression", "Use `format` ktx2.");
     if (is_openexr(plan.container) && plan.encoding != Encoding::rgba16f && plan.encoding != Encoding::rgba32f)
-        return field_error("encoding",
-                           encoding_name(plan.encoding) + " cannot be stored as " + container_name(plan.container),
+        return field_error("encoding", name_of(plan.encoding) + " cannot be stored as " + name_of(plan.container),
                            "It holds rgba16f (half) and rgba32f (float).");
     if (plan.container == Container::dds9 && plan.encoding != Encoding::rgba16f && plan.encoding != Encoding::rgba32f &&
         !is_scaled_bytes(plan.encoding))
-        return field_error("encoding", encoding_name(plan.encoding) + " does not exist in DDS headers from before DX10",
+        return field_error("encoding", name_of(plan.encoding) + " does not exist in DDS headers from before DX10",
                            "dds9 holds rgba16f, rgba32f, and as bytes rgbm, rgbd and rgbp.");
     if (own_container(plan.container) && plan.encoding != engine.encoding)
-        return field_error(
-            "encoding", fmt::format("{} holds {} only", container_name(plan.container), encoding_name(engine.encoding)),
-            "Leave `encoding` out, or choose a `format`.");
+        return field_error("encoding",
+                           fmt::format("{} holds {} only", name_of(plan.container), name_of(engine.encoding)),
+                           "Leave `encoding` out, or choose a `format`.");
     if (plan.container == Container::dds && is_scaled_bytes(plan.encoding))
-        return field_error("encoding", "dds cannot say that its bytes are " + encoding_name(plan.encoding),
+        return field_error("encoding", "dds cannot say that its bytes are " + name_of(plan.encoding),
                            "Use `format` ktx2 or ktx1, where a key says so.");
     if (plan.container == Container::hdr && o.encoding)
         return field_error("encoding", "hdr has only its own encoding (RGBE)", "Leave `encoding` out.");
@@ -179,7 +178,7 @@ Result<void> plan_environment_only(EnginePlan& plan, const BakeOptions& o, const
 /// The requirements of a container that only one engine has.
 Result<void> check_own_container(const EnginePlan& plan, const BakeOptions& o) {
     if (!own_container(plan.container)) return {};
-    const std::string name = container_name(plan.container);
+    const std::string name = name_of(plan.container);
     if (o.layout && *o.layout != plan.engine->layout)
         return field_error(
             "layout", fmt::format("{} holds {} maps", name, plan.engine->layout == Layout::cube ? "cube" : "lat-long"));

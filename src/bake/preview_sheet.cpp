@@ -40,7 +40,7 @@ std::string irradiance_detail(const EnginePlan& plan, const FilteredMap& over_pi
 
 std::string subtitle(const EnginePlan& plan, const EngineReport& report) {
     const std::string stored = fmt::format("{} · {}", report.maps.front().encoding, plan.engine->name);
-    return plan.engine->environment_only ? stored : lobe_name(plan.lobe) + " · " + stored;
+    return plan.engine->environment_only ? stored : name_of(plan.lobe) + " · " + stored;
 }
 
 }  // namespace

@@ -290,7 +290,7 @@ Result<ImageF> read_number_image(const std::filesystem::path& file, const std::s
     auto bytes = FileBytes::open(file, std::int64_t(1) << 30);
     if (!bytes) return bytes.error().at(file.string());
     ReaderOptions options;
-    options.decode = "linear";
+    options.decode = Decode::linear;
     if (is_exr(**bytes)) {
         auto layers = open_exr_layers(*bytes, options);
         if (!layers) return layers.error().at(file.string());

@@ -11,52 +11,25 @@
 
 namespace domelight {
 
-std::string quantity_name(Quantity quantity) {
-    switch (quantity) {
-        case Quantity::radiance:
-            return "radiance";
-        case Quantity::irradiance:
-            return "irradiance";
-        case Quantity::irradiance_over_pi:
-            return "irradiance_over_pi";
-    }
-    return {};
-}
-
-namespace {
-
-struct ContainerFacts {
-    const char *name, *extension;
-    bool fits_any_engine;
-};
-
-/// In the order of the enumeration.
-constexpr ContainerFacts k_containers[] = {
-    {"ktx2", ".ktx2", true},  {"ktx1", ".ktx", true},
-    {"dds", ".dds", true},    {"dds9", ".dds", true},
-    {"exr", ".exr", true},    {"exr-mip", ".exr", true},
-    {"hdr", ".hdr", true},    {"env", ".env", false},
-    {"gltf", ".gltf", false}, {"playcanvas-atlas", ".png", false},
-};
-
-}  // namespace
-
-std::string container_name(Container container) {
-    return k_containers[std::size_t(container)].name;
+std::span<const Container> containers_for_any_engine() {
+    static constexpr Container all[] = {Container::ktx2, Container::ktx1,    Container::dds, Container::dds9,
+                                        Container::exr,  Container::exr_mip, Container::hdr};
+    return all;
 }
 
 std::string container_extension(Container container) {
-    return k_containers[std::size_t(container)].extension;
-}
-
-Result<Container> container_from_name(const std::string& name) {
-    std::string accepted;
-    for (std::size_t i = 0; i < std::size(k_containers); ++i) {
-        if (!k_containers[i].fits_any_engine) continue;
-        if (k_containers[i].name == name) return Container(i);
-        accepted += (accepted.empty() ? "" : ", ") + std::string(k_containers[i].name);
+    switch (container) {
+        case Container::ktx1:
+            return ".ktx";
+        case Container::dds9:
+            return ".dds";
+        case Container::exr_mip:
+            return ".exr";
+        case Container::playcanvas_atlas:
+            return ".png";
+        default:
+            return "." + name_of(container);
     }
-    return Error{fmt::format("\"{}\" is not a format; accepted are {}", name, accepted), "", ""};
 }
 
 std::string cube_mirror_direction(CubeMirror mirror) {
@@ -85,30 +58,6 @@ Mat3 cube_mirror_matrix(CubeMirror mirror) {
             return {{Vec3d{1, 0, 0}, Vec3d{0, 0, 1}, Vec3d{0, 1, 0}}};
     }
     return {};
-}
-
-std::string brdf_form_name(BrdfForm form) {
-    switch (form) {
-        case BrdfForm::none:
-            return "none";
-        case BrdfForm::scale_bias:
-            return "scale-bias";
-        case BrdfForm::multiscatter:
-            return "multiscatter";
-        case BrdfForm::scale_bias_charlie:
-            return "scale-bias-charlie";
-    }
-    return {};
-}
-
-Result<BrdfForm> brdf_form_from_name(const std::string& name) {
-    for (const auto form : {BrdfForm::none, BrdfForm::scale_bias, BrdfForm::multiscatter, BrdfForm::scale_bias_charlie})
-        if (brdf_form_name(form) == name) return form;
-    return Error{
-        fmt::format(
-            "\"{}\" is not a form of BRDF table; accepted are none, scale-bias, multiscatter, scale-bias-charlie",
-            name),
-        "", ""};
 }
 
 double linear_roughness(int level, int levels, int) {

@@ -27,6 +27,12 @@ constexpr std::array<CubeLayout, 4> k_layouts{{
 
 }  // namespace
 
+std::vector<std::string> cube_layout_names() {
+    std::vector<std::string> names;
+    for (const CubeLayout& layout : k_layouts) names.emplace_back(layout.name);
+    return names;
+}
+
 ImageF cube_layout(const Cubemap& cube, const std::string& layout) {
     const auto found =
         std::find_if(k_layouts.begin(), k_layouts.end(), [&](const CubeLayout& l) { return layout == l.name; });

@@ -20,8 +20,8 @@ Result<void> check_image_size(std::int64_t width, std::int64_t height) {
 
 Result<std::unique_ptr<ImageReader>> open_image_reader(std::shared_ptr<const FileBytes> bytes,
                                                        const ReaderOptions& options) {
-    if (options.decode.starts_with("rgb"))
-        return Error{"a picture is not decoded as " + options.decode, field_place("decode"),
+    if (options.decode >= Decode::rgbm)
+        return Error{"a picture is not decoded as " + name_of(options.decode), field_place("decode"),
                      "That is for textures of eight bits a channel (DDS)."};
     using namespace std::string_view_literals;
     const auto all = bytes->bytes();

@@ -2,6 +2,7 @@
 
 #include "domelight/image/image.h"
 #include "domelight/base/result.h"
+#include "domelight/io/decode.h"
 #include "domelight/base/vec.h"
 
 #include "io/file/file_reader.h"
@@ -31,7 +32,7 @@ struct ImageFacts {
 };
 
 struct ReaderOptions {
-    std::string decode = "auto";  ///< see EnvironmentOptions
+    Decode decode = Decode::automatic;
     std::int64_t max_bytes = std::int64_t(1) << 30;
     int threads = 0;
 };

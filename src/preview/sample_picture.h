@@ -1,5 +1,6 @@
 #pragma once
 
+#include "domelight/base/names.h"
 #include "domelight/sampling/environment_sampler.h"
 
 #include "image/draw.h"
@@ -22,9 +23,18 @@ struct SamplePictureOptions {
 Image<std::uint8_t> sample_picture(const EnvironmentSampler& sampler, std::span<const LightSample> samples,
                                    const SamplePictureOptions& options);
 
+/// Over what a density is stated.
 enum class DensityMeasure {
     uv,          ///< over the unit square: what the tables hold
     solid_angle  ///< per steradian: pdf_uv / (2 pi^2 sin theta)
+};
+template <>
+struct EnumNames<DensityMeasure> {
+    static constexpr const char* kind = "a measure";
+    static constexpr NamedValue<DensityMeasure> table[] = {
+        {DensityMeasure::solid_angle, "solid-angle"},
+        {DensityMeasure::uv, "uv"},
+    };
 };
 
 /// The density of the sampler as a heat map with its legend, logarithmic over at most eight decades below the largest

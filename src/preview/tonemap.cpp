@@ -73,20 +73,6 @@ Vec3f tonemap(const Vec3f& rgb, Tonemap method) {
     return {std::clamp(out.x, 0.0f, 1.0f), std::clamp(out.y, 0.0f, 1.0f), std::clamp(out.z, 0.0f, 1.0f)};
 }
 
-std::span<const TonemapName> tonemap_names() {
-    static constexpr TonemapName names[] = {{"agx", Tonemap::agx},           {"agx-punchy", Tonemap::agx_punchy},
-                                            {"neutral", Tonemap::neutral},   {"aces", Tonemap::aces},
-                                            {"reinhard", Tonemap::reinhard}, {"gamma22", Tonemap::gamma22},
-                                            {"none", Tonemap::none}};
-    return names;
-}
-
-std::optional<Tonemap> tonemap_from_name(std::string_view name) {
-    for (const TonemapName& t : tonemap_names())
-        if (name == t.name) return t.method;
-    return std::nullopt;
-}
-
 float srgb_encode(float v) {
     return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1 / 2.4f) - 0.055f;
 }

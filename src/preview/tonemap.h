@@ -1,5 +1,6 @@
 #pragma once
 
+#include "domelight/base/names.h"
 #include "domelight/base/vec.h"
 #include "domelight/image/colour.h"
 #include "domelight/image/image.h"
@@ -7,9 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <optional>
-#include <span>
-#include <string_view>
 
 namespace domelight {
 
@@ -24,17 +22,18 @@ enum class Tonemap {
     reinhard,    ///< Reinhard et al. 2002, eq. 4, on luminance: `k_reinhard_white` becomes white
     gamma22,     ///< clipped, and encoded by the power 1 / 2.2 instead of the sRGB curve
 };
+template <>
+struct EnumNames<Tonemap> {
+    static constexpr const char* kind = "a tone map";
+    static constexpr NamedValue<Tonemap> table[] = {
+        {Tonemap::agx, "agx"},   {Tonemap::agx_punchy, "agx-punchy"}, {Tonemap::neutral, "neutral"},
+        {Tonemap::aces, "aces"}, {Tonemap::reinhard, "reinhard"},     {Tonemap::gamma22, "gamma22"},
+        {Tonemap::none, "none"},
+    };
+};
 
 /// The luminance that `reinhard` makes white.
 inline constexpr float k_reinhard_white = 4;
-
-/// As on the command line.
-struct TonemapName {
-    const char* name;
-    Tonemap method;
-};
-std::span<const TonemapName> tonemap_names();
-std::optional<Tonemap> tonemap_from_name(std::string_view name);
 
 /// Tone maps linear Rec. 709 (already exposed); the result is display-linear Rec. 709 in 0..1. NaN gives 0.
 Vec3f tonemap(const Vec3f& rgb, Tonemap method);

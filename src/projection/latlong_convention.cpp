@@ -1,8 +1,8 @@
 #include "projection/latlong_convention.h"
 
-#include <array>
+#include "domelight/base/names.h"
+
 #include <cctype>
-#include <string_view>
 
 namespace domelight {
 
@@ -10,24 +10,21 @@ namespace {
 
 using Grid = LatlongConvention::Grid;
 
-struct Named {
-    std::string_view name;
-    LatlongConvention convention;
+// All of them look from inside: right = centre x up.
+const NamedValue<LatlongConvention> k_named[] = {
+    {{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}, Grid::centres}, "default"},
+    {{{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}, Grid::centres}, "usd"},
+    {{{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}, Grid::rows_on_poles}, "mitsuba"},
+    {{{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}, Grid::both_on_edges}, "openexr"},  // ImfEnvmap.h
+    {{{0, 0, -1}, {1, 0, 0}, {0, 1, 0}, Grid::centres}, "materialx"},
+    {{{-1, 0, 0}, {0, 0, -1}, {0, 1, 0}, Grid::centres}, "mod"},
 };
 
-// All of them look from inside: right = centre x up.
-const std::array<Named, 6> k_named{{
-    {"default", {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}, Grid::centres}},
-    {"usd", {{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}, Grid::centres}},
-    {"mitsuba", {{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}, Grid::rows_on_poles}},
-    {"openexr", {{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}, Grid::both_on_edges}},  // ImfEnvmap.h
-    {"materialx", {{0, 0, -1}, {1, 0, 0}, {0, 1, 0}, Grid::centres}},
-    {"mod", {{-1, 0, 0}, {0, 0, -1}, {0, 1, 0}, Grid::centres}},
-}};
-
 Error unknown(const std::string& name) {
+    std::string accepted;
+    for (const std::string& convention : latlong_convention_names()) accepted += convention + ", ";
     return {"unknown lat-long convention \"" + name + "\"", "",
-            "Accepted: default, usd, mitsuba, openexr, materialx, mod, or centre=+X,right=+Z[,up=+Y]."};
+            "Accepted: " + accepted + "or centre=+X,right=+Z[,up=+Y]."};
 }
 
 /// "centre=+X,right=+Z[,up=+Y]".
@@ -81,15 +78,15 @@ Result<Vec3d> signed_axis(const std::string& name) {
     return Error{"unknown axis \"" + name + "\"", "", "Accepted: +X, -X, +Y, -Y, +Z, -Z."};
 }
 
-std::vector<std::string_view> latlong_convention_names() {
-    std::vector<std::string_view> names;
-    for (const Named& named : k_named) names.push_back(named.name);
+std::vector<std::string> latlong_convention_names() {
+    std::vector<std::string> names;
+    for (const auto& named : k_named) names.emplace_back(named.name);
     return names;
 }
 
 Result<LatlongConvention> latlong_convention(const std::string& name) {
-    for (const Named& named : k_named)
-        if (named.name == name) return named.convention;
+    for (const auto& named : k_named)
+        if (named.name == name) return named.value;
     if (name.find('=') != std::string::npos) return convention_from_axes(name);
     return unknown(name);
 }

@@ -5,7 +5,6 @@
 #include "domelight/base/vec.h"
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace domelight {
@@ -23,11 +22,10 @@ struct LatlongConvention {
     Mat3 world_to_default() const { return {{centre, up, right}}; }
 };
 
-/// "default", "usd", "mitsuba", "openexr", "materialx", "mod", or "centre=+X,right=+Z[,up=+Y]" of signed axes.
+/// The conventions that have names: "default", "usd", "mitsuba", ...
+std::vector<std::string> latlong_convention_names();
+/// One of these, or "centre=+X,right=+Z[,up=+Y]" of signed axes. The error of any other name lists them.
 Result<LatlongConvention> latlong_convention(const std::string& name);
-
-/// The names without the axes: "default", "usd", ...
-std::vector<std::string_view> latlong_convention_names();
 
 /// "+X", "x", "-z", ...
 Result<Vec3d> signed_axis(const std::string& name);

@@ -13,32 +13,29 @@ namespace domelight {
 namespace {
 
 constexpr std::array<ProjectionInfo, 11> k_projections{{
-    {"latlong", "the whole sphere by longitude and latitude (equirectangular)", "+X", "+Z", "+Y"},
-    {"cube", "six faces +X -X +Y -Y +Z -Z in OpenGL's orientation", "+Z", "+X", "+Y"},
-    {"sphere-map", "OpenGL's sphere map: a mirror ball seen from far away", "+Z", "+X", "+Y"},
-    {"mirror-ball", "a mirror ball in a photograph that it spans fov degrees of", "+Z", "+X", "+Y"},
-    {"angular", "Debevec's light probe: the distance from the middle is the angle", "-Z", "+X", "+Y"},
-    {"hemisphere", "normalize(p).xy: the half around the centre alone", "+Z", "+X", "+Y"},
-    {"paraboloid", "the front half of a dual paraboloid alone", "+Z", "+X", "+Y"},
-    {"paraboloid-opposite", "the back half read at xy / (z - 1), turned by half", "+Z", "+X", "+Y"},
-    {"dual-paraboloid", "front xy / (1 + z) and back xy / (1 - z), side by side or two files", "+Z", "+X", "+Y"},
-    {"octahedral", "an octahedron unfolded to a square", "+Y", "+X", "+Z"},
-    {"equal-area-octahedral", "the same with texels of equal solid angle (pbrt-v4)", "+Y", "+X", "+Z"},
+    {"latlong", "the whole sphere by longitude and latitude (equirectangular)", "+X", "+Z", "+Y",
+     [](double) { return make_latlong_shape(); }},
+    {"cube", "six faces +X -X +Y -Y +Z -Z in OpenGL's orientation", "+Z", "+X", "+Y",
+     [](double) { return make_cube_shape(); }},
+    {"sphere-map", "OpenGL's sphere map: a mirror ball seen from far away", "+Z", "+X", "+Y",
+     [](double) { return make_sphere_map_shape(); }},
+    {"mirror-ball", "a mirror ball in a photograph that it spans fov degrees of", "+Z", "+X", "+Y",
+     [](double fov_deg) { return make_mirror_ball_shape(fov_deg * k_pi / 180); }},
+    {"angular", "Debevec's light probe: the distance from the middle is the angle", "-Z", "+X", "+Y",
+     [](double) { return make_angular_shape(); }},
+    {"hemisphere", "normalize(p).xy: the half around the centre alone", "+Z", "+X", "+Y",
+     [](double) { return make_hemisphere_shape(); }},
+    {"paraboloid", "the front half of a dual paraboloid alone", "+Z", "+X", "+Y",
+     [](double) { return make_paraboloid_shape(); }},
+    {"paraboloid-opposite", "the back half read at xy / (z - 1), turned by half", "+Z", "+X", "+Y",
+     [](double) { return make_paraboloid_opposite_shape(); }},
+    {"dual-paraboloid", "front xy / (1 + z) and back xy / (1 - z), side by side or two files", "+Z", "+X", "+Y",
+     [](double) { return make_dual_paraboloid_shape(); }},
+    {"octahedral", "an octahedron unfolded to a square", "+Y", "+X", "+Z",
+     [](double) { return make_octahedral_shape(); }},
+    {"equal-area-octahedral", "the same with texels of equal solid angle (pbrt-v4)", "+Y", "+X", "+Z",
+     [](double) { return make_equal_area_octahedral_shape(); }},
 }};
-
-std::shared_ptr<const ProjectionShape> make_shape(const std::string& name, double fov_deg) {
-    if (name == "latlong") return make_latlong_shape();
-    if (name == "cube") return make_cube_shape();
-    if (name == "sphere-map") return make_sphere_map_shape();
-    if (name == "mirror-ball") return make_mirror_ball_shape(fov_deg * k_pi / 180);
-    if (name == "angular") return make_angular_shape();
-    if (name == "hemisphere") return make_hemisphere_shape();
-    if (name == "paraboloid") return make_paraboloid_shape();
-    if (name == "paraboloid-opposite") return make_paraboloid_opposite_shape();
-    if (name == "dual-paraboloid") return make_dual_paraboloid_shape();
-    if (name == "octahedral") return make_octahedral_shape();
-    return make_equal_area_octahedral_shape();
-}
 
 std::string names() {
     std::string text;
@@ -143,7 +140,7 @@ Result<Projection> projection_from_name(const std::string& text) {
     const Convention usual{*signed_axis(found->centre), *signed_axis(found->right), *signed_axis(found->up)};
     const auto convention = read_convention(name, slash < text.size() ? text.substr(slash + 1) : "", usual);
     if (!convention) return convention.error();
-    return Projection(name, make_shape(name, convention->fov_deg), convention->world_to_picture(), convention->grid);
+    return Projection(name, found->make_shape(convention->fov_deg), convention->world_to_picture(), convention->grid);
 }
 
 }  // namespace domelight

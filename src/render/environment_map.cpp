@@ -82,20 +82,4 @@ Vec3f EnvironmentMap::radiance(const Vec3f& direction) const {
     return source_.radiance(direction);
 }
 
-std::string map_lookup_name(MapLookup lookup) {
-    switch (lookup) {
-        case MapLookup::environment:
-            return "environment";
-        case MapLookup::cube:
-            return "cube";
-        case MapLookup::latlong:
-            return "latlong";
-        case MapLookup::sphere_map:
-            return "sphere-map";
-        case MapLookup::dual_paraboloid:
-            break;
-    }
-    return "dual-paraboloid";
-}
-
 }  // namespace domelight

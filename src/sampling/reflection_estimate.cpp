@@ -135,28 +135,6 @@ Estimate product(const Local& local, const EnvironmentSampler& sampler, const Es
 
 }  // namespace
 
-std::string strategy_name(Strategy strategy) {
-    switch (strategy) {
-        case Strategy::riemann:
-            return "riemann";
-        case Strategy::uniform:
-            return "uniform";
-        case Strategy::cosine:
-            return "cosine";
-        case Strategy::brdf:
-            return "brdf";
-        case Strategy::environment:
-            return "environment";
-        case Strategy::mis_balance:
-            return "mis-balance";
-        case Strategy::mis_power:
-            return "mis-power";
-        case Strategy::product:
-            break;
-    }
-    return "product";
-}
-
 Estimate estimate_reflection(const Surface& surface, const EnvironmentSampler& sampler, Strategy strategy,
                              const EstimateOptions& options) {
     assert(options.samples >= 1);

@@ -43,13 +43,15 @@ Runs repeat(int runs, int threads, const std::function<Vec3d(int run)>& one) {
     return out;
 }
 
+/// Density per steradian (L in the local frame).
+using Density = std::function<double(const Vec3f& L, const Vec3f& world)>;
+
 /// A strategy together with the sampler that it draws from.
 struct Contender {
     std::string name;
     Strategy strategy;
     const EnvironmentSampler* sampler;
-    /// Density per steradian of a direction L in the local frame; empty for strategies that have no such density.
-    std::function<double(const Vec3f& L, const Vec3f& world)> density;
+    Density density;  ///< empty for strategies that have none
 };
 
 class Runner {
@@ -108,22 +110,25 @@ void Runner::find_reference(StrategyStudy& study) const {
 std::vector<Contender> Runner::contenders() const {
     const auto constant = [](double p) { return [p](const Vec3f&, const Vec3f&) { return p; }; };
     const Vec3f V(frame_.to_local(surface_.view));
+    const auto plain = [this](Strategy strategy, Density density = {}) {
+        return Contender{name_of(strategy), strategy, &plain_, std::move(density)};
+    };
     std::vector<Contender> all{
-        {"riemann", Strategy::riemann, &plain_, {}},
-        {"uniform", Strategy::uniform, &plain_, constant(0.5 / k_pi)},
-        {"cosine", Strategy::cosine, &plain_, [](const Vec3f& L, const Vec3f&) { return L.z / k_pi; }},
-        {"brdf", Strategy::brdf, &plain_,
-         [this, V](const Vec3f& L, const Vec3f&) { return double(surface_.pdf_solid_angle(V, L)); }},
-        {"environment", Strategy::environment, &plain_,
-         [this](const Vec3f&, const Vec3f& d) { return double(plain_.pdf_solid_angle(d)); }},
-        {"mis-balance", Strategy::mis_balance, &plain_, {}},
-        {"mis-power", Strategy::mis_power, &plain_, {}},
-        {"mis-balance-compensated", Strategy::mis_balance, &compensated_, {}},
-        {"product", Strategy::product, &plain_, {}}};
+        plain(Strategy::riemann),
+        plain(Strategy::uniform, constant(0.5 / k_pi)),
+        plain(Strategy::cosine, [](const Vec3f& L, const Vec3f&) { return L.z / k_pi; }),
+        plain(Strategy::brdf,
+              [this, V](const Vec3f& L, const Vec3f&) { return double(surface_.pdf_solid_angle(V, L)); }),
+        plain(Strategy::environment,
+              [this](const Vec3f&, const Vec3f& d) { return double(plain_.pdf_solid_angle(d)); }),
+        plain(Strategy::mis_balance),
+        plain(Strategy::mis_power),
+        {k_compensated_mis, Strategy::mis_balance, &compensated_, {}},
+        plain(Strategy::product)};
     // Efficiencies are relative to environment sampling.
     const auto& wanted = options_.strategies;
     std::erase_if(all, [&](const Contender& c) {
-        return !wanted.empty() && c.name != "environment" &&
+        return !wanted.empty() && c.strategy != Strategy::environment &&
                std::find(wanted.begin(), wanted.end(), c.name) == wanted.end();
     });
     return all;
@@ -207,12 +212,12 @@ bool Runner::run(const Contender& c, StrategyStudy& study, const std::function<b
 
 /// Fills in the efficiencies, and how many samples each strategy needs for an error of 1 %.
 void conclude(StrategyStudy& study, Sequence points) {
-    const StrategyResult& yardstick = *study.find("environment");
+    const StrategyResult& yardstick = *study.find(name_of(Strategy::environment));
     const auto squared_error = [&](const StrategyResult& r) {
         const double expected = r.expected_error() * r.expected_error();
         // The product strategy averages candidates of the environment strategy, so light that the runs of one missed
         // was missed by both.
-        if (r.name != "product" || !yardstick.missed()) return expected;
+        if (r.name != name_of(Strategy::product) || !yardstick.missed()) return expected;
         const double scale = yardstick.expected_error() / yardstick.error;
         return expected * scale * scale;
     };
@@ -220,7 +225,7 @@ void conclude(StrategyStudy& study, Sequence points) {
     for (StrategyResult& r : study.strategies) {
         const double squared = squared_error(r);
         r.efficiency = squared > 0 ? unit / (squared * r.cpu_seconds) : INFINITY;
-        const bool random = points == Sequence::random && r.name != "riemann";
+        const bool random = points == Sequence::random && r.name != name_of(Strategy::riemann);
         const double power = random ? 2 : r.slope < -0.25 ? -1 / r.slope : INFINITY;
         const double factor = std::sqrt(squared) / 0.01;
         r.for_one_percent = factor <= 1 && !std::isfinite(power) ? r.estimate.samples
@@ -254,7 +259,8 @@ double StrategyStudy::efficiency_ratio(const std::string& name, const std::strin
 }
 
 double StrategyStudy::product_gain_per_ray() const {
-    const StrategyResult *product = find("product"), *environment = find("environment");
+    const StrategyResult *product = find(name_of(Strategy::product)),
+                         *environment = find(name_of(Strategy::environment));
     if (!product || !environment) return 0;
     const double kept = product->error * product->error * product->estimate.samples / candidates;
     const double drawn = environment->error * environment->error * environment->estimate.samples;
@@ -262,9 +268,11 @@ double StrategyStudy::product_gain_per_ray() const {
 }
 
 const std::vector<std::string>& studied_strategies() {
-    static const std::vector<std::string> names{"riemann",     "uniform",     "cosine",    "brdf",
-                                                "environment", "mis-balance", "mis-power", "mis-balance-compensated",
-                                                "product"};
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all = names_of<Strategy>();
+        all.insert(std::find(all.begin(), all.end(), name_of(Strategy::product)), k_compensated_mis);
+        return all;
+    }();
     return names;
 }
 

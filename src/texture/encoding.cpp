@@ -1,4 +1,4 @@
-// Names, sizes and ranges of the encodings.
+// Sizes and ranges of the encodings.
 #include "domelight/texture/texture.h"
 
 #include "texture/texel/half.h"
@@ -15,58 +15,41 @@ namespace domelight {
 namespace {
 
 struct EncodingFacts {
-    const char* name;
+    Encoding encoding;
     int block, bytes, channels;
     double max;
 };
 
 /// In the order of the enumeration.
 constexpr EncodingFacts k_facts[] = {
-    {"rgba16f", 1, 8, 3, k_half_max},
-    {"rgba32f", 1, 16, 3, std::numeric_limits<float>::max()},
-    {"rgb9e5", 1, 4, 3, k_rgb9e5_max},
-    {"r11g11b10f", 1, 4, 3, k_float10_max},
-    {"rg16f", 1, 4, 2, k_half_max},
-    {"rg32f", 1, 8, 2, std::numeric_limits<float>::max()},
-    {"r32f", 1, 4, 1, std::numeric_limits<float>::max()},
-    {"bc6h", 4, 16, 3, k_half_max},
-    {"rgbm", 1, 4, 3, k_rgbm_max},
-    {"rgbd", 1, 4, 3, k_rgbd_max},
-    {"rgbp", 1, 4, 3, k_rgbp_max},
-    {"uastc-hdr", 4, 16, 3, k_uastc_hdr_max},
-    {"astc4x4-hdr", 4, 16, 3, k_half_max},
-    {"astc6x6-hdr", 6, 16, 3, k_half_max},
+    {Encoding::rgba16f, 1, 8, 3, k_half_max},
+    {Encoding::rgba32f, 1, 16, 3, std::numeric_limits<float>::max()},
+    {Encoding::rgb9e5, 1, 4, 3, k_rgb9e5_max},
+    {Encoding::r11g11b10f, 1, 4, 3, k_float10_max},
+    {Encoding::rg16f, 1, 4, 2, k_half_max},
+    {Encoding::rg32f, 1, 8, 2, std::numeric_limits<float>::max()},
+    {Encoding::r32f, 1, 4, 1, std::numeric_limits<float>::max()},
+    {Encoding::bc6h, 4, 16, 3, k_half_max},
+    {Encoding::rgbm, 1, 4, 3, k_rgbm_max},
+    {Encoding::rgbd, 1, 4, 3, k_rgbd_max},
+    {Encoding::rgbp, 1, 4, 3, k_rgbp_max},
+    {Encoding::uastc_hdr, 4, 16, 3, k_uastc_hdr_max},
+    {Encoding::astc4x4_hdr, 4, 16, 3, k_half_max},
+    {Encoding::astc6x6_hdr, 6, 16, 3, k_half_max},
 };
 
-/// In the order of the enumeration.
-constexpr const char* k_qualities[] = {"fast", "default", "high", "exhaustive"};
-
-/// The number of `name` in a list of things with names.
-template <typename List, typename NameOf>
-Result<std::size_t> find_name(const std::string& name, const char* kind, const List& list, NameOf name_of) {
-    std::string accepted;
-    for (std::size_t i = 0; i < std::size(list); ++i) {
-        if (name == name_of(list[i])) return i;
-        accepted += (i ? ", " : "") + std::string(name_of(list[i]));
-    }
-    return Error{"\"" + name + "\" is not " + kind, "", "accepted: " + accepted};
+constexpr bool in_order() {
+    for (std::size_t i = 0; i < std::size(k_facts); ++i)
+        if (k_facts[i].encoding != Encoding(i)) return false;
+    return true;
 }
+static_assert(in_order());
 
 const EncodingFacts& facts(Encoding encoding) {
     return k_facts[std::size_t(encoding)];
 }
 
 }  // namespace
-
-std::string encoding_name(Encoding encoding) {
-    return facts(encoding).name;
-}
-
-Result<Encoding> encoding_from_name(const std::string& name) {
-    const auto found = find_name(name, "an encoding", k_facts, [](const EncodingFacts& f) { return f.name; });
-    if (!found) return found.error();
-    return Encoding(*found);
-}
 
 int encoding_block(Encoding encoding) {
     return facts(encoding).block;
@@ -82,16 +65,6 @@ int encoding_bytes(Encoding encoding) {
 
 double encoding_max(Encoding encoding) {
     return facts(encoding).max;
-}
-
-std::string encoding_quality_name(EncodingQuality quality) {
-    return k_qualities[std::size_t(quality)];
-}
-
-Result<EncodingQuality> encoding_quality_from_name(const std::string& name) {
-    const auto found = find_name(name, "a quality", k_qualities, [](const char* quality) { return quality; });
-    if (!found) return found.error();
-    return EncodingQuality(*found);
 }
 
 }  // namespace domelight

@@ -225,7 +225,7 @@ TEST_CASE("bake: everything lat-long lies in the convention that is asked for, a
     for (const char* convention : {"usd", "mitsuba", "openexr", "materialx", "mod", "centre=-Y,right=+X,up=+Z",
                                    "centre=+X,right=-Z"})  // the last one mirrors
         for (const auto& [engine, format, file] : files) {
-            INFO(convention << ", " << engine << ", " << container_name(format));
+            INFO(convention << ", " << engine << ", " << name_of(format));
             const TemporaryFolder folder;
             baked(engine, format, convention, folder);
             const auto opened = open_environment({folder / file}, {.projection = "latlong", .latlong = convention});

@@ -71,7 +71,7 @@ TEST_CASE("convolve_exactly: a constant environment stays constant, at every siz
         for (const ZonalKernel& kernel : k_kernels)
             for (const Vec3d& value : convolve_exactly(image, kernel, directions()))
                 // The error of the quadrature is 1e-9 to 5e-8 at 1k, and a little more if a patch spans radians.
-                CHECK_MESSAGE(std::abs(value.y / 0.75 - 1) < 1e-6, width, " x ", height, " ", lobe_name(kernel.lobe),
+                CHECK_MESSAGE(std::abs(value.y / 0.75 - 1) < 1e-6, width, " x ", height, " ", name_of(kernel.lobe),
                               " ", kernel.width);
     }
 }
@@ -98,7 +98,7 @@ TEST_CASE(
             }
             // The error of midpoints is (1/200)² / 24 times the second derivative, in units of the half width of the
             // tent, or of the lobe if that is narrower.
-            CHECK_MESSAGE(worst < 3e-5 * peak, lobe_name(kernel.lobe), " ", kernel.width, " at ", x, ",", y, " of ",
+            CHECK_MESSAGE(worst < 3e-5 * peak, name_of(kernel.lobe), " ", kernel.width, " at ", x, ",", y, " of ",
                           width);
         }
     }
@@ -216,7 +216,7 @@ TEST_CASE("prefilter_reference: the Riemann sum and Monte Carlo come nearer to b
         for (const Sequence sequence :
              {Sequence::stratified, Sequence::hammersley, Sequence::halton, Sequence::sobol, Sequence::r2})
             for (const std::uint64_t seed : {0, 1}) {
-                INFO(sequence_name(sequence) << ", seed " << seed);
+                INFO(name_of(sequence) << ", seed " << seed);
                 CHECK(montecarlo(sequence, seed, 4096) < 8e-3);  // 0.0045 to 0.0063 were measured
             }
         CHECK(montecarlo(Sequence::random, 1, 4096) < 2e-2);

@@ -60,7 +60,7 @@ TEST_CASE("zonal_kernel: coefficients agree with brute-force quadrature, density
             REQUIRE(k.size() == 701);
             CHECK(k[0] == 1);
             const std::vector<double> truth = coefficients_by_quadrature(kernel, 700, 1000);
-            CHECK_MESSAGE(largest_difference(k, truth) < 1e-12, lobe_name(lobe), " at roughness ", roughness);
+            CHECK_MESSAGE(largest_difference(k, truth) < 1e-12, name_of(lobe), " at roughness ", roughness);
         }
 }
 

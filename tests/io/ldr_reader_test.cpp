@@ -98,8 +98,8 @@ Bytes make_jpeg(int width, int height, int components, bool progressive) {
 }  // namespace
 
 TEST_CASE("screen curves: sRGB, gamma 2.2 and linear at known points") {
-    const auto srgb = screen_curve("srgb", 256), gamma = screen_curve("gamma22", 256),
-               linear = screen_curve("linear", 256);
+    const auto srgb = screen_curve(Decode::srgb, 256), gamma = screen_curve(Decode::gamma22, 256),
+               linear = screen_curve(Decode::linear, 256);
     for (const auto* curve : {&srgb, &gamma, &linear}) {
         CHECK(curve->front() == 0);
         CHECK(curve->back() == 1);
@@ -109,7 +109,7 @@ TEST_CASE("screen curves: sRGB, gamma 2.2 and linear at known points") {
     CHECK(std::abs(srgb[50] - 0.0318960) < 1e-6);
     CHECK(std::abs(gamma[128] - std::pow(128 / 255.0, 2.2)) < 1e-7);
     CHECK(linear[51] == 0.2f);
-    CHECK(screen_curve("auto", 256) == srgb);
+    CHECK(screen_curve(Decode::automatic, 256) == srgb);
 }
 
 TEST_CASE("png reader: every kind of colour, 8 and 16 bits, interlaced or not") {
@@ -119,7 +119,7 @@ TEST_CASE("png reader: every kind of colour, 8 and 16 bits, interlaced or not") 
                                    PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_PALETTE}) {
                 if (type == PNG_COLOR_TYPE_PALETTE && depth == 16) continue;
                 const PngShape shape{.depth = depth, .color_type = type, .interlaced = interlaced};
-                const auto reader = open_bytes(make_png(shape), {.decode = "linear"});
+                const auto reader = open_bytes(make_png(shape), {.decode = Decode::linear});
                 REQUIRE_MESSAGE(reader, reader.error().format());
                 const bool alpha = type & PNG_COLOR_MASK_ALPHA;
                 CHECK((*reader)->facts().warnings.size() == (alpha ? 2 : 1));
@@ -142,7 +142,7 @@ TEST_CASE("png reader: sRGB is the default, and says so") {
     const auto reader = open_bytes(make_png({}));
     REQUIRE(reader);
     CHECK((*reader)->facts().warnings.size() == 2);
-    CHECK(read_all(**reader)->at(3, 2)[1] == screen_curve("srgb", 256)[code(3, 2, 1, 8)]);
+    CHECK(read_all(**reader)->at(3, 2)[1] == screen_curve(Decode::srgb, 256)[code(3, 2, 1, 8)]);
 }
 
 TEST_CASE("png reader: cut and lying files give an error") {
@@ -161,7 +161,7 @@ TEST_CASE("jpeg reader: baseline, progressive and grey") {
     for (const bool progressive : {false, true})
         for (const int components : {1, 3}) {
             const Bytes jpeg = make_jpeg(40, 20, components, progressive);
-            const auto reader = open_bytes(jpeg, {.decode = "linear"});
+            const auto reader = open_bytes(jpeg, {.decode = Decode::linear});
             REQUIRE_MESSAGE(reader, reader.error().format());
             CHECK((*reader)->facts().format == "JPEG");
             const auto image = read_all(**reader);

@@ -34,7 +34,7 @@ TEST_CASE("AgxDisplay: within one code of the plain tone map and transfer functi
 }
 
 TEST_CASE("tonemap: greys stay grey and rise, colours below the shoulder are PBR Neutral's, anything is in 0..1") {
-    for (const auto& [name, method] : tonemap_names()) {
+    for (const auto& [method, name] : EnumNames<Tonemap>::table) {
         INFO(name);
         float before = -1;
         for (int i = -40; i < 30; ++i) {

@@ -261,7 +261,7 @@ TEST_CASE("mirror: through a cube, lat-long, sphere map or dual paraboloid it sh
             double largest = 0;
             for (std::size_t i = 0; i < r.radiance.pixels().size(); ++i)
                 largest = std::max(largest, double(std::abs(r.radiance.pixels()[i] - plain.radiance.pixels()[i])));
-            INFO(map_lookup_name(lookup));
+            INFO(name_of(lookup));
             // The whole rim of the sphere map is −Z, and its outermost texels hold much of the light around −Z.
             CHECK(largest < (lookup == MapLookup::sphere_map ? 0.1 : 0.02));
         }
@@ -351,7 +351,7 @@ TEST_CASE("shading: punctual lights light each model under a black sky, as they 
                  {ShadingModel::mirror, glossy, metal_material(0.045f), true},
                  {ShadingModel::refract, glossy, glossy, false}};
     for (const auto& c : cases) {
-        INFO(shading_model_name(c.model));
+        INFO(name_of(c.model));
         const auto lit_by = [&](const Material& material, bool own) {
             Scene scene;
             add(scene, sphere_mesh(64), material);

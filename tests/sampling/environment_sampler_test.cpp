@@ -109,7 +109,7 @@ TEST_CASE(
                 std::vector<double> expected = integrals(sampler, columns, rows);
                 double sum = 0;
                 for (const double e : expected) sum += e;
-                INFO(name << ", " << method_name(method) << ", variant " << variant);
+                INFO(name << ", " << name_of(method) << ", variant " << variant);
                 CHECK(sum == doctest::Approx(1).epsilon(
                                  4e-3));  // the midpoint sum's error beside a pole
                 constexpr int samples = 20000;
@@ -154,7 +154,7 @@ TEST_CASE(
                              length(back.radiance - s.radiance) > 1e-4 * length(s.radiance) + 0.02;
                     CHECK(back.pdf_solid_angle == doctest::Approx(sampler.pdf_solid_angle(s.direction)).epsilon(1e-4));
                 }
-                INFO(name << ", " << method_name(method));
+                INFO(name << ", " << name_of(method));
                 CHECK(apart <= 10);
             }
 }
@@ -205,7 +205,7 @@ TEST_CASE("environment_sampler: batches give the same samples") {
                     direction = std::max(direction, double(length(d - s.direction)));
                     CHECK(length(L - s.radiance) <= 2e-3 * length(s.radiance) + 0.02);
                 }
-                INFO(name << ", " << method_name(method) << ", share " << share);
+                INFO(name << ", " << name_of(method) << ", share " << share);
                 CHECK(worst < 3e-6);
                 CHECK(direction < 1e-6);
             }
@@ -229,7 +229,7 @@ TEST_CASE("environment_sampler: the density is the Jacobian of the map from the 
             ratio.push_back(length(cross(b - a, c - a)) / (double(step) * step * 0x1p-64) * middle.pdf_solid_angle);
         }
         std::sort(ratio.begin(), ratio.end());
-        INFO(method_name(method));
+        INFO(name_of(method));
         CHECK(ratio[ratio.size() / 2] == doctest::Approx(1).epsilon(5e-3));
         CHECK(ratio[ratio.size() / 5] == doctest::Approx(1).epsilon(0.05));
         CHECK(ratio[ratio.size() * 4 / 5] == doctest::Approx(1).epsilon(0.05));
@@ -256,7 +256,7 @@ TEST_CASE("environment_sampler: invert goes back as far as float directions allo
                                              std::abs(unit_double(back->y) - unit_double(p.y))) /
                                         scale);
         }
-        INFO(method_name(method));
+        INFO(name_of(method));
         CHECK(worst < 5);
     }
     EnvironmentSamplerOptions options;
@@ -341,7 +341,7 @@ TEST_CASE("environment_sampler: looking up many directions at once is looking up
                 for (std::size_t i = 0; i < directions.size(); ++i)
                     out.x[i] = directions[i].x, out.y[i] = directions[i].y, out.z[i] = directions[i].z;
                 sampler.look_up(out);
-                INFO(name << ", " << method_name(method));
+                INFO(name << ", " << name_of(method));
                 int far = 0;
                 for (std::size_t i = 0; i < directions.size(); ++i) {
                     const LightSample one = sampler.look_up(directions[i]);

@@ -67,7 +67,7 @@ TEST_CASE("estimate_reflection: every strategy agrees with the exact irradiance 
             EstimateOptions o;
             o.samples = 100000;
             const Estimate e = estimate_reflection(surface, s, strategy, o);
-            INFO(strategy_name(strategy) << " at " << normal.x << " " << normal.y << " " << normal.z << ": "
+            INFO(name_of(strategy) << " at " << normal.x << " " << normal.y << " " << normal.z << ": "
                                          << e.radiance.y << " +- " << e.standard_error.y << ", exact " << truth.y);
             CHECK(largest_deviation(e, truth) < 4.5);  // 7e-6 for one, two-sided; 60 numbers
             // The check is meaningful, because the interval is narrow.
@@ -103,7 +103,7 @@ TEST_CASE("estimate_reflection: the lobe of the prefilter gives the exact prefil
             o.samples = 60000;
             o.seed = 5;
             const Estimate e = estimate_reflection(prefilter_lobe(axis, kernel), *sampler, strategy, o);
-            INFO(strategy_name(strategy) << ", roughness " << roughness << ": " << e.radiance.y << " +- "
+            INFO(name_of(strategy) << ", roughness " << roughness << ": " << e.radiance.y << " +- "
                                          << e.standard_error.y << ", exact " << truth.y);
             CHECK(largest_deviation(e, truth) < 4.5);
         }

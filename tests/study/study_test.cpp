@@ -66,7 +66,7 @@ TEST_SUITE("study") {
         const ImageF image = light_with_lamp(64, 32, 20, 12);
         for (const DistributionMethod method : {DistributionMethod::binary, DistributionMethod::guided,
                                                 DistributionMethod::bilinear, DistributionMethod::bilinear_plain}) {
-            CAPTURE(method_name(method));
+            CAPTURE(name_of(method));
             const EnvironmentSampler sampler = sampler_of(image, method);
             for (const std::array<double, 2>& point : {std::array{0.1, 0.2}, {0.5, 0.5}, {0.93, 0.4}, {0.0, 0.99}}) {
                 const SampleExplanation e = explain_sample(sampler, point);

@@ -26,7 +26,7 @@ std::vector<FilteredMap> noise_chain(int size, int levels) {
 TEST_CASE("astc hdr: levels of any size come back, in both sizes of block") {
     const auto chain = noise_chain(26, 4);
     for (const Encoding encoding : {Encoding::astc4x4_hdr, Encoding::astc6x6_hdr}) {
-        CAPTURE(encoding_name(encoding));
+        CAPTURE(name_of(encoding));
         std::vector<EncodingReport> reports;
         const Texture texture = encode_texture(chain, encoding, 2, &reports, EncodingQuality::fast);
         const auto blocks = [&](int size) { return (size + encoding_block(encoding) - 1) / encoding_block(encoding); };

@@ -36,7 +36,7 @@ TEST_CASE("ktx2: astc and uastc textures come back, packed and plain") {
     const test::TemporaryFolder folder;
     for (const Encoding encoding : {Encoding::uastc_hdr, Encoding::astc4x4_hdr, Encoding::astc6x6_hdr})
         for (const auto packing : {Supercompression::none, Supercompression::zstd}) {
-            CAPTURE(encoding_name(encoding));
+            CAPTURE(name_of(encoding));
             const Texture texture = sample(encoding);
             REQUIRE(write_ktx2(folder / "t.ktx2", texture, packing));
             const auto info = read_texture_info(folder / "t.ktx2");

@@ -172,7 +172,7 @@ TEST_CASE("dds: RGBM and its like are RGBA bytes, which mean what one says they 
         CHECK(info->format == "RGBA 32 bit");
         CHECK(info->eight_bits);
         CHECK(info->decodable);
-        const auto back = read_texture(file, encoding_name(encoding));
+        const auto back = read_texture(file, *from_name<Decode>(name_of(encoding)));
         REQUIRE(back);
         CHECK(same_texels(*back, texture));
         const auto screen = read_texture(file);  // sRGB if the file states nothing
@@ -183,7 +183,6 @@ TEST_CASE("dds: RGBM and its like are RGBA bytes, which mean what one says they 
         CHECK(decode_texture(*screen, 1, 0).at(1, 0)[0] ==
               doctest::Approx(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4)).epsilon(1e-3));
     }
-    CHECK_FALSE(read_texture(file, "hlg"));
 }
 
 namespace {
@@ -210,7 +209,7 @@ std::vector<std::uint8_t> old_dds(const std::array<std::uint32_t, 7>& pixel_form
 /// Texel (x, y) as 8-bit numbers.
 std::array<int, 4> screen_texel(const std::vector<std::uint8_t>& bytes, int x, int y) {
     MemorySource source(bytes);
-    const auto texture = dds_texture(source, "rgbm");  // which returns the bytes unchanged
+    const auto texture = dds_texture(source, Decode::rgbm);  // which returns the bytes unchanged
     REQUIRE(texture);
     const std::uint8_t* p = texture->levels[0].data() + 4 * (4 * y + x);
     return {p[0], p[1], p[2], p[3]};

@@ -66,7 +66,7 @@ TEST_CASE("ktx: scaled bytes are told apart by a key, which the reader takes awa
             const auto info = read_texture_info(folder / name);
             REQUIRE(info);
             CHECK(info->decodable);
-            CHECK(info->format.ends_with(", " + encoding_name(encoding)));
+            CHECK(info->format.ends_with(", " + name_of(encoding)));
         }
     }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "domelight/base/names.h"
 #include "domelight/base/progress.h"
 #include "domelight/base/result.h"
 #include "domelight/engines/engine.h"
@@ -21,11 +22,28 @@ namespace domelight {
 
 /// How the filtering is done: exactly, or by one of the plain methods of reference.h.
 enum class BakeMethod { exact, bruteforce, riemann, montecarlo };
-std::string bake_method_name(BakeMethod method);
+template <>
+struct EnumNames<BakeMethod> {
+    static constexpr const char* kind = "a method";
+    static constexpr NamedValue<BakeMethod> table[] = {
+        {BakeMethod::exact, "exact"},
+        {BakeMethod::bruteforce, "bruteforce"},
+        {BakeMethod::riemann, "riemann"},
+        {BakeMethod::montecarlo, "montecarlo"},
+    };
+};
 
 /// How cubes are laid out in .exr and .hdr files: one picture a level, or six.
 enum class CubePicture { cross, strip, faces };
-std::string cube_picture_name(CubePicture picture);
+template <>
+struct EnumNames<CubePicture> {
+    static constexpr const char* kind = "a layout of a cube";
+    static constexpr NamedValue<CubePicture> table[] = {
+        {CubePicture::cross, "cross"},
+        {CubePicture::strip, "strip"},
+        {CubePicture::faces, "faces"},
+    };
+};
 
 /// What to bake. Each engine has its own default for a field that is empty.
 struct BakeOptions {

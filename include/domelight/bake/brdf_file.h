@@ -11,7 +11,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 
 namespace domelight {
 
@@ -26,10 +25,6 @@ struct BrdfFileOptions {
 
 /// How the table is read: in words, for files and manifests.
 inline constexpr const char* k_brdf_axes = "u = NdotV, v = roughness, texel centres, row 0 is the smoothest";
-
-/// "correlated", "smith", "karis".
-std::string brdf_g_name(BrdfG g);
-std::optional<BrdfG> brdf_g_from_name(std::string_view name);
 
 /// The table with the three channels of brdf_table.h, whatever the form.
 ImageF brdf_table(const BrdfFileOptions& options);

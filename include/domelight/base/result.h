@@ -41,6 +41,8 @@ class [[nodiscard]] Result {
     T& operator*() & { return value(); }
     const T& operator*() const& { return value(); }
     T&& operator*() && { return std::move(value()); }
+    /// The value, or `other` where there is an error.
+    T value_or(T other) const { return *this ? value() : other; }
     T* operator->() { return &value(); }
     const T* operator->() const { return &value(); }
     /// Precondition: holds an error.

@@ -2,6 +2,7 @@
 
 #include "domelight/image/image.h"
 #include "domelight/base/result.h"
+#include "domelight/io/decode.h"
 
 #include <filesystem>
 #include <string>
@@ -38,7 +39,7 @@ struct PictureOptions {
     /// divided by the channel "samples".
     std::string variance = "pixel";  ///< pixel | sample
     bool opacity = false;            ///< read it where there is one
-    std::string decode = "auto";     ///< PNG and JPEG: see EnvironmentOptions
+    Decode decode = Decode::automatic;  ///< PNG and JPEG
     std::int64_t max_bytes = std::int64_t(1) << 30;
     int threads = 0;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "domelight/base/names.h"
 #include "domelight/base/result.h"
 #include "domelight/base/vec.h"
 #include "domelight/filtering/prefilter.h"
@@ -13,15 +14,34 @@ namespace domelight {
 
 /// What a map of light holds.
 enum class Quantity { radiance, irradiance, irradiance_over_pi };
-std::string quantity_name(Quantity quantity);
+template <>
+struct EnumNames<Quantity> {
+    static constexpr const char* kind = "a quantity";
+    static constexpr NamedValue<Quantity> table[] = {
+        {Quantity::radiance, "radiance"},
+        {Quantity::irradiance, "irradiance"},
+        {Quantity::irradiance_over_pi, "irradiance_over_pi"},
+    };
+};
 
 /// The file a map is written to. exr and hdr hold one image a level; the others hold the whole chain. dds9 is DDS with
 /// the header from before DX10; exr_mip a tiled OpenEXR with its levels and the envmap attribute. The last three belong
 /// to one engine each: Babylon's .env, a glTF file with EXT_lights_image_based, PlayCanvas' atlas (a PNG).
 enum class Container { ktx2, ktx1, dds, dds9, exr, exr_mip, hdr, env, gltf, playcanvas_atlas };
-std::string container_name(Container container);
-/// Accepts the containers that suit any engine: ktx2, ktx1, dds, dds9, exr, exr-mip, hdr. The error lists them.
-Result<Container> container_from_name(const std::string& name);
+template <>
+struct EnumNames<Container> {
+    static constexpr const char* kind = "a format";
+    static constexpr NamedValue<Container> table[] = {
+        {Container::ktx2, "ktx2"}, {Container::ktx1, "ktx1"},
+        {Container::dds, "dds"},   {Container::dds9, "dds9"},
+        {Container::exr, "exr"},   {Container::exr_mip, "exr-mip"},
+        {Container::hdr, "hdr"},   {Container::env, "env"},
+        {Container::gltf, "gltf"}, {Container::playcanvas_atlas, "playcanvas-atlas"},
+    };
+};
+
+/// The containers that suit any engine: all but those that belong to one.
+std::span<const Container> containers_for_any_engine();
 std::string container_extension(Container container);  ///< ".ktx2", ".ktx", ...
 
 /// How an engine looks up the light that arrives from world direction d = (x, y, z).
@@ -36,8 +56,16 @@ Mat3 cube_mirror_matrix(CubeMirror mirror);            ///< M, where the engine 
 
 /// What a BRDF table's channels hold; brdf_table.h has the integrals.
 enum class BrdfForm { none, scale_bias, multiscatter, scale_bias_charlie };
-std::string brdf_form_name(BrdfForm form);  ///< "none", "scale-bias", "multiscatter", "scale-bias-charlie"
-Result<BrdfForm> brdf_form_from_name(const std::string& name);
+template <>
+struct EnumNames<BrdfForm> {
+    static constexpr const char* kind = "a form of BRDF table";
+    static constexpr NamedValue<BrdfForm> table[] = {
+        {BrdfForm::none, "none"},
+        {BrdfForm::scale_bias, "scale-bias"},
+        {BrdfForm::multiscatter, "multiscatter"},
+        {BrdfForm::scale_bias_charlie, "scale-bias-charlie"},
+    };
+};
 
 /// The roughness of a level in a chain of `levels` levels whose first has `size`^2 texels a face.
 using RoughnessCurve = double (*)(int level, int levels, int size);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "domelight/base/names.h"
 #include "domelight/image/image.h"
 #include "domelight/base/progress.h"
 #include "domelight/environment/environment.h"
@@ -15,12 +16,13 @@
 
 namespace domelight {
 
+/// How directions are laid out over a filtered image.
 enum class Layout { cube, latlong };
-
-/// "cube", "latlong".
-inline const char* layout_name(Layout layout) {
-    return layout == Layout::cube ? "cube" : "latlong";
-}
+template <>
+struct EnumNames<Layout> {
+    static constexpr const char* kind = "a layout";
+    static constexpr NamedValue<Layout> table[] = {{Layout::cube, "cube"}, {Layout::latlong, "latlong"}};
+};
 
 /// One level of a specular chain.
 struct LevelSpec {

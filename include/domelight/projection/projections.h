@@ -113,6 +113,8 @@ struct ProjectionInfo {
     const char* name;
     const char* about;
     const char *centre, *right, *up;  ///< world axes of the default convention
+    /// fov_deg: of a mirror ball, as projection_from_name() has it; the others ignore it.
+    std::shared_ptr<const ProjectionShape> (*make_shape)(double fov_deg);
 };
 std::span<const ProjectionInfo> projections();
 

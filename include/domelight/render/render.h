@@ -6,6 +6,7 @@
 //     auto sampler = EnvironmentSampler::build(*environment, reference_sampler_options());
 //     auto picture = render_reference(*traced, *sampler, options);
 
+#include "domelight/base/names.h"
 #include "domelight/sampling/environment_sampler.h"
 #include "domelight/base/progress.h"
 #include "domelight/scene/scene.h"
@@ -43,6 +44,15 @@ enum class LightStrategy {
     environment,  ///< in proportion to radiance
     brdf,         ///< in proportion to the surface's BRDF
 };
+template <>
+struct EnumNames<LightStrategy> {
+    static constexpr const char* kind = "a strategy";
+    static constexpr NamedValue<LightStrategy> table[] = {
+        {LightStrategy::mis, "mis"},
+        {LightStrategy::environment, "env"},
+        {LightStrategy::brdf, "brdf"},
+    };
+};
 
 class LightMaps;
 
@@ -52,6 +62,15 @@ enum class Background {
     blurred,      ///< the environment, prefiltered for a roughness: RenderOptions::background_maps
     colour,       ///< RenderOptions::background_colour
     transparent,  ///< nothing: the radiance is black there, and the opacity 0
+};
+template <>
+struct EnumNames<Background> {
+    static constexpr const char* kind = "a background";
+    static constexpr NamedValue<Background> table[] = {
+        {Background::environment, "environment"}, {Background::blurred, "blurred"},
+        {Background::colour, "colour"},           {Background::colour, "color"},
+        {Background::transparent, "transparent"},
+    };
 };
 
 /// The progress of a render.

@@ -7,6 +7,7 @@
 //
 // docs/math/importance.md derives the densities.
 
+#include "domelight/base/names.h"
 #include "domelight/sampling/distribution/distribution.h"
 #include "domelight/environment/environment.h"
 
@@ -17,6 +18,14 @@ enum class LightWeight {
     radiant_power,  ///< luminance (Rec. 709) times the texel's solid angle (sin theta): the default
     grayscale,  ///< the courses' textbook form: 0.2989 R + 0.5866 G + 0.1145 B without sin theta, which draws too many
                 ///< samples at the poles
+};
+template <>
+struct EnumNames<LightWeight> {
+    static constexpr const char* kind = "a weight";
+    static constexpr NamedValue<LightWeight> table[] = {
+        {LightWeight::radiant_power, "radiant-power"},
+        {LightWeight::grayscale, "grayscale"},
+    };
 };
 
 struct EnvironmentSamplerOptions {

@@ -2,12 +2,12 @@
 // The reflection integral under an environment, L_o = ∫ f(V, L) L_i(L) NdotL dL, estimated by every strategy that
 // courses on importance sampling teach.
 
+#include "domelight/base/names.h"
 #include "domelight/sampling/brdf.h"
 #include "domelight/sampling/environment_sampler.h"
 #include "domelight/sampling/sequences.h"
 
 #include <functional>
-#include <string>
 
 namespace domelight {
 
@@ -39,8 +39,16 @@ enum class Strategy {
     product,      ///< a few candidates from the environment, one of them kept in proportion to f L NdotL / p (resampled
                   ///< importance sampling, Talbot 2005)
 };
-/// The enumerators' names with - in place of _: "riemann", "uniform", ..., "mis-balance".
-std::string strategy_name(Strategy strategy);
+template <>
+struct EnumNames<Strategy> {
+    static constexpr const char* kind = "a strategy";
+    static constexpr NamedValue<Strategy> table[] = {
+        {Strategy::riemann, "riemann"},         {Strategy::uniform, "uniform"},
+        {Strategy::cosine, "cosine"},           {Strategy::brdf, "brdf"},
+        {Strategy::environment, "environment"}, {Strategy::mis_balance, "mis-balance"},
+        {Strategy::mis_power, "mis-power"},     {Strategy::product, "product"},
+    };
+};
 
 struct EstimateOptions {
     /// Directions evaluated in all; the MIS forms use half for each strategy, product counts its candidates.

@@ -1,12 +1,9 @@
 #pragma once
 
+#include "domelight/base/names.h"
 #include "domelight/sampling/low_discrepancy.h"
 
 #include <cmath>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace domelight {
 
@@ -18,6 +15,14 @@ enum class Sequence {
     halton,      ///< radical inverses in prime bases, Owen-scrambled
     sobol,       ///< (0, 2)-sequences, shuffled and Owen-scrambled (Burley 2020)
     r2,          ///< Roberts' R2 sequence with a random rotation
+};
+template <>
+struct EnumNames<Sequence> {
+    static constexpr const char* kind = "a sequence";
+    static constexpr NamedValue<Sequence> table[] = {
+        {Sequence::random, "random"}, {Sequence::stratified, "stratified"}, {Sequence::hammersley, "hammersley"},
+        {Sequence::halton, "halton"}, {Sequence::sobol, "sobol"},           {Sequence::r2, "r2"},
+    };
 };
 
 /// Point `index` (< count) of `count` jittered points in random order: one in each cell of a grid of m columns and n
@@ -100,12 +105,5 @@ struct PointSet {
     /// Point i, 0 <= i < count.
     UnitPoint operator[](int i) const { return unit_point(sequence, seed, std::uint32_t(i), std::uint32_t(count)); }
 };
-
-/// "random", "stratified", "hammersley", "halton", "sobol", "r2".
-std::string sequence_name(Sequence sequence);
-std::vector<std::string> sequence_names();  ///< of all of them
-
-/// The sequence of this name, if there is one.
-std::optional<Sequence> sequence_from_name(std::string_view name);
 
 }  // namespace domelight

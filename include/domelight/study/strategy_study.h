@@ -27,7 +27,9 @@ struct StrategyStudyOptions {
     int threads = 0;  ///< 0: all
     Progress progress = {};
 };
-/// The strategy_name()s, and "mis-balance-compensated": MIS with the compensated density.
+/// MIS by the balance heuristic with the compensated density.
+inline constexpr const char* k_compensated_mis = "mis-balance-compensated";
+/// The names of every Strategy, and k_compensated_mis.
 const std::vector<std::string>& studied_strategies();
 
 /// The results of one strategy.

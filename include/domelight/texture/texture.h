@@ -1,6 +1,7 @@
 #pragma once
 
 #include "domelight/base/large_allocator.h"
+#include "domelight/base/names.h"
 #include "domelight/filtering/prefilter.h"
 #include "domelight/base/result.h"
 
@@ -32,22 +33,46 @@ enum class Encoding {
     astc4x4_hdr,
     astc6x6_hdr
 };
+template <>
+struct EnumNames<Encoding> {
+    static constexpr const char* kind = "an encoding";
+    static constexpr NamedValue<Encoding> table[] = {
+        {Encoding::rgba16f, "rgba16f"},
+        {Encoding::rgba32f, "rgba32f"},
+        {Encoding::rgb9e5, "rgb9e5"},
+        {Encoding::r11g11b10f, "r11g11b10f"},
+        {Encoding::bc6h, "bc6h"},
+        {Encoding::uastc_hdr, "uastc-hdr"},
+        {Encoding::astc4x4_hdr, "astc4x4-hdr"},
+        {Encoding::astc6x6_hdr, "astc6x6-hdr"},
+        {Encoding::rgbm, "rgbm"},
+        {Encoding::rgbd, "rgbd"},
+        {Encoding::rgbp, "rgbp"},
+        {Encoding::rg16f, "rg16f"},
+        {Encoding::rg32f, "rg32f"},
+        {Encoding::r32f, "r32f"},
+    };
+};
 
-/// "rgba16f", "rgba32f", "rgb9e5", "r11g11b10f", "rg16f", "rg32f", "r32f", "bc6h", "rgbm", "rgbd", "rgbp",
-/// "uastc-hdr", "astc4x4-hdr", "astc6x6-hdr".
-std::string encoding_name(Encoding encoding);
-Result<Encoding> encoding_from_name(const std::string& name);  ///< the error lists the accepted names
-int encoding_block(Encoding encoding);                         ///< texels along a side of a block; 1: single texels
-int encoding_bytes(Encoding encoding);                         ///< of a block
-int encoding_channels(Encoding encoding);                      ///< that carry data: 3, 2 (red and green) or 1
-double encoding_max(Encoding encoding);                        ///< largest value a channel can hold
+int encoding_block(Encoding encoding);     ///< texels along a side of a block; 1: single texels
+int encoding_bytes(Encoding encoding);     ///< of a block
+int encoding_channels(Encoding encoding);  ///< that carry data: 3, 2 (red and green) or 1
+double encoding_max(Encoding encoding);    ///< largest value a channel can hold
 
 /// How thoroughly the encodings that search for the best block (bc6h, astc) search; the others ignore it. fast: a few
 /// candidates. standard: nearly the best quality. high: some tenths of a decibel more. exhaustive: every mode and
 /// partition, for comparison.
 enum class EncodingQuality { fast, standard, high, exhaustive };
-std::string encoding_quality_name(EncodingQuality quality);  ///< "fast", "default", "high", "exhaustive"
-Result<EncodingQuality> encoding_quality_from_name(const std::string& name);
+template <>
+struct EnumNames<EncodingQuality> {
+    static constexpr const char* kind = "a quality";
+    static constexpr NamedValue<EncodingQuality> table[] = {
+        {EncodingQuality::fast, "fast"},
+        {EncodingQuality::standard, "default"},
+        {EncodingQuality::high, "high"},
+        {EncodingQuality::exhaustive, "exhaustive"},
+    };
+};
 
 /// The errors of an encoded level.
 struct EncodingReport {

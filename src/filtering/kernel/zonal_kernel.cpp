@@ -156,18 +156,4 @@ double ZonalKernel::angular_width() const {
     return p > 0 ? std::min(std::sqrt(8 / p), k_pi) : k_pi;
 }
 
-std::string lobe_name(Lobe lobe) {
-    switch (lobe) {
-        case Lobe::ggx:
-            return "ggx";
-        case Lobe::charlie:
-            return "charlie";
-        case Lobe::phong_brdf:
-            return "phong";
-        case Lobe::phong_plain:
-            return "phong-plain";
-    }
-    return {};
-}
-
 }  // namespace domelight

@@ -25,7 +25,7 @@ std::string texture_container(std::span<const std::uint8_t> bytes) {
 }
 
 Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_t max_bytes, float scale,
-                                  RepairReport& report, const std::string& decode) {
+                                  RepairReport& report, Decode decode) {
     const Result<TextureInfo> info = read_texture_info(file);
     if (!info) return info.error().at(file.string());
     if (info->faces != 6 || info->width != info->height || info->layers > 1)

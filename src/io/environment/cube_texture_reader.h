@@ -3,6 +3,7 @@
 #include "domelight/base/result.h"
 #include "domelight/image/image.h"
 #include "domelight/image/repair_report.h"
+#include "domelight/io/decode.h"
 
 #include <array>
 #include <cstdint>
@@ -19,7 +20,7 @@ std::string texture_container(std::span<const std::uint8_t> bytes);
 /// OpenGL's; those of a .env file are turned from Babylon's world into ours. `decode`: what eight bits a channel mean
 /// (screen_texels.h). Errors name the file.
 Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_t max_bytes, float scale,
-                                  RepairReport& report, const std::string& decode = "auto");
+                                  RepairReport& report, Decode decode = Decode::automatic);
 
 /// The finest level of the light in a glTF file with EXT_lights_image_based, mended and times `scale` and its own
 /// intensity; `rotation`: the environment's, a unit quaternion x, y, z, w. Errors name the file.

@@ -63,7 +63,9 @@ constexpr std::string_view k_own_projections[] = {"auto",       "latlong",    "c
 Result<Projection> other_projection(const std::string& text) {
     Result<Projection> projection = projection_from_name(text);
     if (projection || !projection.error().what.starts_with("unknown projection")) return projection;
-    std::string accepted = "Accepted: auto, latlong, cube, cube-cross, cube-strip, cube-faces";
+    std::string accepted = "Accepted: ";
+    for (const std::string_view own : k_own_projections)
+        if (own != "cube/openexr") accepted += (own == k_own_projections[0] ? "" : ", ") + std::string(own);
     for (const ProjectionInfo& info : projections())
         if (std::string_view(info.name) != "latlong" && std::string_view(info.name) != "cube")
             accepted += std::string(", ") + info.name;
@@ -111,10 +113,6 @@ Result<Request> check_options(const EnvironmentOptions& options) {
         if (!other) return other.error().at(field_place("projection"));
         request.other = *std::move(other);
     }
-    constexpr std::string_view decodings[] = {"auto", "srgb", "gamma22", "linear", "rgbm", "rgbd", "rgbp"};
-    if (!one_of(options.decode, decodings))
-        return Error{"unknown decoding \"" + options.decode + "\"", field_place("decode"),
-                     "Accepted: auto, srgb, gamma22, linear; for DDS also rgbm, rgbd, rgbp."};
     if (!std::isfinite(options.rotate_y_deg)) return Error{"angle is not a number", field_place("rotate_y_deg"), ""};
     if (!(std::abs(options.exposure) <= 64))
         return Error{"exposure must lie between -64 and 64 stops", field_place("exposure"), ""};

@@ -45,7 +45,7 @@ class JpegReader : public ImageReader {
     static void on_progress(j_common_ptr state);
 
     std::shared_ptr<const FileBytes> bytes_;
-    std::string decode_;
+    Decode decode_;
     std::int64_t max_bytes_;
     jpeg_decompress_struct state_{};
     jpeg_error_mgr errors_{};

@@ -38,7 +38,7 @@ class PngReader : public ImageReader {
     static void on_read(png_structp png, png_bytep out, std::size_t n);
 
     std::shared_ptr<const FileBytes> bytes_;
-    std::string decode_;
+    Decode decode_;
     std::int64_t max_bytes_;
     png_structp png_ = nullptr;
     png_infop info_ = nullptr;

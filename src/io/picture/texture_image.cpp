@@ -96,7 +96,7 @@ Result<Rgba8Image> decode_jpeg_texture(std::span<const std::uint8_t> bytes) {
     const auto size = texture_image_size(bytes);
     if (!size) return size.error();
     // The reader of environments returns code / 255 as float, from which the codes can be recovered exactly.
-    auto reader = open_jpeg_reader(FileBytes::from_memory({bytes.begin(), bytes.end()}), {.decode = "linear"});
+    auto reader = open_jpeg_reader(FileBytes::from_memory({bytes.begin(), bytes.end()}), {.decode = Decode::linear});
     if (!reader) return reader.error();
     Rgba8Image image;
     image.width = (*reader)->facts().width, image.height = (*reader)->facts().height;

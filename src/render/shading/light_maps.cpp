@@ -1,6 +1,5 @@
 #include "domelight/engines/engine.h"
 #include "domelight/filtering/brdf/brdf_table.h"
-#include "domelight/filtering/kernel/lobe_names.h"
 #include "domelight/filtering/prefilter.h"
 #include "domelight/projection/projection.h"
 #include "domelight/render/shading/shading.h"
@@ -42,7 +41,7 @@ float matching_roughness(double exponent) {
 }
 
 Result<Lobe> lobe_of(const std::string& name) {
-    if (const auto lobe = lobe_from_name(name); lobe && *lobe != Lobe::charlie) return *lobe;
+    if (const auto lobe = from_name<Lobe>(name); lobe && *lobe != Lobe::charlie) return *lobe;
     return Error{fmt::format("describes a chain of lobe \"{}\"", name), "", "Bake with `lobe` ggx or phong."};
 }
 
@@ -92,7 +91,7 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
         return Error{
             fmt::format("describes {} specular levels, but specular.ktx2 has {}", levels.size(), specular->size()), name,
             ""};
-    const auto lobe = lobe_of(chain["lobe"].is_string() ? chain["lobe"].get<std::string>() : lobe_name(Lobe::ggx));
+    const auto lobe = lobe_of(chain["lobe"].is_string() ? chain["lobe"].get<std::string>() : name_of(Lobe::ggx));
     if (!lobe) return lobe.error().at(name);
     impl.lobe = *lobe;
     for (const Json& level : levels.elements()) impl.roughness.push_back(level_roughness(level, impl.lobe));
@@ -105,7 +104,7 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
 
     // The generic engine stores irradiance E, others E / pi.
     const bool over_pi =
-        std::as_const(*manifest)["irradiance"]["quantity"] == Json("irradiance_over_pi");
+        std::as_const(*manifest)["irradiance"]["quantity"] == Json(name_of(Quantity::irradiance_over_pi));
     Cubemap e = irradiance->front();
     if (!over_pi)
         for (float& p : e.pixels()) p /= float(k_pi);

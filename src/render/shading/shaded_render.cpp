@@ -123,26 +123,6 @@ class ShadedTracer {
 
 }  // namespace
 
-std::string shading_model_name(ShadingModel model) {
-    switch (model) {
-        case ShadingModel::split_sum:
-            return "split-sum";
-        case ShadingModel::stretched:
-            return "stretched";
-        case ShadingModel::phong:
-            return "phong";
-        case ShadingModel::mirror:
-            return "mirror";
-        case ShadingModel::refract:
-            break;
-    }
-    return "refract";
-}
-
-std::string diffuse_weight_name(DiffuseWeight weight) {
-    return weight == DiffuseWeight::energy ? "energy" : "fresnel";
-}
-
 Lobe shading_lobe(ShadingModel model) {
     return model == ShadingModel::phong ? Lobe::phong_brdf : Lobe::ggx;
 }
@@ -156,9 +136,9 @@ Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps,
     const bool wants_phong = shading_lobe(shading.model) == Lobe::phong_brdf,
                reads_chain = shading.model < ShadingModel::mirror;
     if (reads_chain && wants_phong != (maps.lobe() != Lobe::ggx))
-        return Error{fmt::format("has a chain of lobe {}, which {} does not read", lobe_name(maps.lobe()),
-                                 shading_model_name(shading.model)),
-                     "", fmt::format("Bake with `lobe` {}.", lobe_name(shading_lobe(shading.model)))};
+        return Error{
+            fmt::format("has a chain of lobe {}, which {} does not read", name_of(maps.lobe()), name_of(shading.model)),
+            "", fmt::format("Bake with `lobe` {}.", name_of(shading_lobe(shading.model)))};
     const auto start = std::chrono::steady_clock::now();
     const ShadedTracer tracer(scene, maps, environment, shading, o);
     Film film(o.width, o.height);

@@ -18,28 +18,6 @@ Result<std::unique_ptr<Distribution2D>> boxed(Result<T> distribution) {
 
 }  // namespace
 
-std::string method_name(DistributionMethod method) {
-    switch (method) {
-        case DistributionMethod::linear:
-            return "linear";
-        case DistributionMethod::walk:
-            return "walk";
-        case DistributionMethod::binary:
-            return "binary";
-        case DistributionMethod::guided:
-            return "guided";
-        case DistributionMethod::alias:
-            return "alias";
-        case DistributionMethod::hierarchical:
-            return "hierarchical";
-        case DistributionMethod::bilinear:
-            return "bilinear";
-        case DistributionMethod::bilinear_plain:
-            return "bilinear_plain";
-    }
-    return "";
-}
-
 Result<std::unique_ptr<Distribution2D>> make_distribution(const Weights& weights, DistributionMethod method,
                                                           int threads) {
     switch (method) {

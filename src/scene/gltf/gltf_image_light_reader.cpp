@@ -113,7 +113,7 @@ Result<void> decode_face(std::span<const std::uint8_t> bytes, ImageView<float> f
     if (!image) return image.error();
     const bool rgbd = has_fourth_channel(bytes);
     low_dynamic_range = low_dynamic_range || !rgbd;
-    const std::vector<float> linear = screen_curve("srgb", 256);
+    const std::vector<float> linear = screen_curve(Decode::srgb, 256);
     const std::uint8_t* p = image->rgba.data();
     for (int y = 0; y < face.height; ++y)
         for (int x = 0; x < face.width; ++x, p += 4) {

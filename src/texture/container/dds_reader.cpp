@@ -121,10 +121,8 @@ Result<TextureInfo> dds_info(ByteSource& source) {
 namespace {
 
 /// Levels of eight bits a channel.
-Result<Texture> screen_texture(ByteSource& source, const Dds& file, const std::string& decode) {
-    const auto encoding = screen_encoding(decode);
-    if (!encoding) return encoding.error();
-    auto texture = texture_for(file.info, StoredTexels{*encoding});
+Result<Texture> screen_texture(ByteSource& source, const Dds& file, Decode decode) {
+    auto texture = texture_for(file.info, StoredTexels{screen_encoding(decode)});
     if (!texture) return texture;
     for (int l = 0; l < file.info.levels; ++l)
         texture->levels.emplace_back(texture->face_bytes(l) * std::size_t(texture->faces));
@@ -143,7 +141,7 @@ Result<Texture> screen_texture(ByteSource& source, const Dds& file, const std::s
 
 }  // namespace
 
-Result<Texture> dds_texture(ByteSource& source, const std::string& decode) {
+Result<Texture> dds_texture(ByteSource& source, Decode decode) {
     const auto file = parse(source);
     if (!file) return file.error();
     if (file->format.screen) return screen_texture(source, *file, decode);

@@ -68,7 +68,7 @@ TextureLayout layout_behind(ByteBuffer head, int faces, std::span<const std::uin
 
 Result<TextureLayout> dds_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes) {
     if (dxgi_number(texture.encoding) == 0)
-        return Error{encoding_name(texture.encoding) + " cannot be stored as dds", "",
+        return Error{name_of(texture.encoding) + " cannot be stored as dds", "",
                      "Direct3D has no such format; use ktx2."};
     ByteBuffer head = header(texture, level_bytes.size(), k_dds_dx10);
     head.u32(dxgi_number(texture.encoding));
@@ -82,7 +82,7 @@ Result<TextureLayout> dds_layout(const Texture& texture, std::span<const std::ui
 Result<TextureLayout> dds9_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes) {
     const std::uint32_t number = d3d_number(texture.encoding);
     if (!number && !is_scaled_bytes(texture.encoding))
-        return Error{encoding_name(texture.encoding) + " has no place in DDS headers from before DX10", "", ""};
+        return Error{name_of(texture.encoding) + " has no place in DDS headers from before DX10", "", ""};
     return layout_behind(header(texture, level_bytes.size(), number), texture.faces, level_bytes);
 }
 

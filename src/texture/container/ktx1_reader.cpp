@@ -96,7 +96,7 @@ Result<Ktx1> parse(ByteSource& source) {
     if (internal_format == k_gl_rgba8 && word(1) == k_gl_unsigned_byte)
         if (const auto encoding = take_scaled_bytes(file.info.metadata)) {
             file.texels = StoredTexels{*encoding};
-            file.info.format += ", " + encoding_name(*encoding);
+            file.info.format += ", " + name_of(*encoding);
         }
     file.data_offset = k_ktx1_header_bytes + word(12);
     done = check_levels(source, file);

@@ -125,7 +125,7 @@ Result<Ktx2> parse(ByteSource& source) {
     if (format == k_vulkan_rgba8)
         if (const auto encoding = take_scaled_bytes(file.info.metadata)) {
             file.texels = StoredTexels{*encoding};
-            file.info.format += ", " + encoding_name(*encoding);
+            file.info.format += ", " + name_of(*encoding);
         }
     if (!source.contains(u64_at(*head, 64), u64_at(*head, 72)))
         return Error{"ends before its supercompression global data", "", "the file is truncated or damaged"};

@@ -17,14 +17,14 @@ constexpr bool is_scaled_bytes(Encoding encoding) {
 
 /// Adds the key where the encoding needs it.
 inline void note_scaled_bytes(Encoding encoding, std::map<std::string, std::string>& metadata) {
-    if (is_scaled_bytes(encoding)) metadata[k_encoding_key] = encoding_name(encoding);
+    if (is_scaled_bytes(encoding)) metadata[k_encoding_key] = name_of(encoding);
 }
 
 /// Removes the key and returns its encoding. Empty if the key is missing or names another kind of encoding.
 inline std::optional<Encoding> take_scaled_bytes(std::map<std::string, std::string>& metadata) {
     const auto found = metadata.find(k_encoding_key);
     if (found == metadata.end()) return std::nullopt;
-    const auto encoding = encoding_from_name(found->second);
+    const auto encoding = from_name<Encoding>(found->second);
     if (!encoding || !is_scaled_bytes(*encoding)) return std::nullopt;
     metadata.erase(found);
     return *encoding;

@@ -1,6 +1,5 @@
 #include "texture/container/screen_texels.h"
 
-#include "base/field_place.h"
 #include "io/picture/screen_curve.h"
 #include "texture/block/bc123.h"
 #include "texture/texel/half.h"
@@ -41,19 +40,16 @@ void for_texels(const ScreenTexels& texels, const std::uint8_t* stored, int widt
 
 }  // namespace
 
-Result<Encoding> screen_encoding(const std::string& decode) {
-    if (decode == "auto" || decode == "srgb" || decode == "gamma22" || decode == "linear") return Encoding::rgba16f;
-    const auto encoding = encoding_from_name(decode);
-    if (encoding && (*encoding == Encoding::rgbm || *encoding == Encoding::rgbd || *encoding == Encoding::rgbp))
-        return *encoding;
-    return Error{"unknown decoding \"" + decode + "\"", field_place("decode"),
-                 "Accepted: auto, srgb, gamma22, linear, rgbm, rgbd, rgbp."};
+Encoding screen_encoding(Decode decode) {
+    return decode == Decode::rgbm   ? Encoding::rgbm
+           : decode == Decode::rgbd ? Encoding::rgbd
+           : decode == Decode::rgbp ? Encoding::rgbp
+                                    : Encoding::rgba16f;
 }
 
-void decode_screen_texels(const ScreenTexels& texels, const std::string& decode, const std::uint8_t* stored, int width,
-                          int height, std::uint8_t* out) {
-    const auto encoding = screen_encoding(decode);
-    if (encoding && *encoding != Encoding::rgba16f) {
+void decode_screen_texels(const ScreenTexels& texels, Decode decode, const std::uint8_t* stored, int width, int height,
+                          std::uint8_t* out) {
+    if (screen_encoding(decode) != Encoding::rgba16f) {
         for_texels(texels, stored, width, height, [&](int x, int y, const Rgba& texel) {
             std::memcpy(out + 4 * (std::size_t(y) * std::size_t(width) + std::size_t(x)), texel.data(), 4);
         });

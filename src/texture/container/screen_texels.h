@@ -2,11 +2,11 @@
 // Texels of eight bits a channel, as in old textures: pictures for a screen, or RGBM and similar encodings without a
 // mark.
 
+#include "domelight/io/decode.h"
 #include "domelight/texture/texture.h"
 
 #include <array>
 #include <cstdint>
-#include <string>
 
 namespace domelight {
 
@@ -18,13 +18,12 @@ struct ScreenTexels {
     std::array<int, 4> channel = {0, 1, 2, 3};  ///< which byte is red, green, blue and alpha; -1: there is none
 };
 
-/// The meaning of their numbers: "auto" and "srgb", "gamma22", "linear" give half floats; "rgbm", "rgbd" and "rgbp" are
-/// kept as they are.
-Result<Encoding> screen_encoding(const std::string& decode);
+/// What their texels become: half floats; rgbm, rgbd and rgbp are kept as they are.
+Encoding screen_encoding(Decode decode);
 
 /// One image of a level: `stored` holds its rows of texels, or of blocks, to width x height texels of
 /// screen_encoding(decode) at `out`.
-void decode_screen_texels(const ScreenTexels& texels, const std::string& decode, const std::uint8_t* stored, int width,
-                          int height, std::uint8_t* out);
+void decode_screen_texels(const ScreenTexels& texels, Decode decode, const std::uint8_t* stored, int width, int height,
+                          std::uint8_t* out);
 
 }  // namespace domelight

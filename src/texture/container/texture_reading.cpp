@@ -164,10 +164,10 @@ Result<TextureInfo> read_texture_info(const std::filesystem::path& file) {
 }
 
 Result<Texture> read_texture(const std::filesystem::path& file) {
-    return read_texture(file, "auto");
+    return read_texture(file, Decode::automatic);
 }
 
-Result<Texture> read_texture(const std::filesystem::path& file, const std::string& decode) {
+Result<Texture> read_texture(const std::filesystem::path& file, Decode decode) {
     return read_from(file, [&](ByteSource& source) -> Result<Texture> {
         const Result<Format> format = recognise(source);
         if (!format) return format.error();

@@ -1,6 +1,7 @@
 #pragma once
 // Functions shared by the readers of the three texture containers.
 
+#include "domelight/io/decode.h"
 #include "domelight/texture/texture.h"
 
 #include "io/file/byte_source.h"
@@ -61,9 +62,9 @@ Result<TextureInfo> ktx1_info(ByteSource& source);
 Result<Texture> ktx1_texture(ByteSource& source);
 Result<TextureInfo> dds_info(ByteSource& source);
 /// `decode`: what texels of eight bits a channel mean (screen_texels.h).
-Result<Texture> dds_texture(ByteSource& source, const std::string& decode = "auto");
+Result<Texture> dds_texture(ByteSource& source, Decode decode = Decode::automatic);
 
 /// read_texture() with that option.
-Result<Texture> read_texture(const std::filesystem::path& file, const std::string& decode);
+Result<Texture> read_texture(const std::filesystem::path& file, Decode decode);
 
 }  // namespace domelight

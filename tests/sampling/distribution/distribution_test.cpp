@@ -108,7 +108,7 @@ TEST_CASE("distribution: chi-square over the quarters of every texel, all method
     for (const NamedWeights& weights : all)
         for (DistributionMethod method : k_all_methods) {
             CAPTURE(weights.name);
-            CAPTURE(method_name(method));
+            CAPTURE(name_of(method));
             const auto d = made(weights, method);
             REQUIRE(d);
             // A bilinear density is not constant in a quarter, but its integral there is the midpoint's value.
@@ -121,7 +121,7 @@ TEST_CASE("distribution: the density is the weights', and integrates to 1") {
     for (const NamedWeights& weights : hard_weights())
         for (DistributionMethod method : k_all_methods) {
             CAPTURE(weights.name);
-            CAPTURE(method_name(method));
+            CAPTURE(name_of(method));
             const auto d = made(weights, method);
             const auto p = texel_probabilities(*d);
             CHECK(total(p) == doctest::Approx(1).epsilon(method == DistributionMethod::binary ? 1e-6 : 1e-9));
@@ -149,7 +149,7 @@ TEST_CASE("distribution: what sample says of the density is what pdf_uv says the
     for (const NamedWeights& weights : hard_weights())
         for (DistributionMethod method : k_all_methods) {
             CAPTURE(weights.name);
-            CAPTURE(method_name(method));
+            CAPTURE(name_of(method));
             const auto d = made(weights, method);
             bool inside = true;
             double worst = 0;
@@ -171,7 +171,7 @@ TEST_CASE("distribution: the numerical Jacobian of the map is one over the densi
     for (const NamedWeights& weights : hard_weights())
         for (DistributionMethod method : k_all_methods) {
             CAPTURE(weights.name);
-            CAPTURE(method_name(method));
+            CAPTURE(name_of(method));
             // In an alias table several pieces lie over each texel and their densities add up, so the Jacobian of one
             // piece is not the density. The chi-square test and the count of quanta cover them.
             if (method == DistributionMethod::alias) continue;
@@ -209,7 +209,7 @@ TEST_CASE("distribution: invert takes a sample back to its point") {
     for (const NamedWeights& weights : hard_weights())
         for (auto [method, most] : quanta) {
             CAPTURE(weights.name);
-            CAPTURE(method_name(method));
+            CAPTURE(name_of(method));
             const auto d = made(weights, method);
             double worst = 0;
             bool all = true;
@@ -233,7 +233,7 @@ TEST_CASE("distribution: many points at once give the bits of one at a time") {
         for (DistributionMethod method : k_all_methods)
             for (int count : {0, 1, 63, 64, 65, 1000}) {
                 CAPTURE(weights.name);
-                CAPTURE(method_name(method));
+                CAPTURE(name_of(method));
                 CAPTURE(count);
                 const auto d = made(weights, method);
                 const auto points = random_points(count, 13);
@@ -292,7 +292,7 @@ TEST_CASE("distribution: a texel of no weight is never drawn by the piecewise-co
             const auto d = made(weights, method);
             if (d->continuous()) continue;
             CAPTURE(weights.name);
-            CAPTURE(method_name(method));
+            CAPTURE(name_of(method));
             const int count = 100'000;
             const auto points = random_points(count, 19);
             std::vector<float> u(count), v(count), pdf(count);
@@ -314,7 +314,7 @@ TEST_CASE("distribution: no texel of positive weight is lost beside a sun") {
     for (DistributionMethod method :
          {DistributionMethod::guided, DistributionMethod::alias, DistributionMethod::bilinear,
           DistributionMethod::linear, DistributionMethod::hierarchical}) {
-        CAPTURE(method_name(method));
+        CAPTURE(name_of(method));
         const auto d = made(weights, method);
         int lost = 0;
         for (double p : texel_probabilities(*d)) lost += !(p > 0);
@@ -358,7 +358,7 @@ TEST_CASE("distribution: the built-in sky and a photograph pass the chi-square t
     for (const NamedWeights& weights : all)
         for (DistributionMethod method : methods) {
             CAPTURE(weights.name);
-            CAPTURE(method_name(method));
+            CAPTURE(name_of(method));
             CHECK(sampling_p_value(*made(weights, method), 1'000'000, 23) >
                   corrected_significance(int(all.size() * std::size(methods))));
         }
@@ -388,7 +388,7 @@ TEST_CASE("distribution: floats at the ends of their range") {
     for (float scale : {1e-45f, 1e-40f, 1e-30f, 1e30f, 3e38f})
         for (DistributionMethod method : k_all_methods) {
             CAPTURE(scale);
-            CAPTURE(method_name(method));
+            CAPTURE(name_of(method));
             NamedWeights weights{"extreme", ImageF(4, 3, 1, scale)};
             *weights.image.at(1, 1) = 0;
             const auto d = made(weights, method);
@@ -402,7 +402,7 @@ TEST_CASE("distribution: floats at the ends of their range") {
 TEST_CASE("distribution: negative zero is zero, and all black is uniform") {
     NamedWeights weights = constant_weights("black", 7, 5, -0.0f);
     for (DistributionMethod method : k_all_methods) {
-        CAPTURE(method_name(method));
+        CAPTURE(name_of(method));
         const auto d = made(weights, method);
         REQUIRE(d);
         const auto s = d->sample({0x40000000u, 0xc0000000u});

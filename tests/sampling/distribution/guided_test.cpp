@@ -137,7 +137,7 @@ TEST_CASE("distribution: the same bits with every instruction set and number of 
     for (DistributionMethod method :
          {DistributionMethod::guided, DistributionMethod::alias, DistributionMethod::bilinear,
           DistributionMethod::binary, DistributionMethod::hierarchical}) {
-        CAPTURE(method_name(method));
+        CAPTURE(name_of(method));
         std::vector<float> first;
         for (const char* set : {"", "AVX2", "SSE4", "SCALAR"})
             for (int threads : {1, 3}) {

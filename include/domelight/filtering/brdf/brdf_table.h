@@ -1,5 +1,6 @@
 #pragma once
 
+#include "domelight/base/names.h"
 #include "domelight/image/image.h"
 #include "domelight/sampling/sequences.h"
 
@@ -10,6 +11,15 @@ enum class BrdfG {
     correlated,  ///< height-correlated Smith (Heitz 2014, eq. 99): the default
     smith,       ///< separable Smith
     karis,       ///< the courses' Schlick form with k = alpha / 2 (Karis 2013)
+};
+template <>
+struct EnumNames<BrdfG> {
+    static constexpr const char* kind = "a masking function";
+    static constexpr NamedValue<BrdfG> table[] = {
+        {BrdfG::correlated, "correlated"},
+        {BrdfG::smith, "smith"},
+        {BrdfG::karis, "karis"},
+    };
 };
 
 struct BrdfTableOptions {

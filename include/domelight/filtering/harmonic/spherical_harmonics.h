@@ -1,5 +1,6 @@
 #pragma once
 
+#include "domelight/base/names.h"
 #include "domelight/image/image.h"
 #include "domelight/base/vec.h"
 
@@ -12,7 +13,17 @@ namespace domelight {
 /// axis +Z, no Condon-Shortley sign: Y_1 = sqrt(3 / 4 pi) (y, z, x), as in Ramamoorthi and Hanrahan 2001 (eqs. 3).
 void sh_basis(const Vec3d& direction, int bands, std::span<double> out);
 
+/// Against the ringing of few bands: see sh_window().
 enum class ShWindow { none, hann, lanczos };
+template <>
+struct EnumNames<ShWindow> {
+    static constexpr const char* kind = "a window";
+    static constexpr NamedValue<ShWindow> table[] = {
+        {ShWindow::none, "none"},
+        {ShWindow::hann, "hann"},
+        {ShWindow::lanczos, "lanczos"},
+    };
+};
 
 /// Multiplies band l by the window's weight (hann: (1 + cos(pi l / bands)) / 2; lanczos: sinc(l / bands)): less
 /// ringing, more blur.

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <string>
+#include "domelight/base/names.h"
+
 #include <vector>
 
 namespace domelight {
@@ -11,6 +12,16 @@ enum class Lobe {
     charlie,      ///< sheen, as the Khronos tools sample it: K(c) ~ max(c, 0) (1 - c)^(1 / (2 alpha))
     phong_brdf,   ///< modified Phong BRDF under n = v = r: (n + 2) / 2 pi max(c, 0)^(n + 1)
     phong_plain,  ///< plain Phong map: (n + 1) / 2 pi max(c, 0)^n
+};
+template <>
+struct EnumNames<Lobe> {
+    static constexpr const char* kind = "a lobe";
+    static constexpr NamedValue<Lobe> table[] = {
+        {Lobe::ggx, "ggx"},
+        {Lobe::charlie, "charlie"},
+        {Lobe::phong_brdf, "phong"},
+        {Lobe::phong_plain, "phong-plain"},
+    };
 };
 
 /// Whether a lobe's width is an exponent.
@@ -41,8 +52,5 @@ struct ZonalKernel {
     /// corresponding angle for the other lobes.
     double angular_width() const;
 };
-
-/// "ggx", "charlie", "phong", "phong-plain".
-std::string lobe_name(Lobe lobe);
 
 }  // namespace domelight

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "domelight/environment/environment.h"
+#include "domelight/io/decode.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -17,8 +18,7 @@ struct EnvironmentOptions {
     /// Lat-long convention: default, usd, mitsuba, openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]", or pbrt
     /// (the equal-area octahedral square). Empty: the convention that the file states, otherwise default.
     std::string latlong = "";
-    /// PNG, JPEG and DDS of eight bits a channel: auto (= srgb) | srgb | gamma22 | linear; DDS also rgbm | rgbd | rgbp
-    std::string decode = "auto";
+    Decode decode = Decode::automatic;  ///< of PNG, JPEG, and DDS of eight bits a channel
     double rotate_y_deg = 0;  ///< turns the light about +Y: +X moves towards +Z
     std::string up = "+Y";    ///< the world axis (of the file's author) that the image's top shows: +Y, +Z, ...
     double exposure = 0;      ///< stops: radiance is multiplied by 2^exposure

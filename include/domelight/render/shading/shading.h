@@ -1,6 +1,7 @@
 #pragma once
 // A scene as a real-time engine draws it, lit by the maps that `bake` writes. Each model follows its shader.
 
+#include "domelight/base/names.h"
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
 #include "domelight/filtering/kernel/zonal_kernel.h"
 #include "domelight/render/render.h"
@@ -46,6 +47,7 @@ class LightMaps {
     std::unique_ptr<Impl> impl_;
 };
 
+/// How a shader turns the maps into reflected light.
 enum class ShadingModel {
     split_sum,  ///< Karis 2013: prefiltered environment times BRDF table, plus diffuse light from the irradiance
     stretched,  ///< the same with nine lookups instead of one, so that reflections stretch at grazing angles
@@ -53,8 +55,14 @@ enum class ShadingModel {
     mirror,     ///< reflection mapping: the sharp environment in the mirror direction
     refract,    ///< refraction mapping: Snell's law at the front surface, mixed with the reflection by the Fresnel term
 };
-/// "split-sum", "stretched", "phong", "mirror", "refract".
-std::string shading_model_name(ShadingModel model);
+template <>
+struct EnumNames<ShadingModel> {
+    static constexpr const char* kind = "a model of shading";
+    static constexpr NamedValue<ShadingModel> table[] = {
+        {ShadingModel::split_sum, "split-sum"}, {ShadingModel::stretched, "stretched"}, {ShadingModel::phong, "phong"},
+        {ShadingModel::mirror, "mirror"},       {ShadingModel::refract, "refract"},
+    };
+};
 
 /// The texture that reflection and refraction mapping look up.
 enum class MapLookup {
@@ -64,8 +72,17 @@ enum class MapLookup {
     sphere_map,       ///< OpenGL's, centre +Z: size of the square; -Z covers the whole rim
     dual_paraboloid,  ///< Heidrich and Seidel 1998, about +Z and -Z: size of each square
 };
-/// "environment", "cube", "latlong", "sphere-map", "dual-paraboloid".
-std::string map_lookup_name(MapLookup lookup);
+template <>
+struct EnumNames<MapLookup> {
+    static constexpr const char* kind = "a lookup";
+    static constexpr NamedValue<MapLookup> table[] = {
+        {MapLookup::environment, "environment"},
+        {MapLookup::cube, "cube"},
+        {MapLookup::latlong, "latlong"},
+        {MapLookup::sphere_map, "sphere-map"},
+        {MapLookup::dual_paraboloid, "dual-paraboloid"},
+    };
+};
 
 /// What a metallic-roughness surface leaves for its diffuse layer, for each channel; the layer's albedo already holds
 /// the factor 1 - metalness. F0 is the mix of 0.04 (or of what the index of refraction says) and the base colour.
@@ -75,8 +92,14 @@ enum class DiffuseWeight {
     fresnel,  ///< 1 - F(NdotV), as most courses write it; a white plastic in an even light of 1 then shows 0.28 where it
               ///< is rough and seen at a slant (roughness 1, NdotV = 0.05)
 };
-/// "energy", "fresnel".
-std::string diffuse_weight_name(DiffuseWeight weight);
+template <>
+struct EnumNames<DiffuseWeight> {
+    static constexpr const char* kind = "a weight";
+    static constexpr NamedValue<DiffuseWeight> table[] = {
+        {DiffuseWeight::energy, "energy"},
+        {DiffuseWeight::fresnel, "fresnel"},
+    };
+};
 
 struct ShadingOptions {
     ShadingModel model = ShadingModel::split_sum;

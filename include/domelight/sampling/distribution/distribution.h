@@ -5,6 +5,7 @@
 //     if (!light) return light.error();
 //     auto [u, v, pdf_uv] = light->sample(point);
 
+#include "domelight/base/names.h"
 #include "domelight/image/image.h"
 #include "domelight/base/result.h"
 #include "domelight/base/unit_point.h"
@@ -92,9 +93,16 @@ enum class DistributionMethod {
     bilinear,       ///< continuous: bilinear between texel centres, u wraps, v clamps; guided, monotone
     bilinear_plain  ///< the same in double, by linear search
 };
-
-/// The enumerators' names: "linear", "walk", ...
-std::string method_name(DistributionMethod method);
+template <>
+struct EnumNames<DistributionMethod> {
+    static constexpr const char* kind = "a method of sampling";
+    static constexpr NamedValue<DistributionMethod> table[] = {
+        {DistributionMethod::linear, "linear"},     {DistributionMethod::walk, "walk"},
+        {DistributionMethod::binary, "binary"},     {DistributionMethod::guided, "guided"},
+        {DistributionMethod::alias, "alias"},       {DistributionMethod::hierarchical, "hierarchical"},
+        {DistributionMethod::bilinear, "bilinear"}, {DistributionMethod::bilinear_plain, "bilinear-plain"},
+    };
+};
 
 /// Builds the tables of `method`; `threads` 0: all cores. The bits are the same on any number of threads.
 ///
