@@ -4,6 +4,7 @@
 #include "cli/bake/bake_report.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
+#include "cli/console/output_endings.h"
 #include "cli/console/environment_options.h"
 #include "cli/console/point_options.h"
 #include "projection/latlong_convention.h"
@@ -143,6 +144,7 @@ struct Job {
 
 Result<std::vector<Job>> list_jobs(const BakeWords& w) {
     if (w.output.empty()) return Error{"is missing", "--output", "Say where the results go: -o DIR."};
+    if (auto ok = check_folder("--output", w.output); !ok) return ok.error();
     if (w.environments.size() <= 1 || w.environment.projection == "cube-faces" || are_cube_faces(w.environments))
         return std::vector<Job>{{w.environments, w.output}};
     std::vector<Job> jobs;

@@ -91,7 +91,8 @@ struct Arguments::Parser {
     std::vector<std::string> option_names() const {
         std::vector<std::string> names;
         for (const Entry& entry : entries)
-            if (entry.name.starts_with("-")) names.push_back(entry.name.substr(entry.name.find("--")));
+            for (const std::string& name : split(entry.name, ','))
+                if (name.starts_with("--")) names.push_back(name);
         names.push_back("--help");
         return names;
     }
@@ -239,8 +240,8 @@ Result<void> Arguments::parse(const std::vector<std::string>& words) {
         const std::string first = rest.empty() ? "" : rest.front();
         if (!first.starts_with("-")) return Error{"\"" + first + "\" is one argument too many", "", see};
         const auto names = parser_->option_names();
-        return Error{"unknown option " + first, "",
-                     did_you_mean(split(first, '=')[0], names) + "Accepted: " + join(names, ", ") + "."};
+        const std::string guess = did_you_mean(split(first, '=')[0], names);
+        return Error{"unknown option " + first, "", guess.empty() ? "Accepted: " + join(names, ", ") + "." : guess + see};
     } catch (const CLI::ArgumentMismatch&) {
         // The one that is the last word has nothing behind it; CLI11's own text does not read well.
         return Error{"needs one value", words.empty() ? "" : words.back(), see};

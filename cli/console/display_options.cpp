@@ -1,5 +1,7 @@
 #include "cli/console/display_options.h"
 
+#include "domelight/io/write_image.h"
+
 #include <fmt/core.h>
 
 #include <cmath>
@@ -13,7 +15,12 @@ void add_display_options(Arguments& a, DisplayWords& w) {
              "--exposure is given)");
 }
 
-Result<void> check_display_options(const DisplayWords& w) {
+Result<void> check_display_options(const DisplayWords& w, const std::string& file) {
+    if (!is_screen_picture(file))
+        for (const auto& [option, given] : {std::pair{"--tonemap", w.tonemap.has_value()}, {"--ev", !std::isnan(w.ev)}})
+            if (given)
+                return Error{fmt::format("is of a .png or .jpg, and {} holds light as it is", file), option,
+                             "--exposure multiplies the light."};
     if (std::isnan(w.ev) || std::abs(w.ev) <= 100) return {};
     return Error{fmt::format("{:g} is not from -100 to 100", w.ev), "--ev", ""};
 }

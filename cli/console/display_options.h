@@ -17,8 +17,8 @@ struct DisplayWords {
 
 /// --tonemap and --ev, of a .png or .jpg.
 void add_display_options(Arguments& arguments, DisplayWords& words);
-/// Errors: --ev out of range.
-Result<void> check_display_options(const DisplayWords& words);
+/// Errors: --ev out of range; one of the two options where `file`, the output, is not a picture for a screen.
+Result<void> check_display_options(const DisplayWords& words, const std::string& file);
 
 /// What was asked for, with the rest filled in. `for_screen`: the source was made for a screen already and is shown as
 /// it is. `automatic_ev` is called where the exposure is to be found.

@@ -14,4 +14,8 @@ std::span<const std::string> light_and_screen_endings();
 /// option was not given.
 Result<void> check_ending(const char* option, const std::string& file, std::span<const std::string> accepted);
 
+/// An error at `option` if the name of a folder for results ends as a file's would (.hdr, .exr, .ktx2, .json, ...) and
+/// no folder has that name.
+Result<void> check_folder(const char* option, const std::string& folder);
+
 }  // namespace domelight::cli

@@ -11,7 +11,6 @@
 #include "cli/console/console.h"
 #include "cli/console/display_options.h"
 #include "cli/console/print.h"
-#include "cli/convert/convert_output.h"
 #include "cli/console/environment_options.h"
 #include "cli/convert/convert_output.h"
 #include "cli/convert/convert_picture.h"
@@ -21,6 +20,7 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <filesystem>
 
 namespace domelight::cli {
 namespace {
@@ -49,7 +49,7 @@ std::string latlong_list() {
 void declare(Arguments& a, ConvertWords& w) {
     a.positional("IN", w.files,
                  "an environment (or the six faces of a cube, a folder of them, front and back of a dual paraboloid), "
-                 "or any picture for a .png or .jpg; without -o, then the output");
+                 "or any picture for a .png or .jpg; without -o, then the output, a new file");
     a.text("-o,--output", "OUT", w.output.file,
            "the output: .hdr, .exr, .ktx2, .ktx, .dds, or .png or .jpg for viewing");
     a.group("What to make");
@@ -191,13 +191,17 @@ void print_text(const ConvertWords& w, const Conversion& made, const WrittenPict
 }
 
 Result<void> check(ConvertWords& w) {
-    if (w.output.file.empty() && w.files.empty())
-        return Error{"is missing", "--output", "Say what to convert and where to: domelight convert IN -o OUT."};
+    if (w.output.file.empty() && w.files.size() < 2)
+        return Error{"is missing", "--output",
+                     fmt::format("Say where the result goes: domelight convert {} -o OUT.",
+                                 w.files.empty() ? "IN" : w.files[0])};
     if (w.output.file.empty()) {
         w.output.file = w.files.back();
         w.files.pop_back();
+        if (std::error_code ignored; std::filesystem::exists(w.output.file, ignored))
+            return Error{"exists already", w.output.file, "To replace it, write it after -o."};
     }
-    if (auto ok = check_display_options(w.display); !ok) return ok;
+    if (auto ok = check_display_options(w.display, w.output.file); !ok) return ok;
     if (w.size && (*w.size < 1 || *w.size > 32768))
         return Error{fmt::format("{} is not from 1 to 32768", *w.size), "--size", ""};
     if (w.to.empty()) {
@@ -292,6 +296,7 @@ int run_convert(const std::vector<std::string>& words) {
     w.environment.threads = w.output.threads = threads;
     auto environment = open_environment_or_sky(w.files, w.environment);
     if (!environment) return print_error(environment.error());
+    w.output.inputs = environment->files;
     const auto size = chart_size(w, *environment, *target);
     if (!size) return print_error(size.error());
     ProgressBar bar(w.output.file, w.common);

@@ -6,6 +6,7 @@
 
 #include "cli/console/arguments.h"
 #include "cli/console/output_endings.h"
+#include "io/file/input_guard.h"
 #include "preview/screen_picture.h"
 
 #include <fmt/core.h>
@@ -150,9 +151,15 @@ Result<WrittenPicture> write_projected(const ProjectedImage& image, const Conver
         written.encoding = reports[0];
     }
     const std::filesystem::path path = output.file;
-    for (const Picture& picture : pictures(image, output.layout)) {
-        const std::string file =
-            (path.parent_path() / (path.stem().string() + picture.suffix + path.extension().string())).string();
+    const std::vector<Picture> all = pictures(image, output.layout);
+    const auto file_of = [&](const Picture& picture) {
+        return (path.parent_path() / (path.stem().string() + picture.suffix + path.extension().string())).string();
+    };
+    for (const Picture& picture : all)
+        if (!picture.suffix.empty())
+            if (auto ok = check_not_an_input(file_of(picture), output.inputs); !ok) return ok.error();
+    for (const Picture& picture : all) {
+        const std::string file = file_of(picture);
         if (auto ok = write_picture(file, picture.pixels, image, output); !ok) return ok.error().at(file);
         written.files.push_back(file);
     }

@@ -6,6 +6,7 @@
 
 #include "preview/tonemap.h"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@ struct ConvertOutput {
     std::string encoding;  ///< empty: auto for .exr (half, or float where half would clip), rgba16f for textures
     Display display;       ///< of .png and .jpg
     int threads = 0;
+    std::vector<std::filesystem::path> inputs;  ///< not to be replaced by a name that is made of `file`
 };
 
 /// Errors: a format that is not known, a layout or an encoding that does not go with it or with the projection;

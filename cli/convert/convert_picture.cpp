@@ -90,7 +90,7 @@ Result<void> check_picture_output(const PictureConversion& c) {
     if (!c.encoding.empty() && !(exr && channels))
         return Error{fmt::format("\"{}\" does not go with {}", c.encoding, lower_case_extension(c.output)),
                      "--encoding", "A picture in an .exr: auto, half, float. The other formats have one encoding each."};
-    return check_display_options(c.display);
+    return check_display_options(c.display, c.output);
 }
 
 int convert_picture(const PictureConversion& c, const CommonOptions& common) {

@@ -10,6 +10,7 @@
 #include "bake/staging.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
+#include "cli/console/output_endings.h"
 #include "cli/console/print.h"
 #include "io/file/sha256.h"
 #include "cli/console/environment_options.h"
@@ -65,6 +66,7 @@ void declare(Arguments& a, LightsWords& w) {
 
 Result<void> check(const LightsWords& w) {
     if (w.output.empty()) return Error{"is missing", "--output", "Say where the results go: -o DIR."};
+    if (auto ok = check_folder("--output", w.output); !ok) return ok.error();
     if (!(w.lux_per_unit > 0 && w.lux_per_unit <= 1e12))
         return Error{fmt::format("{:g} is not from above 0 to 1e12", w.lux_per_unit), "--lux-per-unit", ""};
     if (w.environment_files.size() > 1 && !are_cube_faces(w.environment_files) &&
@@ -196,7 +198,7 @@ Result<Json> write_all(const LightsWords& w, Outcome& o) {
     const int threads = w.common.threads.value_or(0);
     const bool hdr = w.format == "hdr" || (w.format == "auto" && o.environment.format == "Radiance HDR");
     o.remainder_file = hdr ? "remainder.hdr" : "remainder.exr";
-    auto staging = Staging::open(w.output);
+    auto staging = Staging::open(w.output, o.environment.files);
     if (!staging) return staging.error();
     const auto remainder = staging->stage(o.remainder_file);
     if (auto ok = write_remainder(remainder, o, hdr, threads); !ok) return ok.error();

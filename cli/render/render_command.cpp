@@ -110,10 +110,12 @@ void print_result(const RenderWords& w, const Scene& scene, const RenderResult& 
         json["warnings"] = with_options(scene.warnings);
         print_document(json);
     } else if (!w.common.quiet) {
-        print("{}: {} x {}, {} triangles, {} samples a pixel at most, {:.2f} s", join(w.outputs, ", "), o.width,
-              o.height, scene.triangle_count(), r.sample_count, r.seconds);
+        print("{}: {} x {}, {} triangles, {} sample{} a pixel{}, {:.2f} s", join(w.outputs, ", "), o.width, o.height,
+              scene.triangle_count(), r.sample_count, r.sample_count == 1 ? "" : "s",
+              o.noise > 0 ? " at most" : "", r.seconds);
         if (w.reference())
-            print(", noise {:.4f} of L/(1+L), {:.2f} million rays a second", r.noise,
+            print(", {}, {:.2f} million rays a second",
+                  r.sample_count > 1 ? fmt::format("noise {:.4f} of L/(1+L)", r.noise) : "noise unknown",
                   double(r.rays) / r.seconds * 1e-6);
         print("{}\n", exposure_text(w, ev));
     }

@@ -17,7 +17,7 @@ namespace {
 
 Result<void> within(const char* option, double value, double low, double high) {
     if (value >= low && value <= high) return {};
-    return Error{fmt::format("{:g} is not from {:g} to {:g}", value, low, high), option, ""};
+    return Error{fmt::format("{:.12g} is not from {:.12g} to {:.12g}", value, low, high), option, ""};
 }
 
 Result<void> check_numbers(const RenderWords& w) {

@@ -18,7 +18,7 @@ const std::string k_sample_endings[] = {".csv", ".json"};
 
 Result<void> within(const char* option, double value, double low, double high) {
     if (value >= low && value <= high) return {};
-    return Error{fmt::format("{:g} is not from {:g} to {:.12g}", value, low, high), option, ""};
+    return Error{fmt::format("{:.12g} is not from {:.12g} to {:.12g}", value, low, high), option, ""};
 }
 
 Result<Vec3d> direction(const char* option, const std::vector<double>& v) {

@@ -127,7 +127,7 @@ Result<void> write_samples(const SampleWords& w, const EnvironmentSampler& sampl
 
 Result<SamplingTables> write_tables(const SampleWords& w, const EnvironmentSampler& sampler) {
     const SamplingTextures textures = sampling_textures(sampler);
-    auto staging = Staging::open(w.tables);
+    auto staging = Staging::open(w.tables, {w.inputs.begin(), w.inputs.end()});
     if (!staging) return staging.error();
     const std::map<std::string, std::string> notes{
         {"domelight.weight", name_of(w.sampler.weight)},

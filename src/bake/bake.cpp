@@ -396,7 +396,7 @@ Result<BakeReport> bake(const Environment& environment, const BakeOptions& optio
         const EnginePlan& plan = (*plans)[e];
         report.engines[e].name = plan.engine->name;
         report.engines[e].folder = engine_folder(folder, options, *plan.engine);
-        auto staging = Staging::open(report.engines[e].folder);
+        auto staging = Staging::open(report.engines[e].folder, environment.files);
         if (!staging) return staging.error();
         bakes.push_back(std::make_unique<EngineBake>(report.engines[e], plan, options, stem, *std::move(staging)));
         const FilterJob::Maps maps = job.maps(e);

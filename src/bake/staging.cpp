@@ -1,5 +1,7 @@
 #include "bake/staging.h"
 
+#include "io/file/input_guard.h"
+
 #include <unistd.h>
 
 #include <system_error>
@@ -8,8 +10,9 @@ namespace domelight {
 
 namespace fs = std::filesystem;
 
-Result<Staging> Staging::open(const fs::path& folder) {
+Result<Staging> Staging::open(const fs::path& folder, std::vector<fs::path> inputs) {
     Staging staging;
+    staging.inputs_ = std::move(inputs);
     staging.folder_ = folder.empty() ? fs::path(".") : folder;
     std::error_code failure;
     const fs::path absolute = fs::absolute(staging.folder_, failure).lexically_normal();
@@ -49,6 +52,8 @@ Result<void> Staging::move_to_place(const File& file) const {
 
 Result<void> Staging::commit(const std::string& last) {
     std::error_code ignored;
+    for (const File& file : files_)
+        if (auto ok = check_not_an_input(folder_ / file.name, inputs_); !ok) return ok;
     for (const File& file : files_)  // obstacles that would otherwise stop the moving half way
         if (std::filesystem::is_directory(folder_ / file.name, ignored))
             return Error{"is a folder, but a file of that name is to be written", (folder_ / file.name).string(),

@@ -17,8 +17,8 @@ namespace domelight {
 /// been committed are removed, even on signals that the program handles.
 class Staging {
   public:
-    /// Creates the folder if it is missing. Errors name it.
-    static Result<Staging> open(const std::filesystem::path& folder);
+    /// Creates the folder if it is missing. `inputs`: files that commit() must not replace. Errors name the folder.
+    static Result<Staging> open(const std::filesystem::path& folder, std::vector<std::filesystem::path> inputs = {});
     Staging(Staging&&) = default;
     Staging& operator=(Staging&&) = delete;
     ~Staging();
@@ -26,7 +26,8 @@ class Staging {
     /// The path at which to write the file that will be called `name` (relative, may contain folders). Safe to call
     /// from several threads.
     std::filesystem::path stage(const std::string& name);
-    /// Moves every file to its place, `last` (the manifest, which lists the others) at the end.
+    /// Moves every file to its place, `last` (the manifest, which lists the others) at the end. Errors, before anything
+    /// is moved: a file's place is one of the inputs, or a folder.
     Result<void> commit(const std::string& last);
 
   private:
@@ -39,6 +40,7 @@ class Staging {
     Result<void> move_to_place(const File& file) const;
 
     std::filesystem::path folder_;
+    std::vector<std::filesystem::path> inputs_;
     std::vector<std::filesystem::path> created_folders_;  ///< outermost first
     std::vector<File> files_;
     std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();

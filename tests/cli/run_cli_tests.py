@@ -39,6 +39,11 @@ def run(*words, folder, code=0, env=None, **options):
     return result
 
 
+def launch(*words, folder, **options):
+    """Starts `domelight WORDS`, which SIGINT ends even where this program itself was started with that signal ignored, as in the background of a script."""
+    return subprocess.Popen([PROGRAM, *words], cwd=folder, stdout=subprocess.DEVNULL, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL), **options)
+
+
 def files_of(folder):
     """Relative name -> SHA-256 of every file below."""
     return {str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest() for p in sorted(Path(folder).rglob("*")) if p.is_file()}
@@ -676,8 +681,7 @@ def test_interruption_leaves_the_old_bake(folder):
     before = files_of(folder / "out")
     for number in [signal.SIGINT, signal.SIGTERM]:
         for delay in [0.02, 0.1, 0.3]:
-            process = subprocess.Popen([PROGRAM, "bake", "studio.hdr", "-o", "out", "--method", "bruteforce", "--size", "256"], cwd=folder,
-                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            process = launch("bake", "studio.hdr", "-o", "out", "--method", "bruteforce", "--size", "256", folder=folder, stderr=subprocess.DEVNULL)
             time.sleep(delay)
             process.send_signal(number)
             assert process.wait(60) == -number
@@ -983,42 +987,90 @@ def test_names_from_files_do_not_write_on_the_terminal(folder):
 def test_exr_channels_hold_the_sun(folder):
     """Half floats end at 65504: where they would clip, 32-bit floats are written, and a line says so."""
     brightest = lambda name: json.loads(run("info", name, "--json", folder=folder).stdout)["range"][1]
-    for words in [["sky", "-o", "a.exr", "--height", "64"], ["convert", "a.exr", "b.exr", "--size", "64"]]:
+    for words in [["sky", "-o", "a.exr", "--height", "64"], ["convert", "a.exr", "-o", "b.exr", "--size", "64"]]:
         said = run(*words, folder=folder)
         assert "32-bit float channels: halves would clip at 65504" in said.stdout and not said.stderr, said
     assert brightest("a.exr") > 2e5 and brightest("b.exr") == brightest("a.exr")
-    assert converted(folder, "a.exr", "b.exr")["encoding"] == "float"
+    assert converted(folder, "a.exr", "-o", "b.exr")["encoding"] == "float"
     assert "rgba32f (halves would clip at 65504)" in run("bake", "a.exr", "-o", "out", "--for", "blender", "--size", "64", folder=folder).stdout
     assert brightest("out/a.exr") > 65504 and manifest_of(folder / "out")["environment"]["encoding"] == "rgba32f"
 
-    run("convert", "a.exr", "b.exr", "--encoding", "half", folder=folder)
+    run("convert", "a.exr", "-o", "b.exr", "--encoding", "half", folder=folder)
     assert "half floats clip the sun" in run("sky", "-o", "c.exr", "--exr", "half", "--height", "64", folder=folder).stderr
     assert brightest("b.exr") == brightest("c.exr") == 65504
     assert "float" not in run("sky", "-o", "c.exr", "--no-sun-disc", "--height", "64", folder=folder).stdout
-    assert converted(folder, "c.exr", "b.exr")["encoding"] == "half"
+    assert converted(folder, "c.exr", "-o", "b.exr")["encoding"] == "half"
 
 
 def converted(folder, *words):
     return json.loads(run("convert", *words, "--json", folder=folder).stdout)
 
 
+def test_no_command_destroys_what_it_reads(folder):
+    for name in ["photo.hdr", "kept.hdr"]:
+        shutil.copy(folder / "studio.hdr", folder / name)
+    kept = (folder / "photo.hdr").read_bytes()
+    for words in [["photo.hdr"], ["photo.hdr", "--to", "cube"]]:
+        said = run("convert", *words, folder=folder, code=2).stderr
+        assert "--output: is missing" in said and "domelight convert photo.hdr -o OUT" in said
+    # An output by its place is a new file: six faces without -o would lose the last one.
+    assert "exists already" in run("convert", "kept.hdr", "photo.hdr", folder=folder, code=2).stderr
+    run("convert", "kept.hdr", "new.hdr", folder=folder)
+    assert (folder / "photo.hdr").read_bytes() == kept
+    # Nor do names that are made up for outputs replace what is read.
+    run("lights", "photo.hdr", "-o", "lights", folder=folder)
+    remainder = (folder / "lights/remainder.hdr").read_bytes()
+    assert "remainder.hdr: is read here" in run("lights", "lights/remainder.hdr", "-o", "lights", folder=folder, code=1).stderr
+    (folder / "link.hdr").symlink_to("lights/remainder.hdr")
+    assert "is read here" in run("lights", "link.hdr", "-o", "lights", folder=folder, code=1).stderr
+    assert (folder / "lights/remainder.hdr").read_bytes() == remainder
+    run("convert", "photo.hdr", "-o", "c.hdr", "--to", "cube", "--layout", "faces", "--size", "8", folder=folder)
+    faces = [f"c_{face}.hdr" for face in ["px", "nx", "py", "ny", "pz", "nz"]]
+    before = [(folder / face).read_bytes() for face in faces]
+    said = run("convert", *faces, "-o", "c.hdr", "--to", "cube", "--layout", "faces", folder=folder, code=1).stderr
+    assert "c_px.hdr: is read here" in said and before == [(folder / face).read_bytes() for face in faces]
+    run("bake", "photo.hdr", "-o", "b", "--layout", "latlong", "--format", "exr", "--size", "16", "--no-preview", folder=folder)
+    level = next((folder / "b").glob("*_0.exr"))
+    again = run("bake", level, "-o", "b", "--layout", "latlong", "--format", "exr", "--size", "16", "--no-preview", folder=folder, code=1)
+    assert "is read here" in again.stderr
+    # Told so, it does.
+    run("convert", "photo.hdr", "-o", "photo.hdr", "--exposure", "1", folder=folder)
+    assert (folder / "photo.hdr").read_bytes() != kept
+
+
+def test_options_that_do_nothing_are_refused(folder):
+    for words, what in [
+        (["convert", "studio.hdr", "-o", "x.hdr", "--tonemap", "agx"], "--tonemap: is of a .png or .jpg"),
+        (["sky", "-o", "x.exr", "--ev", "1"], "--ev: is of a .png or .jpg"),
+        (["bake", "studio.hdr", "-o", "out.ktx2"], "Name a folder: --output out."),
+        (["lights", "studio.hdr", "-o", "sun.json"], "Name a folder: --output sun."),
+        (["render", "ball", "-o", "x.png", "--width", "99999999"], "99999999 is not from 1 to 16384"),
+    ]:
+        said = run(*words, folder=folder, code=2).stderr
+        assert what in said, said
+    run("lights", "studio.hdr", "-o", "suns", folder=folder)
+    assert "holds the lights of an environment" in run("info", "suns", folder=folder, code=1).stderr
+    run("bake", "studio.hdr", "-o", "baked", "--size", "16", "--no-preview", folder=folder)
+    assert "It holds a bake" in run("convert", "baked", "-o", "x.hdr", folder=folder, code=1).stderr
+
+
 def test_convert_reports_power_and_files(folder):
-    faces = converted(folder, "studio.hdr", "cube.exr", "--to", "cube", "--layout", "faces", "--size", "24")
+    faces = converted(folder, "studio.hdr", "-o", "cube.exr", "--to", "cube", "--layout", "faces", "--size", "24")
     assert faces["files"] == [f"cube_{f}.exr" for f in ["px", "nx", "py", "ny", "pz", "nz"]] and faces["method"] == "exact"
     assert all((folder / name).is_file() for name in faces["files"])
     assert abs(faces["power"]["relative_change"]) < 5e-3  # the sun is one texel of a row of 64
     back = converted(folder, *faces["files"], "back.exr", "--size", "32", "--encoding", "float")
     assert back["source"]["projection"] == "cube" and back["method"] == "conservative"
     assert all(abs(a / b - 1) < 1e-2 for a, b in zip(back["power"]["after"], faces["power"]["before"]))
-    assert "radiant power" in run("convert", "studio.hdr", "x.hdr", "--to", "angular", folder=folder).stdout
-    assert run("convert", "studio.hdr", "x.hdr", "--to", "octahedral", "--quiet", folder=folder).stdout == ""
+    assert "radiant power" in run("convert", "studio.hdr", "-o", "x.hdr", "--to", "angular", folder=folder).stdout
+    assert run("convert", "studio.hdr", "-o", "x.hdr", "--to", "octahedral", "--quiet", folder=folder).stdout == ""
 
 
 def test_convert_every_projection_there_and_back(folder):
     before = None
     for name in ["latlong/usd", "latlong/materialx", "latlong/mitsuba", "latlong/openexr", "sphere-map", "mirror-ball/fov=30", "angular",
                  "dual-paraboloid", "octahedral", "equal-area-octahedral"]:
-        there = converted(folder, "evening.hdr", "there.exr", "--to", name, "--size", "64", "--encoding", "float")
+        there = converted(folder, "evening.hdr", "-o", "there.exr", "--to", name, "--size", "64", "--encoding", "float")
         words = ["--latlong", name.split("/")[1]] if name.startswith("latlong") else ["--projection", name]
         info = json.loads(run("info", "there.exr", *words, "--json", folder=folder).stdout)
         assert info["projection"] == name.split("/")[0], info
@@ -1028,13 +1080,13 @@ def test_convert_every_projection_there_and_back(folder):
         tolerance = 0.25 if "ball" in name else 0.05
         assert all(abs(a / b - 1) < tolerance for a, b in zip(mean, before)), (name, mean, before)
     for name, share in [("hemisphere", 50), ("paraboloid", 50), ("paraboloid-opposite", 50)]:
-        result = run("convert", "evening.hdr", "half.hdr", "--to", name, "--size", "32", folder=folder)
+        result = run("convert", "evening.hdr", "-o", "half.hdr", "--to", name, "--size", "32", folder=folder)
         assert f"shows {share} % of all directions" in result.stderr
-        again = run("convert", "half.hdr", "again.hdr", "--from", name, folder=folder)
+        again = run("convert", "half.hdr", "-o", "again.hdr", "--from", name, folder=folder)
         assert "the rest is black" in again.stderr
-    halves = converted(folder, "evening.hdr", "dp.hdr", "--to", "dual-paraboloid", "--layout", "files", "--size", "32")
+    halves = converted(folder, "evening.hdr", "-o", "dp.hdr", "--to", "dual-paraboloid", "--layout", "files", "--size", "32")
     assert halves["files"] == ["dp_front.hdr", "dp_back.hdr"]
-    again = converted(folder, "dp_front.hdr", "dp_back.hdr", "again.hdr", "--from", "dual-paraboloid")
+    again = converted(folder, "dp_front.hdr", "dp_back.hdr", "-o", "again.hdr", "--from", "dual-paraboloid")
     assert abs(again["power"]["relative_change"]) < 1e-2
 
 
@@ -1078,7 +1130,7 @@ def test_cube_faces_are_known_by_every_name(folder):
 
 def test_a_mirror_ball_goes_through_every_command(folder):
     run("sky", "--axes", "--height", "64", "-o", "axes.hdr", folder=folder)
-    run("convert", "axes.hdr", "ball.hdr", "--to", "sphere-map", "--size", "96", folder=folder)
+    run("convert", "axes.hdr", "-o", "ball.hdr", "--to", "sphere-map", "--size", "96", folder=folder)
     run("bake", "ball.hdr", "-o", "out", "--projection", "sphere-map", *SMALL, folder=folder)
     assert manifest_of(folder / "out")["source"]["projection"] == "sphere-map"
     run("sample", "ball.hdr", "-n", "10", "--projection", "sphere-map", folder=folder)
@@ -1089,21 +1141,21 @@ def test_a_mirror_ball_goes_through_every_command(folder):
 
 
 def test_convert_textures_envmap_and_threads(folder):
-    run("convert", "studio.hdr", "cube.ktx2", "--size", "16", "--encoding", "rgb9e5", folder=folder)
-    run("convert", "cube.ktx2", "cross.hdr", "--to", "cube", "--mirror", "x", folder=folder)
+    run("convert", "studio.hdr", "-o", "cube.ktx2", "--size", "16", "--encoding", "rgb9e5", folder=folder)
+    run("convert", "cube.ktx2", "-o", "cross.hdr", "--to", "cube", "--mirror", "x", folder=folder)
     for ending in ["ktx", "dds"]:
-        run("convert", "cube.ktx2", f"again.{ending}", folder=folder)
-    run("convert", "studio.hdr", "env.exr", "--to", "cube/openexr", "--size", "16", folder=folder)
+        run("convert", "cube.ktx2", "-o", f"again.{ending}", folder=folder)
+    run("convert", "studio.hdr", "-o", "env.exr", "--to", "cube/openexr", "--size", "16", folder=folder)
     assert json.loads(run("info", "env.exr", "--json", folder=folder).stdout)["projection"] == "cube"
     for words in [["--to", "cube"], ["--to", "angular"], ["--rotate", "1,2,3,40"]]:
         outputs = []
         for threads in ["1", "3"]:
-            run("convert", "studio.hdr", "t.hdr", *words, "--threads", threads, folder=folder)
+            run("convert", "studio.hdr", "-o", "t.hdr", *words, "--threads", threads, folder=folder)
             outputs.append((folder / "t.hdr").read_bytes())
         assert outputs[0] == outputs[1], words
     # Twice a quarter turn is half a turn, and four of them are none.
-    run("convert", "studio.hdr", "half.hdr", "--rotate-y-deg", "180", folder=folder)
-    run("convert", "studio.hdr", "quarters.hdr", "--rotate", "0,1,0,90", "--rotate", "0,2,0,90", folder=folder)
+    run("convert", "studio.hdr", "-o", "half.hdr", "--rotate-y-deg", "180", folder=folder)
+    run("convert", "studio.hdr", "-o", "quarters.hdr", "--rotate", "0,1,0,90", "--rotate", "0,2,0,90", folder=folder)
     assert (folder / "half.hdr").read_bytes() == (folder / "quarters.hdr").read_bytes()
 
 
@@ -1245,7 +1297,7 @@ def test_render_of_remainder_and_lights_is_that_of_the_environment(folder):
 
 def test_lights_of_an_openexr_latlong_are_read_where_they_were(folder):
     run("sky", "-o", "sky.exr", "--exr", "float", "--height", "64", "--sun-elevation-deg", "40", "--sun-azimuth-deg", "30", folder=folder)
-    run("convert", "sky.exr", "stated.exr", "--to", "latlong/openexr", folder=folder)
+    run("convert", "sky.exr", "-o", "stated.exr", "--to", "latlong/openexr", folder=folder)
     said = run("lights", "stated.exr", "-o", "out", "--no-preview", folder=folder)
     assert "warning" not in said.stderr
     sun, = lights_of(folder / "out")["lights"]
@@ -1387,8 +1439,7 @@ def test_an_interrupted_render_leaves_the_last_complete_file(folder):
     before = (folder / "o.png").read_bytes()
 
     def interrupted(*words, until, number=signal.SIGINT):
-        process = subprocess.Popen([PROGRAM, "render", "ball", *words, "--spp", "1000000"], cwd=folder, stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE, text=True)
+        process = launch("render", "ball", *words, "--spp", "1000000", folder=folder, stderr=subprocess.PIPE, text=True)
         deadline = time.monotonic() + 60
         while not until() and time.monotonic() < deadline:
             time.sleep(0.05)
@@ -1408,8 +1459,7 @@ def test_an_interrupted_render_leaves_the_last_complete_file(folder):
     assert "new.png holds the picture of" in interrupted("-o", "new.png", *small, "--save-every", "0.2", until=(folder / "new.png").exists)
     assert png_of(folder / "new.png")[:3] == (16, 16, 3)
     # Frames that are complete are named.
-    process = subprocess.Popen([PROGRAM, "render", "ball", "-o", "f.png", *small, "--frames", "2000", "--spp", "64"], cwd=folder,
-                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    process = launch("render", "ball", "-o", "f.png", *small, "--frames", "2000", "--spp", "64", folder=folder, stderr=subprocess.PIPE, text=True)
     while not (folder / "f_0002.png").exists():
         time.sleep(0.02)
     process.send_signal(signal.SIGINT)
@@ -1554,7 +1604,7 @@ def test_pictures_for_a_screen_may_be_jpeg(folder):
     run("sky", "--axes", "-o", "axes.jpeg", "--height", "32", folder=folder)
     run("sample", "studio.hdr", "--picture", "p.jpg", "--heat", "h.JPG", folder=folder)
     run("compare", "studio.hdr", "evening.hdr", "--heat", "d.jpg", "--sheet", "s.jpg", "--no-flip", folder=folder)
-    run("convert", "studio.hdr", "c.jpg", folder=folder)
+    run("convert", "studio.hdr", "-o", "c.jpg", folder=folder)
     for name in ["r_0001.jpg", "r_0002.jpg", "axes.jpeg", "p.jpg", "h.JPG", "d.jpg", "s.jpg", "c.jpg"]:
         data = (folder / name).read_bytes()
         assert data.startswith(b"\xff\xd8\xff") and data.endswith(b"\xff\xd9"), name
@@ -1569,7 +1619,7 @@ def test_convert_shows_a_render_as_render_does(folder):
     width, height, channels, shown = png_of(folder / "c.png")
     assert (width, height, channels) == (16, 12, 4)
     assert max(abs(a - b) for a, b in zip(shown, png_of(folder / "r.png")[3])) <= 1
-    run("convert", "r.exr", "darker.png", "--tonemap", "neutral", "--ev", "-20", folder=folder)
+    run("convert", "r.exr", "-o", "darker.png", "--tonemap", "neutral", "--ev", "-20", folder=folder)
     assert max(png_of(folder / "darker.png")[3][0::4]) == 0
     said = run("convert", "r.exr", "-o", "c.jpg", folder=folder)
     assert "JPEG holds no opacity" in said.stderr and "16 x 12" in said.stdout, said

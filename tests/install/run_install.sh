@@ -90,7 +90,7 @@ claim "a project that only samples and filters finds the component core" \
 claim "it compiles and links" cmake --build "$work/core"
 claim "it links Highway and threads, and none of the libraries that files and rays need" core_links_little
 claim "it runs" core_runs
-sed -i 's/domelight 0.1 REQUIRED/domelight 99 REQUIRED/' "$work/project/CMakeLists.txt"
+sed -i 's/domelight 0.2 REQUIRED/domelight 99 REQUIRED/' "$work/project/CMakeLists.txt"
 claim "an unknown component is refused, and those that exist are listed" refuses_unknown_component
 claim "another version is refused" refuses_another_version
 

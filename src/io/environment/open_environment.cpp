@@ -445,12 +445,21 @@ Result<Environment> open_faces(const std::vector<std::filesystem::path>& files, 
 
 }  // namespace
 
-Result<Environment> open_environment(const std::vector<std::filesystem::path>& files,
-                                     const EnvironmentOptions& options) {
-    const Result<Request> request = check_options(options);
-    if (!request) return request.error();
-    if (files.size() == 6) return open_faces(files, *request);
-    if (files.size() == 2 && request->other && request->other->charts() == 2) return open_halves(files, *request);
+namespace {
+
+/// What a folder without the faces of a cube may be instead.
+std::string hint_for_folder(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    if (std::filesystem::exists(folder / "lights.json", ignored))
+        return "It holds the lights of an environment (lights.json): name the remainder in it.";
+    if (std::filesystem::exists(folder / "manifest.json", ignored))
+        return "It holds a bake (manifest.json): name one of the files in it.";
+    return "Name an image, or six files px, nx, py, ny, pz, nz.";
+}
+
+Result<Environment> open_files(const std::vector<std::filesystem::path>& files, const Request& request) {
+    if (files.size() == 6) return open_faces(files, request);
+    if (files.size() == 2 && request.other && request.other->charts() == 2) return open_halves(files, request);
     if (files.size() != 1)
         return Error{fmt::format("{} files: an environment is one image or the six faces of a cube", files.size()), "",
                      ""};
@@ -458,11 +467,24 @@ Result<Environment> open_environment(const std::vector<std::filesystem::path>& f
         const auto faces = cube_faces_in_folder(files[0]);
         if (faces.size() != 6)
             return Error{fmt::format("is a folder with {} files named as faces of a cube, not 6", faces.size()),
-                         files[0].string(), "Name an image, or six files px, nx, py, ny, pz, nz."};
-        return open_faces(faces, *request);
+                         files[0].string(), hint_for_folder(files[0])};
+        Result<Environment> environment = open_faces(faces, request);
+        if (environment) environment->files = faces;
+        return environment;
     }
-    Result<Environment> environment = open_picture(files[0], *request);
+    Result<Environment> environment = open_picture(files[0], request);
     if (!environment) return environment.error().at(files[0].string());
+    return environment;
+}
+
+}  // namespace
+
+Result<Environment> open_environment(const std::vector<std::filesystem::path>& files,
+                                     const EnvironmentOptions& options) {
+    const Result<Request> request = check_options(options);
+    if (!request) return request.error();
+    Result<Environment> environment = open_files(files, *request);
+    if (environment && environment->files.empty()) environment->files = files;
     return environment;
 }
 
