@@ -36,6 +36,14 @@ std::vector<std::pair<std::string, std::string>> engine_table() {
     return table;
 }
 
+/// The engines that get an image as large as the source where no size is given: "godot, blender, ...".
+std::string engines_of_the_source_size() {
+    std::vector<std::string> names;
+    for (const Engine& engine : engines())
+        if (engine.size == 0) names.push_back(engine.name);
+    return join(names, ", ");
+}
+
 /// The encodings with room for a colour.
 std::vector<NamedValue<Encoding>> colour_encodings() {
     std::vector<NamedValue<Encoding>> rows;
@@ -47,55 +55,61 @@ std::vector<NamedValue<Encoding>> colour_encodings() {
 void declare(Arguments& a, BakeWords& w) {
     a.positional(
         "ENV", w.environments,
-        "environments; without one, the built-in sky, darkened by eight stops; six faces (px nx py ny pz nz) are one "
-        "cube");
+        fmt::format("environments; without one, {}; six faces (px nx py ny pz nz) are one cube", k_built_in_sky));
     a.group("What to bake");
     a.text("-o,--output", "DIR", w.output,
            "folder for the results; several environments go to DIR/NAME, several engines to DIR/ENGINE");
-    a.choices("--for", "ENGINE", w.engines, engine_table(),
-              "the engine whose files and conventions to make; several are allowed (generic)");
-    a.choice("--layout", w.options.layout, "cube maps, or lat-long maps with levels (cube)");
+    a.choices(
+        "--for", "ENGINE", w.engines, engine_table(),
+        "the engine to bake for: it decides the files, sizes and conventions; may be given several times; the list "
+        "below says what each engine loads (generic)");
+    a.choice("--layout", w.options.layout, "cube maps, or lat-long maps with levels (the engine's)");
     a.integer("--size", "N", w.options.size,
-              "level 0: cube face size, or height of the lat-long map (the engine's; else the source's)");
-    a.integer("--levels", "N", w.options.levels, "number of levels, each half the size (the engine's)");
+              "size of level 0 in texels: of a cube's face, or the height of the lat-long map (the engine's; " +
+                  engines_of_the_source_size() + ": as fine as the source)");
+    a.integer("--levels", "N", w.options.levels,
+              "number of levels, each half as large as the one before (the engine's)");
     a.numbers("--roughness", "r0,r1,...", w.options.roughness, "roughness of each level, 0 to 1 (the engine's curve)");
     a.choice("--lobe", w.options.lobe,
-             "ggx; charlie (sheen); phong, (n + 2) cos^(n+1) of the modified BRDF; phong-plain, (n + 1) cos^n (ggx)");
+             "charlie: sheen; phong: (n + 2) / (2 pi) cos^(n+1), from the modified Phong BRDF; phong-plain: (n + 1) / "
+             "(2 pi) cos^n (ggx)");
     a.numbers("--exponents", "n0,n1,...", w.options.exponents,
               "Phong exponent of each level; inf is the environment itself (inf, 2048, 512, ...)");
     a.choice("--method", w.options.method, "exact, or one of the plain, slow methods (exact)");
     add_point_options(a, w.points);
     a.text("--riemann-steps", "KxJ", w.riemann_steps,
-           "riemann: K steps of phi (azimuth, to 2 pi) by J of theta (polar angle, to pi/2), as in the lectures "
-           "(256x64)");
+           "riemann: K steps of the azimuth phi, 0 to 2 pi, by J steps of the polar angle theta, 0 to pi/2 (256x64)");
     a.choice("--riemann-sum", w.options.riemann.normalised,
              std::vector<NamedValue<bool>>{{true, "normalised"}, {false, "plain"}},
-             "riemann: normalised, divided by the sum of its weights; plain, the lectures' sum as it stands, which "
-             "gives E = 3.224 and not pi for L = 1 and J = 4 (normalised)");
+             "riemann: normalised divides the sum by the sum of its weights; plain does not, so that with J = 4 a "
+             "constant L = 1 gives E = 3.224 instead of pi (normalised)");
     a.choice(
         "--irradiance", w.options.irradiance_quantity,
         std::vector<NamedValue<Quantity>>{{Quantity::irradiance, "e"}, {Quantity::irradiance_over_pi, "over-pi"}},
         "values of the irradiance map: E, or E / pi, which a shader multiplies by the albedo alone (the engine's)");
-    a.integer("--irradiance-size", "N", w.options.irradiance_size, "face size of the irradiance cube (the engine's)");
+    a.integer("--irradiance-size", "N", w.options.irradiance_size,
+              "face size of the irradiance cube, or half the height of a lat-long irradiance map (the engine's)");
     a.integer("--sh-bands", "N", w.sh_bands, "bands of spherical harmonics, 1 to 64 (3)");
     a.choice("--sh-window", w.options.sh_window, "window against ringing of the harmonics (none)");
     a.choice("--brdf-g", w.options.brdf_g, "masking function of the BRDF table (correlated)");
     a.choice("--brdf-form", w.options.brdf_form, "channels of the BRDF table (the engine's)");
     a.integer("--brdf-size", "N", w.options.brdf_size, "width and height of the BRDF table (128)");
     a.group("How to store it");
-    a.choice("--encoding", w.options.encoding, colour_encodings(),
-             "texels of the maps; left out, an EXR holds halves, or rgba32f where halves would clip (the engine's)");
+    a.choice(
+        "--encoding", w.options.encoding, colour_encodings(),
+        "how the texels of the maps are stored; without this option an EXR has half floats, or 32-bit floats where "
+        "half floats would clip (the engine's)");
     a.choice("--encoding-quality", w.options.encoding_quality,
              "how thoroughly bc6h, uastc-hdr and astc search for the best block; exhaustive takes minutes (default)");
     a.choice("--format", w.options.format, with_names(containers_for_any_engine()),
-             "container of the maps; dds9 is DDS with the old header; exr and hdr are one file for each level, "
+             "container of the maps; dds9 is DDS with the old header; exr and hdr write one file for each level, "
              "exr-mip one file with all levels and OpenEXR's envmap attribute (the engine's)");
     a.choice("--cube-picture", w.options.cube_picture, "layout of a cube in exr and hdr: one picture or six (cross)");
     a.text("--latlong-out", "CONVENTION", w.latlong_out,
            "convention of lat-long maps and of the environment as a lat-long image: " +
-               join(latlong_convention_names(), ", ") + " or centre=+X,right=+Z[,up=+Y] (the engine's)");
-    a.flag("--zstd", w.zstd, "compress ktx2 without loss");
-    a.flag("--no-zstd", w.no_zstd, "do not compress, even if the engine's default is to do so");
+               join(latlong_convention_names(), ", ") + k_other_conventions + " (the engine's)");
+    a.flag("--zstd", w.zstd, "compress .ktx2 with zstd, without loss");
+    a.flag("--no-zstd", w.no_zstd, "do not compress .ktx2, even where zstd is the engine's default");
     a.flag("--brdf-float", w.options.brdf_float, "32-bit floats in the BRDF table");
     a.flag("--no-preview", w.no_preview, "no preview.png");
     a.flag("--no-hashes", w.no_hashes, "no SHA-256 in the manifest");
@@ -195,15 +209,16 @@ BakeOutcome run_job(const Job& job, bool skip_up_to_date, BakeOptions options, c
 
 int run_bake(const std::vector<std::string>& words) {
     BakeWords w;
-    Arguments arguments("bake",
-                        "Bakes environments (Radiance HDR, OpenEXR, PNG, JPEG; lat-long or cube) for real-time "
-                        "engines: specular levels, "
-                        "irradiance, spherical harmonics, BRDF table, a picture of them, and a manifest that "
-                        "describes every file.",
-                        {"domelight bake studio.hdr -o out",
-                         "domelight bake studio.hdr evening.hdr -o lights --for khronos --for filament",
-                         "domelight bake studio.hdr -o small --size 128 --levels 5 --encoding rgb9e5 --zstd",
-                         "domelight bake studio.hdr -o tiny --size 128 --encoding bc6h --encoding-quality high"});
+    Arguments arguments(
+        "bake",
+        "Bakes environments (Radiance HDR, OpenEXR, PNG, JPEG, or a cube in KTX2, KTX, DDS or .env) for real-time "
+        "engines: specular levels, "
+        "irradiance, spherical harmonics, BRDF table, a picture of them, and a manifest that "
+        "describes every file.",
+        {"domelight bake studio.hdr -o out",
+         "domelight bake studio.hdr evening.hdr -o lights --for khronos --for filament",
+         "domelight bake studio.hdr -o small --size 128 --levels 5 --encoding rgb9e5 --zstd",
+         "domelight bake studio.hdr -o tiny --size 128 --encoding bc6h --encoding-quality high"});
     declare(arguments, w);
     if (const auto code = begin_command(arguments, words, w.common)) return *code;
     const auto options = bake_options(w);

@@ -59,8 +59,9 @@ void print_summary(const BakeOutcome& outcome) {
             print_map(map);
             print_gaps(map);
         }
-        print("  {:<28} harmonics: {} bands; E is off by {} RMS, {} at most\n", engine.sh.files.front().file,
-              engine.sh.bands, percent(engine.sh.rms_error), percent(engine.sh.max_error));
+        print("  {:<28} harmonics: {} bands; their irradiance differs from the exact one by {} RMS, {} at most\n",
+              engine.sh.files.front().file, engine.sh.bands, percent(engine.sh.rms_error),
+              percent(engine.sh.max_error));
         if (!engine.brdf.file.file.empty())
             print("  {:<28} BRDF table: {}^2, {}, {}\n", engine.brdf.file.file, engine.brdf.size, engine.brdf.encoding,
                   name_of(engine.brdf.form));

@@ -34,7 +34,7 @@ std::vector<std::string> engine_names() {
 void declare(Arguments& a, BrdfWords& w) {
     a.group("The table");
     a.text("-o,--output", "FILE", w.output,
-           "where to write it: .ktx2, .ktx, .dds, .exr, .hdr, or .png (8 bits, linear)");
+           "where to write it: .ktx2, .ktx, .dds, .exr, .hdr, or .png with 8 bits, linear");
     a.choice("--for", w.engine, engine_names(), "the engine whose form and size to use (generic)");
     a.choice(
         "--form", w.form, with_names({BrdfForm::scale_bias, BrdfForm::multiscatter, BrdfForm::scale_bias_charlie}),
@@ -44,7 +44,7 @@ void declare(Arguments& a, BrdfWords& w) {
     a.choice("--g", w.g, "masking function (correlated)");
     a.flag("--float", w.single_precision, "32-bit floats in .ktx2, .ktx, .dds and .exr, instead of 16");
     a.choice("--method", w.method, with_names({BakeMethod::exact, BakeMethod::montecarlo}),
-             "exact to 1e-5, or the courses' sum of samples (exact)");
+             "exact: by quadrature, to 1e-5; montecarlo: by a sum over sampled half vectors (exact)");
     add_point_options(a, w.points);
     add_common_options(a, w.common);
 }

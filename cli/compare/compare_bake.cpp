@@ -244,6 +244,10 @@ void print_text(const BakeWords& w, const Bake& bake, const BakeAudit& audit, co
           w.env.empty() ? "the built-in sky" : join(w.env, " "));
     print("  verdict       {}\n", audit.verdict);
     for (const std::string& note : audit.notes) print("                {}\n", note);
+    if (o.error > AuditOptions{}.same) {  // no orientation fits, so the figures say nothing
+        print("                --json has the figures of the best orientation\n");
+        return;
+    }
     print("  orientation   {}\n", o.words);
     if (!as_convention.empty()) print("                that is as ours with --latlong {}\n", as_convention);
     print("                error {}, the next best orientation {}{}\n\n", percent(o.error), percent(o.next_error),
@@ -281,15 +285,15 @@ void add_bake_options(Arguments& a, BakeWords& w) {
     a.texts("--bake", "FILE", w.bake,
             "a baked specular cube or lat-long map: KTX2, KTX or DDS with its levels, or a picture or folder of faces "
             "for each level");
-    a.texts("--env", "SRC", w.env, "the environment it was baked from");
+    a.texts("--env", "SRC", w.env, fmt::format("the environment it was baked from ({})", k_built_in_sky));
     a.choice("--for", w.engine, names,
-             "the engine whose roughness curve the bake should have (not needed for a Domelight file, which states "
-             "it)");
+             "the engine whose roughness curve the bake should have; not needed for a Domelight file, which states it");
     a.choice("--lobe", w.lobe, "the lobe that the levels were filtered with (what the file states, otherwise ggx)");
     a.number("--within", "ERROR", w.within,
-             "also exit with status 1 if the error of a level, at its stated roughness and brightness or else at the "
-             "best fit, is above this: 0.01 is 1 %. Without it the status is 0 for any bake of this environment and 1 "
-             "for others");
+             "the largest error that a level may have, above 0 and up to 1: 0.01 is 1 %. If a level's is larger, the "
+             "exit status is 1. It is the error at the roughness that the file or --for states, at scale 1; where "
+             "none is stated, that of the best fit. Without this option the status is 0 for any bake of the "
+             "environment");
     a.integer("--texels", "N", w.texels, "texels compared in each level, a quarter of them the brightest (6144)");
     add_environment_options(a, w.environment);
 }

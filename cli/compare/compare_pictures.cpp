@@ -275,7 +275,9 @@ void print_text(const Comparison& c, const PictureWords& w) {
     const PictureComparison& r = c.result;
     const Errors& e = r.errors;
     print("\n  RMSE                   {:<12.6g}\n", e.rmse);
-    print("  relative RMSE          {:<12}\n", fmt::format("{:.4g} %", 100 * e.relative_rmse));
+    print("  relative RMSE          {:<12}\n", e.relative_rmse <= 10
+                                                   ? fmt::format("{:.4g} %", 100 * e.relative_rmse)
+                                                   : fmt::format("{:.4g} times the RMS of B", e.relative_rmse));
     print("  tone-mapped RMSE       {:<12.6g} of L / (1 + L)\n", e.tone_mapped_rmse);
     print("  PSNR                   {:<12} of L / (1 + L), peak 1\n", fmt::format("{:.2f} dB", e.psnr));
     print("  SSIM                   {:<12.6g} of the luminance of L / (1 + L)\n", e.ssim);
@@ -319,12 +321,13 @@ void add_picture_options(Arguments& a, PictureWords& w) {
     a.group("Two pictures: what is compared");
     a.text("--layer", "NAME", w.layer,
            "OpenEXR: the layer or channel to compare (the unnamed one, else the first with colour)");
-    a.text("--layer-b", "NAME", w.layer_b, "the layer of B, if it differs");
+    a.text("--layer-b", "NAME", w.layer_b, "the layer of B (that of --layer)");
     a.integer("--level", "N", w.level, "textures: the level to compare (0)");
     a.text("--mask", "FILE", w.mask, "an image of the same size: only pixels above 0 count");
-    a.text("--objects", "FILE", w.objects,
-           "an image of object indices, 0 for none (PNG codes, or an EXR channel): a table by object; else B's channel "
-           "\"object\"");
+    a.text(
+        "--objects", "FILE", w.objects,
+        "an image of object indices, 0 for the background: PNG values 0 to 255, or an OpenEXR channel; the errors of "
+        "each object are also printed (the channel \"object\" of B, otherwise that of A)");
     a.choice(
         "--variance", w.variance, {"pixel", "sample"},
         "the meaning of the layer \"variance\": that of the pixel's value, or that of a sample, to be divided by the "
@@ -336,15 +339,19 @@ void add_picture_options(Arguments& a, PictureWords& w) {
     a.group("Two pictures: what is written");
     a.text("--heat", "FILE", w.heat, "a heat map with its scale, .png or .jpg");
     a.choice("--heat-of", w.heat_of, difference_maps(),
-             "the metric of the heat map (auto: hdr-flip, or flip for screen pictures)");
-    a.number("--heat-max", "X", w.heat_max, "the value of the last colour (FLIP: 1; otherwise from the values)");
+             "the metric of the heat map (auto: hdr-flip; flip for screen pictures; tone-mapped with --no-flip)");
+    a.number("--heat-max", "X", w.heat_max,
+             "the value at the upper end of the colour scale (both kinds of FLIP and 1 - SSIM: 1; z: 4; otherwise from "
+             "the values)");
     a.text("--sheet", "FILE", w.sheet,
-           "A, B, their signed difference and the perceived one side by side, .png or .jpg");
-    a.text("--view-exposure", "EV", w.view_exposure,
-           "stops for the sheet and for FLIP; auto brings B's log-average luminance to 0.18 (auto)");
+           "A, B, their signed difference and the map of --heat-of auto side by side, .png or .jpg");
+    a.text(
+        "--view-exposure", "EV", w.view_exposure,
+        "exposure in stops of both pictures in the sheet and for FLIP; auto brings B's log-average luminance to 0.18 "
+        "(auto)");
     a.texts("--fail-above", "METRIC=VALUE", w.fail_above,
             "exit with status 1 if a metric is above the value: " + join(comparison_figures(), ", ") +
-                " (mean: |A / B - 1|)");
+                "; mean is |mean A / mean B - 1|; above-2, chi2 and total-z need a layer \"variance\"");
     a.texts("--fail-below", "METRIC=VALUE", w.fail_below, "the same if psnr or ssim is below the value");
 }
 

@@ -88,6 +88,11 @@ struct Arguments::Parser {
         entries.push_back({group, name, value_name, help_text, option});
     }
 
+    /// Whether an environment is named without an option.
+    bool takes_environment() const {
+        return std::ranges::any_of(entries, [](const Entry& e) { return e.name == "IN" || e.name.starts_with("ENV"); });
+    }
+
     std::vector<std::string> option_names() const {
         std::vector<std::string> names;
         for (const Entry& entry : entries)
@@ -240,7 +245,11 @@ Result<void> Arguments::parse(const std::vector<std::string>& words) {
         const std::string first = rest.empty() ? "" : rest.front();
         if (!first.starts_with("-")) return Error{"\"" + first + "\" is one argument too many", "", see};
         const auto names = parser_->option_names();
-        const std::string guess = did_you_mean(split(first, '=')[0], names);
+        const std::string name = split(first, '=')[0];
+        if (name == "--env" && parser_->takes_environment())
+            return Error{"unknown option --env", "",
+                         "The environment stands without an option: domelight " + command_ + " ENV ..."};
+        const std::string guess = did_you_mean(name, names);
         return Error{"unknown option " + first, "", guess.empty() ? "Accepted: " + join(names, ", ") + "." : guess + see};
     } catch (const CLI::ArgumentMismatch&) {
         // The one that is the last word has nothing behind it; CLI11's own text does not read well.
@@ -275,7 +284,8 @@ std::string wrap(const std::string& text, std::size_t width, std::size_t indent)
     return out;
 }
 
-constexpr const char* k_about_defaults = "What stands in parentheses at the end of a description is the default.";
+constexpr const char* k_about_defaults =
+    "What stands in parentheses at the end of an option's description is the default.";
 
 }  // namespace
 

@@ -15,7 +15,7 @@ namespace domelight::cli {
 void add_common_options(Arguments& arguments, CommonOptions& options) {
     arguments.group("Running");
     arguments.integer("--threads", "N", options.threads,
-                      "threads to use; 0: all (0). The bytes of the results do not depend on it");
+                      "threads to use, 0 for all; the bytes of the results do not depend on it (0)");
     arguments.flag("--json", options.json, "print one JSON document to stdout instead of text");
     arguments.flag("--quiet", options.quiet, "no progress, no warnings, no summary");
 }

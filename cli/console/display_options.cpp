@@ -8,11 +8,10 @@
 
 namespace domelight::cli {
 
-void add_display_options(Arguments& a, DisplayWords& w) {
-    a.choice("--tonemap", w.tonemap, "of a .png or .jpg (agx; none for a source of 8 bits)");
+void add_display_options(Arguments& a, DisplayWords& w, const std::string& as_it_is, const std::string& other_zero) {
+    a.choice("--tonemap", w.tonemap, fmt::format("tone map of a .png or .jpg (agx; none {})", as_it_is));
     a.number("--ev", "STOPS", w.ev,
-             "exposure of a .png or .jpg (from the log-average luminance; 0 for a source of 8 bits, or where "
-             "--exposure is given)");
+             fmt::format("exposure of a .png or .jpg (from the log-average luminance; 0 {}{})", as_it_is, other_zero));
 }
 
 Result<void> check_display_options(const DisplayWords& w, const std::string& file) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <string>
 
 namespace domelight::cli {
 
@@ -15,8 +16,10 @@ struct DisplayWords {
     double ev = std::numeric_limits<double>::quiet_NaN();  ///< NaN: automatic
 };
 
-/// --tonemap and --ev, of a .png or .jpg.
-void add_display_options(Arguments& arguments, DisplayWords& words);
+/// --tonemap and --ev, of a .png or .jpg. For the help text: `as_it_is` says when a source is shown as it is ("for a
+/// source of 8 bits"), and `other_zero` in which other cases the exposure is 0 by default.
+void add_display_options(Arguments& arguments, DisplayWords& words, const std::string& as_it_is,
+                         const std::string& other_zero = "");
 /// Errors: --ev out of range; one of the two options where `file`, the output, is not a picture for a screen.
 Result<void> check_display_options(const DisplayWords& words, const std::string& file);
 

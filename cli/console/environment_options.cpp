@@ -4,9 +4,11 @@
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/projection/projections.h"
 
+#include "cli/console/suggestion.h"
 #include "io/environment/cube_input.h"
 #include "projection/latlong_convention.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace domelight::cli {
@@ -75,15 +77,21 @@ void add_environment_options(Arguments& arguments, EnvironmentOptions& options) 
         "the projection of the image: " +
             projection_list(
                 {{"latlong", " (also latlong/usd ...)"}, {"cube", ", cube-cross, cube-strip, cube-faces"}}) +
-            ", each with /centre=+Z,right=+X,up=+Y if it differs (auto: latlong or a cube, from its shape and "
-            "attributes)");
+            "; append /centre=+Z,right=+X,up=+Y, with the axes that the image shows there, where these are not the "
+            "default ones (auto: latlong or a cube, by the image's shape and attributes)");
     arguments.text(
         "--latlong", "NAME", options.latlong,
-        "lat-long convention: " + join(latlong_convention_names(), ", ") + ", pbrt, or centre=+X,right=+Z[,up=+Y]");
-    arguments.choice("--decode", options.decode, "transfer function of PNG and JPEG (auto: srgb)");
-    arguments.number("--rotate-y-deg", "DEGREES", options.rotate_y_deg, "turn the light about +Y: +X moves towards +Z");
+        "lat-long convention: " + join(latlong_convention_names(), ", ") + k_other_conventions +
+            "; pbrt is the same as --projection equal-area-octahedral (the one that the file states, otherwise "
+            "default)");
+    arguments.choice(
+        "--decode", options.decode,
+        "how values of 8 bits in PNG, JPEG and DDS files are decoded; rgbm, rgbd and rgbp are for DDS only "
+        "(auto: srgb)");
+    arguments.number("--rotate-y-deg", "DEGREES", options.rotate_y_deg,
+                     "turn the light about +Y: +X moves towards +Z (0)");
     arguments.text("--up", "AXIS", options.up, "the axis at the top of the image: +Y, +Z, ... (+Y)");
-    arguments.number("--exposure", "STOPS", options.exposure, "multiply radiance by 2^STOPS");
+    arguments.number("--exposure", "STOPS", options.exposure, "multiply radiance by 2^STOPS (0)");
 }
 
 bool are_cube_faces(const std::vector<std::string>& files) {
@@ -107,7 +115,14 @@ std::vector<std::filesystem::path> environment_files(const std::vector<std::stri
 Result<Environment> open_environment_or_sky(const std::vector<std::string>& arguments,
                                             const EnvironmentOptions& options) {
     if (arguments.empty()) return built_in_sky(options);
-    return open_environment(environment_files(arguments), options);
+    auto environment = open_environment(environment_files(arguments), options);
+    if (environment) return environment;
+    Error error = environment.error();
+    std::vector<std::string> names = latlong_convention_names();
+    names.emplace_back("pbrt");
+    if (error.where == "`latlong`" && !std::ranges::count(names, options.latlong))
+        error.hint = did_you_mean(options.latlong, names) + error.hint;
+    return error;
 }
 
 }  // namespace domelight::cli

@@ -13,6 +13,14 @@
 
 namespace domelight::cli {
 
+/// What a command uses where no environment is given, for help texts.
+inline constexpr const char* k_built_in_sky =
+    "the built-in sky, darkened by eight stops so that its sun fits into half floats";
+
+/// The other lat-long conventions, after latlong_convention_names(), for help texts.
+inline constexpr const char* k_other_conventions =
+    ", or centre=+X,right=+Z[,up=+Y]; mod is the shader form s = 1 - mod(phi / 2 pi, 1)";
+
 /// The options of every command that takes an environment.
 void add_environment_options(Arguments& arguments, EnvironmentOptions& options);
 

@@ -9,8 +9,10 @@ namespace domelight::cli {
 void add_point_options(Arguments& a, PointWords& w) {
     a.integer("--samples", "N", w.samples, "montecarlo: samples for each texel (1024)");
     a.choice("--sequence", w.sequence,
-             "montecarlo: the points of the unit square, the same ones for each texel (hammersley)");
-    a.text("--seed", "N", w.seed, "montecarlo: selects the randomisation; 0: the textbook's plain points (0)");
+             "montecarlo: the sequence that the sample points are taken from; every texel uses the same points "
+             "(hammersley)");
+    a.text("--seed", "N", w.seed,
+           "montecarlo: selects the randomisation of the points; 0: none for hammersley, halton, sobol and r2 (0)");
 }
 
 Result<PointSet> montecarlo_points(const PointWords& w, BakeMethod method) {

@@ -5,20 +5,23 @@
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
+#include "domelight/projection/projections.h"
 
-#include "io/file/json.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/display_options.h"
-#include "cli/console/print.h"
 #include "cli/console/environment_options.h"
+#include "cli/console/print.h"
+#include "cli/console/suggestion.h"
 #include "cli/convert/convert_output.h"
 #include "cli/convert/convert_picture.h"
+#include "io/file/json.h"
 #include "preview/screen_picture.h"
 #include "projection/latlong_convention.h"
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -47,34 +50,41 @@ std::string latlong_list() {
 }
 
 void declare(Arguments& a, ConvertWords& w) {
-    a.positional("IN", w.files,
-                 "an environment (or the six faces of a cube, a folder of them, front and back of a dual paraboloid), "
-                 "or any picture for a .png or .jpg; without -o, then the output, a new file");
+    a.positional(
+        "IN", w.files,
+        "an environment (or the six faces of a cube, a folder of them, front and back of a dual paraboloid), "
+        "or any picture, to write it as a .png or .jpg. Without -o, the last name is the output, a new file");
     a.text("-o,--output", "OUT", w.output.file,
            "the output: .hdr, .exr, .ktx2, .ktx, .dds, or .png or .jpg for viewing");
     a.group("What to make");
     a.text("--to", "PROJECTION", w.to,
            projection_list() + "; with its convention: " + latlong_list() +
                ", cube/openexr, or NAME/centre=+X,right=+Z,up=+Y (cube in a texture, else latlong)");
-    a.integer("--size", "N", w.size, "height of the picture, of a cube's face, of one half (as fine as the source)");
+    a.integer("--size", "N", w.size,
+              "height in pixels: of the picture, of a cube's face, or of one half of a dual paraboloid (as fine as the "
+              "source)");
     a.flag("--sharp", w.sharp,
-           "keep more of the finest detail from lat-long to cube or lat-long; takes ten times as long");
-    a.text("--layout", "NAME", w.output.layout,
-           "a cube: " + join(cube_layout_names(), ", ") +
-               ", faces (name_px.hdr ...); a dual paraboloid: side-by-side, files (name_front.hdr ...)");
+           "from lat-long to cube or lat-long: keep more of the finest detail; takes ten times as long");
+    a.text(
+        "--layout", "NAME", w.output.layout,
+        "a cube: " + join(cube_layout_names(), ", ") +
+            ", or faces: name_px.hdr ...; a dual paraboloid: side-by-side, or files: name_front.hdr and name_back.hdr");
     a.text("--encoding", "NAME", w.output.encoding,
            ".exr: auto, half, float (auto: half, or float where half would clip); textures: rgba16f, rgba32f, rgb9e5, "
-           "r11g11b10f, bc6h, .ktx2 also uastc-hdr, astc4x4-hdr, astc6x6-hdr, rgbm, rgbd, rgbp (rgba16f)");
+           "r11g11b10f, bc6h; in .ktx and .ktx2 also astc4x4-hdr, astc6x6-hdr; in .ktx2 also uastc-hdr, rgbm, rgbd, "
+           "rgbp (rgba16f)");
     a.texts("--rotate", "X,Y,Z,DEGREES", w.rotations,
             "turn the light about an axis, clockwise as seen from the axis's tip: 0,1,0,90 is --rotate-y-deg 90; "
             "several are applied one after the other");
     a.text("--mirror", "AXIS", w.mirror, "mirror the light along the x, y or z axis");
     a.group("Pictures for a screen");
-    add_display_options(a, w.display);
+    add_display_options(a, w.display, "for a source of 8 bits", ", or where --exposure is given");
     a.flag("--picture", w.picture,
-           "treat IN as a picture, not as an environment: every pixel stays where it is (for a .png or .jpg, and where "
-           "an environment has no such shape, unless an option such as --to asks for an environment)");
-    a.text("--layer", "NAME", w.layer, "the layer or channel of an OpenEXR picture (the picture itself)");
+           "treat IN as a picture, not as an environment: every pixel stays where it is. Without this option that is "
+           "done for a .png or .jpg, and for an IN that has no environment's shape, unless an option such as --to "
+           "needs an environment");
+    a.text("--layer", "NAME", w.layer,
+           "the layer or channel of an OpenEXR picture (the unnamed layer, else the first with colour)");
     add_environment_options(a, w.environment);
     a.text("--from", "NAME", w.environment.projection, "the same as --projection");
     add_common_options(a, w.common);
@@ -178,12 +188,20 @@ void print_json(const ConvertWords& w, const Environment& environment, const Con
     print_document(json);
 }
 
+/// What the name of a method means.
+std::string method_words(const std::string& method) {
+    if (method == "copy") return "copy (texels only change places)";
+    if (method == "exact") return "exact (the bilinear source, averaged over each texel)";
+    return method + " (each texel's light goes to the texels that it overlaps)";
+}
+
 void print_text(const ConvertWords& w, const Conversion& made, const WrittenPicture& written) {
-    print("{}: {} ({}), {} x {}{}\n", join(written.files, ", "), w.to, w.output.layout, made.image.width(),
-          made.image.height(), made.image.projection.charts() > 1 ? " each" : "");
+    const bool plain = w.output.layout == "picture" || w.output.layout == w.to;
+    print("{}: {}{}, {} x {}{}\n", join(written.files, ", "), w.to, plain ? "" : fmt::format(" ({})", w.output.layout),
+          made.image.width(), made.image.height(), made.image.projection.charts() > 1 ? " each" : "");
     const double before = luminance(made.power_before), after = luminance(made.power_after);
-    print("radiant power {:.6g} before, {:.6g} after ({:+.2g} %), resampled: {}\n", before, after,
-          100 * relative(before, after), made.method);
+    print("radiant power {:.6g} before, {:.6g} after ({:+.2g} %); method: {}\n", before, after,
+          100 * relative(before, after), method_words(made.method));
     if (written.widened) print("32-bit float channels: {}\n", k_why_float_channels);
     if (written.encoding.clipped_texels > 0)
         print("{} clips {} texels and {:.3g} % of the power\n", written.encoding_name,
@@ -209,6 +227,14 @@ Result<void> check(ConvertWords& w) {
         w.to = f.ends_with(".ktx2") || f.ends_with(".ktx") || f.ends_with(".dds") ? "cube" : "latlong";
     }
     return {};
+}
+
+/// The projection that an unknown name was probably meant for, as a sentence, or nothing.
+std::string meant_projection(const std::string& to) {
+    std::vector<std::string> names;
+    for (const ProjectionInfo& info : projections()) names.emplace_back(info.name);
+    const std::string name = split(to, '/')[0];
+    return std::ranges::count(names, name) ? "" : did_you_mean(name, names);
 }
 
 /// The first of the given options that needs an environment, and so does not go with a picture; empty: none was given.
@@ -272,8 +298,10 @@ int run_convert(const std::vector<std::string>& words) {
     Arguments arguments(
         "convert",
         "Converts an environment to another projection, convention, orientation, size or format. Light is kept: "
-        "texels are averaged by solid angle, and the radiant power before and after is printed. Without IN, the "
-        "built-in sky is converted. Any other picture (a render, a layer of one) becomes a .png or .jpg with a tone map.",
+        "texels are averaged by solid angle, and the radiant power before and after is printed. Without IN, the source "
+        "is " +
+            std::string(k_built_in_sky) +
+            ". Any other picture (a render, a layer of one) becomes a .png or .jpg with a tone map.",
         {"domelight convert studio.hdr -o studio_cube.hdr --to cube --layout faces --size 32",
          "domelight convert studio.hdr -o studio_usd.exr --to latlong/usd --exposure 1",
          "domelight convert studio.hdr -o ball.hdr --to mirror-ball/fov=20 --size 64",
@@ -287,7 +315,8 @@ int run_convert(const std::vector<std::string>& words) {
     if (!picture) return print_error(picture.error(), exit_usage);
     if (*picture) return run_picture(w);
     const auto target = projection_from_name(w.to);
-    if (!target) return print_error({target.error().what, "--to", target.error().hint}, exit_usage);
+    if (!target)
+        return print_error({target.error().what, "--to", meant_projection(w.to) + target.error().hint}, exit_usage);
     if (auto ok = check_output(w.output, *target); !ok) return print_error(ok.error(), exit_usage);
     const auto turn = light_turn(w);
     if (!turn) return print_error(turn.error(), exit_usage);

@@ -79,8 +79,8 @@ void print_environment(const std::string& name, const Environment& e, const Envi
     for (int f = 0; f < 6; ++f) print("  irradiance {}    {}\n", k_axes[f], rgb(s.irradiance[f]));
     for (const BrightLight& l : s.lights)
         print(
-            "  bright light     {:4.1f} % of the power, direction ({:.3f}, {:.3f}, {:.3f}): azimuth {:.1f}, elevation "
-            "{:.1f} degrees, {:.2g} degrees wide\n",
+            "  bright light     {:4.1f} % of the luminance, direction ({:.3f}, {:.3f}, {:.3f}): azimuth (from +X "
+            "towards +Z) {:.1f}, elevation {:.1f} degrees, {:.2g} degrees across\n",
             100 * l.share, l.direction.x, l.direction.y, l.direction.z, l.azimuth_deg, l.elevation_deg,
             2 * l.radius_deg);
     if (s.lights.empty()) print("  bright light     none stands out\n");
@@ -262,13 +262,20 @@ std::string member(const Json& json, const char* key) {
     return value.is_string() ? value.get<std::string>() : value.is_structured() ? "..." : value.dump();
 }
 
+/// The same, with three digits of a number.
+std::string rounded_member(const Json& json, const char* key) {
+    const bool number = json.is_object() && json.contains(key) && json[key].is_number();
+    return number ? fmt::format("{:.3g}", json[key].get<double>()) : member(json, key);
+}
+
 void print_levels(const Json& map) {
     if (!map.contains("levels") || !map["levels"].is_array()) return;
     for (const Json& level : map["levels"].elements()) {
         const bool phong = level.is_object() && level.contains("exponent");
-        print("    level {:<3} size {:<6} {} {:<10} clipped energy {}\n", member(level, "level"),
-              member(level, "size"), phong ? "exponent" : "roughness",
-              member(level, phong ? "exponent" : "roughness"), member(level, "clipped_energy"));
+        const std::string clipped = rounded_member(level, "clipped_energy");
+        print("    level {:<3} size {:<6} {} {:<10} {}\n", member(level, "level"), member(level, "size"),
+              phong ? "exponent" : "roughness", rounded_member(level, phong ? "exponent" : "roughness"),
+              clipped == "0" ? "nothing clipped" : "clipped energy " + clipped);
     }
 }
 
@@ -327,13 +334,16 @@ int run_info(const std::vector<std::string>& words) {
         "a texture (KTX2, KTX, DDS, from any tool), or the folder of a bake.",
         {"domelight info studio.hdr", "domelight info studio.hdr --json", "domelight info out",
          "domelight info out/specular.ktx2"});
-    arguments.positional("ENV|FILE|FOLDER", w.inputs,
-                         "an environment, any other picture, a texture, or a bake; without one, the built-in sky");
+    arguments.positional(
+        "ENV|FILE|FOLDER", w.inputs,
+        fmt::format("an environment, any other picture, a texture, or a bake; without one, {}", k_built_in_sky));
     arguments.group("Pictures");
     arguments.flag(
         "--picture", w.picture,
-        "describe it as a picture, not as an environment (where an environment has no such shape or layers)");
-    arguments.text("--layer", "NAME", w.layer, "the layer or channel of an OpenEXR picture (the picture itself)");
+        "describe it as a picture, not as an environment. Without this option that is done for a file whose shape or "
+        "layers are not an environment's");
+    arguments.text("--layer", "NAME", w.layer,
+                   "the layer or channel of an OpenEXR picture (the unnamed layer, else the first with colour)");
     add_environment_options(arguments, w.environment);
     add_common_options(arguments, w.common);
     if (const auto code = begin_command(arguments, words, w.common)) return *code;

@@ -41,24 +41,26 @@ struct LightsWords {
 void declare(Arguments& a, LightsWords& w) {
     a.positional(
         "ENV", w.environment_files,
-        "an environment; without one the built-in sky, eight stops down; six faces (px nx py ny pz nz) are one cube");
+        fmt::format("an environment; without one, {}; six faces (px nx py ny pz nz) are one cube", k_built_in_sky));
     a.group("What counts as a light");
     a.integer("--max-lights", "N", w.max_lights, "the largest number of lights; weaker ones stay in the remainder (8)");
     a.number("--least-share", "SHARE", w.options.least_share, "the least share of all luminance that a light must "
                                                               "have, 0 to 1 (0.01)");
     a.number("--least-contrast", "RATIO", w.options.least_contrast,
-             "the ratio by which the luminance must fall all around a light, 1.5 or more (4)");
-    a.number("--largest-diameter-deg", "DEGREES", w.options.largest_diameter_deg,
-             "the largest diameter that counts as small, up to 30 (6); three texels always do");
+             "the peak luminance of a light must be at least this many times the luminance around it, 1.5 or more (4)");
+    a.number(
+        "--largest-diameter-deg", "DEGREES", w.options.largest_diameter_deg,
+        "the largest diameter of a source that may become a light, up to 30; a source of at most three texels across "
+        "always may. Where one texel is wider than this, no light is found (6)");
     a.number("--merge-deg", "DEGREES", w.options.merge_deg, "sources closer than this are merged into one light (1.5)");
     a.group("What to write");
     a.text("-o,--output", "DIR", w.output,
            "folder for lights.json, lights.gltf, remainder.hdr or .exr, and preview.png");
     a.choice("--format", w.format, {"auto", "hdr", "exr"},
-             "of the remainder; exr has 32-bit floats (auto: hdr where ENV is Radiance HDR, else exr)");
+             "format of the remainder; exr has 32-bit floats (auto: hdr where ENV is Radiance HDR, else exr)");
     a.number("--lux-per-unit", "LUX", w.lux_per_unit,
-             "illuminance for an irradiance of 1, in lights.gltf: 1 keeps the environment's unit; 683 or 179 (lm/W) "
-             "if that is in watts (1)");
+             "the illuminance in lux that lights.gltf states for an irradiance of 1: 1 keeps the environment's unit; "
+             "683 or 179 lm/W where radiance is in W/(m^2 sr) (1)");
     a.flag("--no-preview", w.no_preview, "no preview.png");
     add_environment_options(a, w.environment);
     add_common_options(a, w.common);
@@ -228,15 +230,15 @@ void print_summary(const LightsWords& w, const Outcome& o) {
     for (std::size_t i = 0; i < o.found.lights.size(); ++i) {
         const ExtractedLight& l = o.found.lights[i];
         print(
-            "  light {:<3} {:5.1f} % of the light, direction ({:.4f}, {:.4f}, {:.4f}), {}{:.2g} degrees across, "
+            "  light {:<3} {:5.1f} % of the luminance, direction ({:.4f}, {:.4f}, {:.4f}), {}{:.2g} degrees across, "
             "irradiance {:.4g} {:.4g} {:.4g}\n",
             i + 1, 100 * l.share, l.direction.x, l.direction.y, l.direction.z, l.resolved ? "" : "under ",
             l.angular_diameter_deg, l.irradiance.x, l.irradiance.y, l.irradiance.z);
     }
     if (o.found.lights.empty()) print("  no light stands out\n");
     if (r.left_out) print("  {} weaker ones stay in the remainder\n", r.left_out);
-    print("{}: lights.json, lights.gltf, {}{}; {:.1g} of the power unaccounted for\n", w.output, o.remainder_file,
-          w.no_preview ? "" : ", preview.png", r.unaccounted);
+    print("{}: lights.json, lights.gltf, {}{}; lights and remainder have the power of the original to {:.1g}\n",
+          w.output, o.remainder_file, w.no_preview ? "" : ", preview.png", r.unaccounted);
 }
 
 int run(const LightsWords& w) {

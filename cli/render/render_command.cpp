@@ -31,7 +31,7 @@ void declare(Arguments& a, RenderWords& w) {
                  "a model (.glb, .gltf, .obj, .ply), or a built-in one: " + join(built_in_scene_names(), ", "));
     a.group("The picture");
     a.texts("-o,--output", "FILE", w.outputs,
-            "the output, several are allowed: .exr (all layers), .hdr, .png or .jpg (tone mapped)");
+            "the output: .exr with all layers, .hdr, or a tone-mapped .png or .jpg; may be given several times");
     a.integer("--width", "N", w.width, "pixels (512)");
     a.integer("--height", "N", w.height, "pixels (from the aspect ratio of the scene's camera, otherwise 512)");
     a.text("--camera", "N|NAME", w.camera, "the camera of the scene to use, 1 is the first (1)");
@@ -47,20 +47,20 @@ void declare(Arguments& a, RenderWords& w) {
     a.choice("--tonemap", w.tonemap, "tone map of a .png or .jpg (agx)");
     a.number("--ev", "STOPS", w.ev,
              "exposure of a .png or .jpg (from the log-average luminance of what the surfaces show)");
-    a.group("Going round");
-    a.integer("--frames", "N", w.frames,
-              "numbered pictures of one turn, and with .png or .jpg also an animation (.webp)");
+    a.group("Turntable");
+    a.integer("--frames", "N", w.frames, "numbered pictures of one turn, and with .png or .jpg also a .webp animation");
     a.choice("--turn", w.turn, {"camera", "environment"}, "what turns (camera)");
     a.number("--fps", "N", w.fps, "frames a second of the animation (30)");
     a.flag("--resume", w.resume, "keep the frames that exist, render the others");
     a.group("The light");
-    a.texts("--env", "ENV", w.environment_files, "the environment (the built-in sky)");
+    a.texts("--env", "ENV", w.environment_files, fmt::format("the environment ({})", k_built_in_sky));
     a.texts("--lights", "FILE", w.light_files,
             "lights that were taken out of the environment: lights.gltf of `domelight lights`, whose remainder is "
             "--env; they turn with --rotate-y-deg and brighten with --exposure as the environment does");
-    a.number("--lux-per-unit", "LUX", w.lux_per_unit,
-             "what an irradiance of 1 in the environment's unit is in lux, for glTF lights of the scene or of --lights "
-             "whose file does not state it (683)");
+    a.number(
+        "--lux-per-unit", "LUX", w.lux_per_unit,
+        "the illuminance in lux that an irradiance of 1 in the environment's unit stands for; used for glTF lights "
+        "of the scene and of --lights whose file does not state it (683, in lm/W for radiance in W/(m^2 sr))");
     add_environment_options(a, w.environment);
     a.group("How it is computed");
     a.choice("--shading", w.shading, shadings(),
@@ -68,33 +68,37 @@ void declare(Arguments& a, RenderWords& w) {
     a.choice("--strategy", w.strategy, "reference: how light directions are sampled (mis)");
     a.integer("--spp", "N", w.spp, "samples of each pixel (64)");
     a.number("--noise", "X", w.noise,
-             "reference: take more samples in pixels whose standard error of L/(1+L) is above this");
+             "reference: take more samples until the standard error of L/(1+L) of each pixel is below this");
     a.number("--time", "SECONDS", w.time, "reference: as many samples as fit into this time");
     a.integer("--bounces", "N", w.bounces, "reference: bounces of indirect light; 0 is direct light with shadows (4)");
     a.choice("--occlusion", w.occlusion, std::vector<NamedValue<bool>>{{true, "on"}, {false, "off"}},
-             "off: no shadows, no indirect light, no occlusion maps, like a shader without them (on)");
+             "off: no shadows, no indirect light and no occlusion maps, to compare with a shader that has none (on)");
     a.flag("--multiple-scattering", w.multiple_scattering, "compensate the energy that single scattering loses on "
                                                            "rough surfaces");
     a.text("--maps", "DIR", w.maps, "split-sum, stretched, phong: the folder of a bake by `domelight bake` (baked in "
                                     "memory)");
     a.choice("--irradiance", w.sh_irradiance, std::vector<NamedValue<bool>>{{false, "cube"}, {true, "sh"}},
              "split-sum, stretched, phong: the irradiance cube, or nine harmonics (cube)");
-    a.choice("--lookup", w.lookup,
-             "mirror, refract: look up the environment through this kind of texture (none: the environment itself)");
-    a.integer("--lookup-size", "N", w.lookup_size, "the size of the texture: of a face, its height, or of each disc "
-                                                   "(512)");
+    a.choice(
+        "--lookup", w.lookup,
+        "mirror, refract: the texture through which the environment is looked up; environment: none, it is looked up "
+        "directly (environment)");
+    a.integer("--lookup-size", "N", w.lookup_size,
+              "size of that texture in texels: of a cube's face, of a sphere map, of the square of one paraboloid, or "
+              "the height of a lat-long map (512)");
     a.choice("--brdf", w.brdf, {"scene", "phong"},
              "phong: modified Phong lobes of matching width instead of GGX, the reference for --shading phong (scene)");
     a.flag("--bent-lookup", w.bent_lookup, "split-sum: move the lookup towards the normal on rough surfaces");
     a.choice("--diffuse-weight", w.diffuse_weight,
-             "split-sum, stretched: weight of the diffuse layer, 1 - (F0 scale + bias), or 1 - F(NdotV) as in most "
-             "courses (energy)");
+             "split-sum, stretched: weight of the diffuse layer; energy: 1 - (F0 scale + F90 bias), what the specular "
+             "layer does not reflect; fresnel: 1 - F(NdotV), as in many shaders (energy)");
     a.integer("--seed", "N", w.seed, "another randomisation (0)");
     a.number("--save-every", "SECONDS", w.save_every,
              "reference: write the picture so far at this interval, and when interrupted");
     a.flag("--study", w.study,
-           "instead of a picture, three figures: the error of each sampling strategy by light and surface, noise over "
-           "samples, the error of split-sum; -o DIR or study.png");
+           "instead of a picture, draw three figures: the error of each sampling strategy by light and surface, the "
+           "noise over the number of samples, and the error of split-sum. With -o DIR they are three .png files and "
+           "study.json, with -o FILE.png one picture. This takes minutes");
     add_common_options(a, w.common);
 }
 

@@ -100,26 +100,32 @@ std::string SampleWords::environment_name() const {
 }
 
 void declare_sample_options(Arguments& a, SampleWords& w) {
-    a.positional("ENV", w.inputs, "one image, or the six faces of a cube; without one, the built-in sky");
+    a.positional("ENV", w.inputs,
+                 fmt::format("one image, or the six faces of a cube; without one, {}", k_built_in_sky));
     a.group("What to draw");
     a.integer("-n,--count", "N", w.count, "the number of samples (1024); with --estimate the largest number for each "
                                           "strategy (4096)");
     a.text("-o,--output", "FILE", w.output,
            "file for the samples, .csv or .json; without it, and if nothing else is asked for, CSV on stdout");
-    a.choice("--method", w.sampler.method,
-             "sampling method (bilinear): the first six sample texels, the last two their bilinear interpolation");
+    a.choice(
+        "--method", w.sampler.method,
+        "sampling method; bilinear and bilinear-plain: the density is interpolated between texels; the others: it is "
+        "constant in each texel (bilinear)");
     a.choice(
         "--weight", w.sampler.weight,
-        "the weight of a texel (radiant-power): luminance times sin theta, or the textbook's grayscale without sin "
-        "theta");
+        "the weight of a texel: luminance times sin theta, or grayscale: 0.2989 R + 0.5866 G + 0.1145 B without sin "
+        "theta (radiant-power)");
     a.flag("--compensate", w.sampler.compensate,
            "subtract the mean (MIS compensation): only for use together with BRDF "
            "sampling");
     a.number("--uniform-share", "SHARE", w.sampler.uniform_share,
              "draw this part of the samples uniformly over the sphere, 0 to 1 (0)");
-    a.choice("--sequence", w.sequence,
-             "the points of the unit square (sobol; with --estimate random, for which its standard errors hold)");
-    a.text("--seed", "N", w.seed, "selects the randomisation; 0: the textbook's plain points (1)");
+    a.choice(
+        "--sequence", w.sequence,
+        "the sequence that the sample points are taken from (sobol; with --estimate random, for which its standard "
+        "errors hold)");
+    a.text("--seed", "N", w.seed,
+           "selects the randomisation of the points; 0: none for hammersley, halton, sobol and r2 (1)");
     a.group("Pictures and tables");
     a.text("--picture", "FILE", w.picture, "the environment as it is stored, with the samples drawn on it, .png or "
                                            ".jpg");
@@ -128,24 +134,26 @@ void declare_sample_options(Arguments& a, SampleWords& w) {
     a.integer("--picture-width", "PIXELS", w.picture_width, "width of the environment in these pictures, 256 to 8192 "
                                                             "(1024)");
     a.text("--tables", "DIR", w.tables,
-           "textures for shaders: the cumulative functions rows.* and columns.*, RG float, and for the lectures' loop "
-           "row_averages.*, R float");
-    a.choice("--tables-format", w.tables_format, with_names({Container::ktx2, Container::exr}), "their format (ktx2)");
+           "folder for the textures with which a shader samples: the cumulative functions rows.* and columns.* (RG "
+           "float), and row_averages.* (R float) for a shader that adds up weights in a loop");
+    a.choice("--tables-format", w.tables_format, with_names({Container::ktx2, Container::exr}),
+             "format of these textures (ktx2)");
     a.group("How good each strategy is");
     a.flag("--estimate", w.estimate, "estimate the light that a surface reflects by every strategy, and compare them");
-    a.choices("--strategy", w.strategies, studied_strategies(), "compare only these with environment (all)");
+    a.choices("--strategy", w.strategies, studied_strategies(),
+              "the strategies to compare; environment is always among them (all)");
     a.text("--plot", "FILE", w.plot,
            "plot of each strategy's error over the number of samples, with slopes, .png or .jpg");
     a.numbers("--normal", "X,Y,Z", w.normal, "the surface's normal (0,1,0)");
     a.numbers("--view", "X,Y,Z", w.view, "direction towards the viewer (the normal)");
     a.choice("--brdf", w.brdf, {"lambert", "phong", "ggx", "charlie"}, "the surface (lambert)");
     a.number("--roughness", "R", w.roughness, "roughness of ggx and charlie, 0 to 1 (0.3)");
-    a.number("--exponent", "N", w.exponent, "of phong (32)");
+    a.number("--exponent", "N", w.exponent, "phong: the exponent n, 0 or more (32)");
     a.numbers("--metal-f0", "F0", w.metal_f0, "ggx: reflectance at normal incidence, one number or R,G,B (1)");
     a.group("How it works");
     a.numbers("--explain", "U,V", w.explain,
               "show how this point of the unit square becomes a direction: row, column, density");
-    a.text("--explain-picture", "FILE", w.explain_picture, "the same as a picture, .png or .jpg");
+    a.text("--explain-picture", "FILE", w.explain_picture, "the explanation of --explain as a picture, .png or .jpg");
     add_environment_options(a, w.environment);
     add_common_options(a, w.common);
 }

@@ -34,15 +34,16 @@ void declare(Arguments& a, SkyWords& w) {
     a.integer("--height", "N", w.height, "rows of the lat-long image, which is twice as wide (512)");
     a.choice("--exr", w.encoding, {"auto", "half", "float"},
              "type of the channels of an .exr; half clips the sun at 65504, so auto is float if the sun is up (auto)");
-    add_display_options(a, w.display);
+    add_display_options(a, w.display, "with --axes");
     a.flag("--axes", w.axes,
            "the labelled six-axis environment instead of a sky: it reveals every mistake in orientation");
     a.group("The sky");
     a.number("--sun-elevation-deg", "DEGREES", w.sky.sun_elevation_deg,
              "height of the sun over the horizon, -18 to 90 (30)");
-    a.number("--sun-azimuth-deg", "DEGREES", w.sky.sun_azimuth_deg, "from +X towards +Z (30)");
-    a.number("--turbidity", "T", w.sky.turbidity, "1 (pure air) to 10 (haze) (3)");
-    a.number("--ground-albedo", "A", w.sky.ground_albedo, "0 to 1 (0.2)");
+    a.number("--sun-azimuth-deg", "DEGREES", w.sky.sun_azimuth_deg,
+             "azimuth of the sun, measured from +X towards +Z (30)");
+    a.number("--turbidity", "T", w.sky.turbidity, "turbidity of the air, from 1 for pure air to 10 for haze (3)");
+    a.number("--ground-albedo", "A", w.sky.ground_albedo, "albedo of the ground, 0 to 1 (0.2)");
     a.flag("--no-sun-disc", w.no_sun_disc, "the sky without the sun's disc");
     add_common_options(a, w.common);
 }
@@ -160,7 +161,8 @@ int run_sky(const std::vector<std::string>& words) {
     SkyWords w;
     Arguments arguments(
         "sky",
-        "Writes a physically based clear or hazy sky with a sun of true size and radiance, as a lat-long environment.",
+        "Writes a physically based clear or hazy sky with a sun of true size and radiance, as a lat-long environment. "
+        "A command that is given no environment uses the sky of the default options, eight stops darker.",
         {"domelight sky -o sky.hdr", "domelight sky -o evening.exr --sun-elevation-deg 4 --turbidity 5 --height 256",
          "domelight sky --axes -o axes.png"});
     declare(arguments, w);

@@ -73,7 +73,7 @@ vec3 domelight_shade(vec3 n, vec3 v, vec3 base_color, float metallic, float roug
     vec3 f0 = mix(vec3(domelight_f0_of_reflectance(0.5)), base_color, metallic);
     vec2 scale_bias = textureLod(u_brdf, vec2(NdotV, roughness), 0.0).rg;
     vec3 specular = domelight_single_scattering(f0, scale_bias);
-    // For the courses' form: domelight_diffuse_weight_fresnel(f0, NdotV).
+    // For 1 - F(NdotV): domelight_diffuse_weight_fresnel(f0, NdotV).
     vec3 diffuse = base_color * (1.0 - metallic) * domelight_diffuse_weight_energy(f0, scale_bias);
     return diffuse * domelight_diffuse(n) + specular * domelight_specular(reflect(-v, n), roughness);
 }

@@ -82,7 +82,7 @@ float3 domelight_shade(float3 n, float3 v, float3 base_color, float metallic, fl
     float3 f0 = lerp((float3)domelight_f0_of_reflectance(0.5), base_color, metallic);
     float2 scale_bias = g_brdf.SampleLevel(g_linear_clamp, float2(NdotV, roughness), 0);
     float3 specular = domelight_single_scattering(f0, scale_bias);
-    // For the courses' form: domelight_diffuse_weight_fresnel(f0, NdotV).
+    // For 1 - F(NdotV): domelight_diffuse_weight_fresnel(f0, NdotV).
     float3 diffuse = base_color * (1.0 - metallic) * domelight_diffuse_weight_energy(f0, scale_bias);
     return diffuse * domelight_diffuse(n) + specular * domelight_specular(reflect(-v, n), roughness);
 }

@@ -78,7 +78,7 @@ fn domelight_shade(n: vec3f, v: vec3f, base_color: vec3f, metallic: f32, roughne
     let f0 = mix(vec3f(domelight_f0_of_reflectance(0.5)), base_color, metallic);
     let scale_bias = textureSampleLevel(brdf, linear_clamp, vec2f(NdotV, roughness), 0.0).rg;
     let specular = domelight_single_scattering(f0, scale_bias);
-    // For the courses' form: domelight_diffuse_weight_fresnel(f0, NdotV).
+    // For 1 - F(NdotV): domelight_diffuse_weight_fresnel(f0, NdotV).
     let diffuse = base_color * (1.0 - metallic) * domelight_diffuse_weight_energy(f0, scale_bias);
     return diffuse * domelight_diffuse(n) + specular * domelight_specular(reflect(-v, n), roughness);
 }

@@ -1,4 +1,4 @@
-// The lat-long mapping of the lectures on image-based lighting. GLSL 3.30 and later, and ES 3.00. The other lat-long
+// The lat-long mapping s = 1 - mod(phi / 2 pi, 1). GLSL 3.30 and later, and ES 3.00. The other lat-long
 // shaders (latlong_split_sum.glsl, latlong_phong.glsl, sample_envmap.glsl) come after this text in the same source. ES
 // wants `precision highp float; precision highp sampler2D;` before it.
 //

@@ -119,8 +119,11 @@ Result<Request> check_options(const EnvironmentOptions& options) {
     const Result<Vec3d> up = signed_axis(options.up);
     if (!up) return up.error().at(field_place("up"));
     if (!request.options.latlong.empty())
-        if (const auto convention = latlong_convention(request.options.latlong); !convention)
-            return convention.error().at(field_place("latlong"));
+        if (const auto convention = latlong_convention(request.options.latlong); !convention) {
+            Error error = convention.error().at(field_place("latlong"));
+            if (error.hint.starts_with("Accepted")) error.hint += " Also pbrt, which is an octahedral square.";
+            return error;
+        }
     // When the light is turned by R, what arrives from d came from Rᵀ d before.
     request.turn = up_to_y(*up) * rotation_y_deg(options.rotate_y_deg).transposed();
     request.scale = float(std::exp2(options.exposure));
