@@ -37,7 +37,7 @@
 //        view.camera = default_camera(traced->scene(), 1);
 //        auto picture = render_reference(*traced, *sampler, view);
 //
-// docs/conventions.md says which direction is where, and in what units light is.
+// docs/conventions.md defines the axes and the units of light.
 
 #include "domelight/bake/bake.h"
 #include "domelight/bake/brdf_file.h"

@@ -54,7 +54,7 @@ class Mean {
     Vec3d mean_, squares_;
 };
 
-/// The textbook sum: sum f L cos(theta) sin(theta) dtheta dphi at the midpoints of K x J steps.
+/// The Riemann sum: sum f L cos(theta) sin(theta) dtheta dphi at the midpoints of K x J steps.
 Estimate riemann(const Local& local, const EnvironmentSampler& sampler, int samples) {
     const int k = std::max(1, int(std::sqrt(samples / 4.0))), j = std::max(1, samples / k);
     const double dtheta = k_pi / 2 / k, dphi = 2 * k_pi / j;

@@ -55,7 +55,7 @@ struct BakeOptions {
     std::optional<Lobe> lobe;
     std::vector<double> exponents;  ///< Phong: of each level; infinity is the environment itself
     BakeMethod method = BakeMethod::exact;
-    PointSet points;  ///< montecarlo: the same for each texel
+    PointSet points;  ///< montecarlo: the sample points, the same for every texel
     RiemannOptions riemann;
 
     std::optional<Encoding> encoding;
@@ -64,8 +64,8 @@ struct BakeOptions {
     std::optional<bool> zstd;
     CubePicture cube_picture = CubePicture::cross;
     /// Convention of every lat-long image that is written, with or without "latlong/" before it: default, usd, mitsuba,
-    /// openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]". By default the engine's own. Engines that take no
-    /// lat-long image, or a file of a fixed convention, refuse it.
+    /// openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]". By default the engine's own. An error for an engine
+    /// whose bake has no lat-long image, or has one of a fixed convention.
     std::optional<std::string> latlong_out;
     std::optional<Quantity> irradiance_quantity;  ///< irradiance or irradiance_over_pi
     std::optional<int> irradiance_size;           ///< face size, or half the height of a lat-long map
@@ -104,10 +104,13 @@ struct BakedLevel {
     EncodingReport encoding;
 };
 
-/// The error of a shader that reads a Phong chain half way between two neighbouring levels: their mean against the own
-/// map of the exponent that belongs there. Relative, of the luminance, over all directions.
+/// The error of interpolating a Phong chain half way between two neighbouring levels: the mean of the two levels is
+/// compared with a map that is filtered with `exponent`. Relative errors of the luminance (0.01 is 1 %), median and
+/// maximum over the texels that are not black.
 struct PhongGap {
-    double exponent = 0;  ///< the geometric mean of the two levels'
+    /// The geometric mean of the two levels' exponents. Where one of these is below 1, the exponent whose roughness is
+    /// the mean of theirs, with roughness = (2 / (n + 2))^(1/4).
+    double exponent = 0;
     double median_error = 0, worst_error = 0;
 };
 
@@ -125,7 +128,9 @@ struct BakedMap {
     bool zstd = false;
     BakedFile file;  ///< for containers that hold the whole chain
     std::vector<BakedLevel> levels;
-    std::vector<PhongGap> gaps;  ///< phong, by the exact method: one for each pair of levels but the environment itself
+    /// Phong by the exact method: one for each pair of neighbouring levels, without the level that is the environment
+    /// itself.
+    std::vector<PhongGap> gaps;
 };
 
 struct ShReport {
@@ -159,8 +164,8 @@ struct EngineReport {
 
 struct StageTime {
     std::string stage;
-    double seconds = 0;      ///< by the clock
-    double cpu_seconds = 0;  ///< of all threads
+    double seconds = 0;      ///< wall-clock time
+    double cpu_seconds = 0;  ///< CPU time of all threads together
 };
 
 struct BakeReport {
@@ -168,7 +173,8 @@ struct BakeReport {
     std::string source_sha256;
     RepairReport repaired;
     Vec3d mean_radiance;
-    std::int64_t clamped = 0;  ///< texels whose truncation error was below zero, set to 0
+    /// Texels whose value came out negative because the expansion in harmonics is truncated; they were set to 0.
+    std::int64_t clamped = 0;
     int band_limit = 0;
     std::vector<std::string> warnings;
     std::vector<StageTime> stages;
@@ -180,6 +186,7 @@ Result<void> check_bake_options(const BakeOptions& options);
 /// Bakes an environment into `folder`: specular chain, irradiance, harmonics, BRDF table, picture, manifest. With
 /// several engines, each has a subfolder with its name. Everything is first written next to its final place and moved
 /// there when all is complete, so an error changes nothing.
+/// Errors: those of check_bake_options(), of reading the environment and of writing; `folder` is a file; "cancelled".
 Result<BakeReport> bake(const Environment& environment, const BakeOptions& options, const std::filesystem::path& folder);
 
 /// Whether `folder` already holds exactly what a bake of these files with these options would write: the same version,

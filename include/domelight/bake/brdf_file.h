@@ -19,7 +19,7 @@ struct BrdfFileOptions {
     int size = 128;                        ///< width and height, 1 to 4096
     BrdfG g = BrdfG::correlated;
     bool single_precision = false;        ///< 32-bit floats in .ktx2, .ktx, .dds and .exr, which else get half floats
-    std::optional<PointSet> points = {};  ///< by Monte Carlo with these points; nothing: by quadrature, exact to 1e-5
+    std::optional<PointSet> points = {};  ///< the points of a Monte Carlo estimate; empty: quadrature, exact to 1e-5
     int threads = 0;
 };
 
@@ -38,7 +38,8 @@ std::span<const std::string> brdf_file_extensions();
 
 /// Writes the table in the format that the file's name ends in. .hdr and .png have three channels: a form of two has 0
 /// in the third. .png has 8 bits a channel, the values as they are, without an sRGB curve.
-/// Errors: a size that is not from 1 to 4096; the form `none`; another ending; writing.
+/// Errors: a size outside 1 to 4096; the form `none`; an ending that brdf_file_extensions() does not list; a failure to
+/// write.
 Result<void> write_brdf_file(const std::filesystem::path& file, const BrdfFileOptions& options);
 
 }  // namespace domelight

@@ -6,9 +6,9 @@ namespace domelight {
 
 /// A point of the unit square in 32-bit fixed point: (x, y) / 2^32, so in [0, 1) by construction.
 ///
-/// Sequences return such points and samplers take them. A float in [0, 1) has 24 bits, and an environment of 4096 x
-/// 2048 texels needs 23 of them to choose the texel, which would leave one bit for the position within it. Cumulative
-/// tables in 32-bit fixed point can distinguish exactly 32 bits.
+/// Sequences return such points and samplers take them. A random float in [0, 1) is a multiple of 2^-24: with floats a
+/// texel that holds less than 2^-24 of its row's sum might never be drawn, and the position within a texel of small
+/// weight would have few bits. Cumulative tables in 32-bit fixed point distinguish all 2^32 values.
 struct UnitPoint {
     std::uint32_t x = 0, y = 0;
     constexpr bool operator==(const UnitPoint&) const = default;

@@ -8,7 +8,8 @@ namespace domelight {
 
 inline constexpr double k_pi = std::numbers::pi;
 
-/// A vector of three components. World space is right-handed with +Y up; a direction points away from the surface.
+/// A vector of three components. World space is right-handed with +Y up. Directions to the light and to the viewer
+/// point away from the surface; the only exception is PunctualLight::direction.
 template <typename T>
 struct Vec3 {
     T x{}, y{}, z{};
@@ -41,7 +42,7 @@ template <typename T>
 constexpr Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-/// The product of each component: a colour seen through a filter, for example.
+/// The component-wise product: a colour seen through a filter, for example.
 template <typename T>
 constexpr Vec3<T> product(const Vec3<T>& a, const Vec3<T>& b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};

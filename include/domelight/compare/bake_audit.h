@@ -1,6 +1,6 @@
 #pragma once
-// Anybody's baked specular cube against the exact filter of its source: whether it is a bake of that source at all,
-// which way round it is, how rough each level really is, how bright, how far off.
+// Compares a specular cube that any tool baked with the exact filter of its source. The audit reports whether the cube
+// is a bake of that source, its orientation, and the roughness, brightness and error of each level.
 
 #include "domelight/base/progress.h"
 #include "domelight/base/result.h"
@@ -23,8 +23,8 @@ struct CubeLevel {
     std::optional<double> exponent = {};  ///< the same for a Phong lobe, >= 0; infinity: the environment itself
 };
 
-/// How a cube is turned against texture(cube, d) = radiance from d: it holds in direction d what ours holds in
-/// direction `ours_from_theirs` d.
+/// The orientation of a cube ("theirs") relative to Domelight's ("ours"), where texture(ours, d) is the radiance from
+/// direction d: texture(theirs, d) = texture(ours, ours_from_theirs * d).
 struct CubeOrientation {
     Mat3 ours_from_theirs;  ///< a signed permutation of the axes
     std::string words;      ///< "as ours", "mirrored in x", "turned by 90 degrees about +Y", ...
@@ -41,10 +41,11 @@ struct LevelAudit {
     int size = 0;
     double roughness = 0;            ///< of the lobe that fits best; 0: the environment itself
     std::optional<double> exponent;  ///< of a Phong lobe that fits best; infinity: the environment itself
-    double roughness_within = 0;     ///< this far from `roughness` the fit is worse by less than a twentieth (or by
-                                     ///< less than 0.0005)
-    bool roughness_known = true;     ///< false: every roughness fits alike
-    double scale = 1;                ///< median over texels of theirs / exact (luminance)
+    /// Half-width of the interval about `roughness` in which the error of the fit stays below 1.05 error + 0.0005; at
+    /// most 1.
+    double roughness_within = 0;
+    bool roughness_known = true;  ///< false: every roughness fits alike
+    double scale = 1;             ///< median over texels of theirs / exact (luminance)
     double energy = 1;  ///< ratio of the means over the sphere, theirs / exact (luminance), both at the level's texels
     double error =
         0;  ///< RMS over the sphere of (theirs - fit) / max(theirs, fit), [0, 1]: every direction counts alike
@@ -52,7 +53,7 @@ struct LevelAudit {
     double relative_rmse = 0;  ///< sqrt(sum (theirs - fit)^2 / sum fit^2): the brightest directions count most
     double largest = 0;        ///< the largest |theirs - fit| / max(theirs, fit)
     std::optional<double> stated_roughness;
-    /// At the stated roughness and scale 1: what a consumer gets that trusts the file.
+    /// The same errors at the stated roughness and scale 1: those of a program that uses the stated roughness.
     double stated_error = 0, stated_relative_rmse = 0;
 };
 
@@ -70,8 +71,10 @@ struct BakeAudit {
 
 struct AuditOptions {
     Lobe lobe = Lobe::ggx;  ///< with which the levels were filtered
-    int texels = 6144;  ///< compared in each level: a quarter the brightest, the others random; all of smaller levels
-    double same = 0.25;     ///< a level with a larger LevelAudit::broad_error is one of another environment
+    /// Texels compared in each level, at least 96: a quarter are the brightest, the others random. A level with fewer
+    /// texels is compared whole.
+    int texels = 6144;
+    double same = 0.25;  ///< a level with a larger LevelAudit::broad_error is one of another environment
     /// The largest error that a level may have, (0, 1]: LevelAudit::stated_error, or LevelAudit::error where the level
     /// states no roughness. Nothing: any error.
     std::optional<double> within = {};
@@ -79,13 +82,16 @@ struct AuditOptions {
     Progress progress = {};
 };
 
-/// Audits a bake. The exact filter is prefilter() at the level's own size; the 48 exchanges and mirrorings of the axes
-/// carry texel centres of a cube to texel centres, so nothing is interpolated. The orientation is found first, on faces
-/// averaged to 32^2. For a bake of another environment that is all: every figure is then of averaged faces. Otherwise
-/// every run of the filter serves all levels: one at the stated roughnesses; where these are absent or do not fit, one
-/// at a ladder of roughnesses, compared on averaged faces; and up to four close to the best roughness of each level.
-/// Errors: no levels; a level without a finite texel above 0; those of prefilter(). NaN and infinite texels are left
-/// out.
+/// Audits a bake. NaN and infinite texels are left out.
+///
+/// The exact filter is prefilter() at the level's own size. Each of the 48 signed permutations of the axes maps the
+/// texel centres of a cube to texel centres, so nothing is interpolated. The orientation is found first, on faces
+/// averaged to 32 x 32 texels. If no orientation fits, the cube is a bake of another environment, and all figures are
+/// those of averaged faces. Otherwise the filter is run once at the stated roughnesses. For levels whose stated
+/// roughness is absent or does not fit, it is run at a series of roughnesses, which are compared on averaged faces.
+/// Last it is run up to four times near the best roughness of each level. Each run computes all levels that need it.
+///
+/// Errors: no levels; a level without a finite texel above 0; those of prefilter(); "cancelled".
 Result<BakeAudit> audit_bake(std::span<const CubeLevel> levels, const Environment& source,
                              const AuditOptions& options = {});
 

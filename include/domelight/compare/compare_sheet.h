@@ -12,12 +12,13 @@ namespace domelight {
 struct HeatMap {
     ImageView<const float> values;  ///< one channel
     std::string title;              ///< "HDR-FLIP, mean 0.034"
-    double high = 1;                ///< the value of the last colour; > 0
+    double high = 1;                ///< the value at the upper end of the colour scale; > 0
     bool is_signed = false;         ///< from -high to high (blue, white, red); else from 0
 };
 
-/// 1, 2 or 5 times a power of ten, at or above almost all of the values' sizes (all but a two-hundredth of those that
-/// count): a scale's end.
+/// The upper end of a colour scale: the least number of the form 1, 2 or 5 times a power of ten that is not below the
+/// 99.5th percentile of |value| over the finite pixels that count (of the largest |value|, if this percentile is 0); 1
+/// if all are 0 or none counts.
 double scale_for(ImageView<const float> values, Mask mask = {});
 
 /// A heat map at full size (small ones enlarged by a whole number) above its labelled colour scale. Pixels outside the

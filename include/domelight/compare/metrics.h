@@ -35,8 +35,9 @@ struct ObjectErrors {
     int index = 0;
     Errors errors;  ///< ssim: the mean over the object of the ssim() of the whole picture
 };
-/// The errors of each object, in the order of their indices. `objects`: the index of the object seen in each pixel, one
-/// channel; negative or NaN: none.
+/// The errors of each object, in the order of their indices. `objects`: the index of the object in each pixel, rounded,
+/// one channel. The background, index 0, is in the result like an object. Pixels with a negative or NaN index, or one
+/// from 1e9 on, are left out.
 std::vector<ObjectErrors> compare_objects(ImageView<const float> test, ImageView<const float> reference,
                                           ImageView<const float> objects, Mask mask = {}, int threads = 0);
 
@@ -73,8 +74,8 @@ BadPixels find_bad_pixels(ImageView<const float> image, Mask mask = {});
 struct FlipOptions {
     double pixels_per_degree = 67.0206;  ///< > 0; 0.7 m from a 0.7 m wide display of 3840 pixels, the authors' default
 };
-/// FLIP (Andersson et al. 2020): perceived difference of each pixel, [0, 1], one channel. sRGB-encoded values in [0,
-/// 1].
+/// FLIP (Andersson et al. 2020): the perceived difference of each pixel, [0, 1], one channel. The images are
+/// sRGB-encoded, with values in [0, 1].
 ImageF flip(ImageView<const float> test_srgb, ImageView<const float> reference_srgb, const FlipOptions& options = {},
             int threads = 0);
 
@@ -85,7 +86,7 @@ struct HdrFlip {
     int count = 0;
 };
 /// HDR-FLIP (Andersson et al. 2021): the largest FLIP over exposures chosen from the reference, tone mapped by ACES as
-/// the authors do. Linear radiance.
+/// the authors do. The images are linear radiance.
 HdrFlip hdr_flip(ImageView<const float> test, ImageView<const float> reference, const FlipOptions& options = {},
                  int threads = 0);
 /// Mean of a one-channel image over the mask; 0 if no pixel counts.

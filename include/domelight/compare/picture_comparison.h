@@ -33,8 +33,9 @@ struct PictureComparisonOptions {
     /// Stops by which both pictures are exposed for FLIP. Nothing: those that bring the log-average luminance of the
     /// reference to 0.18, or 0 if both pictures are for a screen.
     std::optional<double> exposure_ev = {};
-    int threads = 0;         ///< 0: all
-    Progress progress = {};  ///< told of each stage before it begins; its answer is ignored
+    int threads = 0;  ///< 0: all
+    /// Called before each stage. Its return value is ignored, so a comparison cannot be cancelled.
+    Progress progress = {};
 };
 
 /// The figures of one object.
@@ -51,7 +52,8 @@ struct PictureComparison {
     ImageF flip_map;                       ///< FLIP of each pixel; empty without `flip`
     HdrFlip hdr;                           ///< HDR-FLIP of each pixel; empty without `hdr_flip`
     std::optional<NoiseSummary> noise;     ///< where a picture has a variance
-    /// By rising index, where a picture says which object each pixel shows; the reference's word comes first.
+    /// In the order of the indices; empty if neither picture has object indices. Those of the reference are used if it
+    /// has any.
     std::vector<ObjectComparison> objects;
 };
 /// Compares finite pictures of one size (see without_bad_pixels()).
@@ -60,8 +62,8 @@ PictureComparison compare_pictures(const PicturePair& pair, const PictureCompari
 /// The names of the figures: rmse, relative, tone-mapped, largest, psnr, ssim, flip, hdr-flip, mean, above-2, chi2,
 /// total-z.
 const std::vector<std::string>& comparison_figures();
-/// A figure by its name: of `errors`, `noise` and FLIP; "mean" is |mean_ratio - 1|, "total-z" its size. Nothing if these
-/// pictures have no such figure.
+/// A figure by its name, from `errors`, `noise` or FLIP; "mean" is |mean_ratio - 1|, "total-z" is |total_z|. Empty if
+/// these pictures have no such figure.
 std::optional<double> comparison_figure(const PictureComparison& comparison, std::string_view name);
 
 }  // namespace domelight

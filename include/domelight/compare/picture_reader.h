@@ -18,17 +18,17 @@ struct Picture {
     bool cube = false;
     ImageF variance;  ///< of the pixels' values, 3 channels; empty: unknown. From the layer "variance" (or Variance),
                       ///< see below
-    ImageF objects;  ///< index of the object seen, one channel, 0 for none; empty: not known. From the layer or channel
-                     ///< "object"
+    ImageF objects;   ///< index of the object, one channel, 0 for the background; empty: not known. From the layer or
+                      ///< channel "object"
     std::vector<std::string>
         object_names;  ///< of the objects from 1 on, by the attribute "objects", one a line; may be short
     /// One channel, the OpenEXR channel A or a PNG's alpha; empty: none, or not asked for (PictureOptions::opacity).
-    /// `rgb` is multiplied with it where cut_out().
+    /// If cut_out(), `rgb` is premultiplied by it.
     ImageF opacity;
     std::vector<std::string> warnings;
 
-    /// Whether the opacity cuts the picture out: nothing shines where it is 0. Renderers store the opacity of their
-    /// objects also in pictures that show a background, and there it is not.
+    /// Whether the picture has a transparent background: its colour is black wherever the opacity is 0. Renderers also
+    /// store an opacity in pictures that show a background; for these it is false. False without an opacity.
     bool cut_out() const;
 };
 
@@ -53,18 +53,19 @@ struct PictureFacts {
     bool environment = false;           ///< OpenEXR's attribute envmap is set
     bool cube = false;                  ///< a texture with six faces
 };
-/// From the head of the file. Errors as read_picture's.
+/// Reads the file's header, not its pixels. Errors: as read_picture.
 Result<PictureFacts> read_picture_facts(const std::filesystem::path& file);
 /// Whether the file holds a picture rather than an environment: its shape is no environment's (open_environment.h), it
-/// has several layers, as renderers write them, or it is 4:3 or 3:4 with something where a cross of cube faces is
-/// empty. False where the file cannot be read.
+/// has several layers, as renderers write them, or it is 4:3 or 3:4 and one of the areas that a cross of cube faces
+/// leaves empty is not of one colour. False where the file cannot be read.
 bool is_picture_of_its_own(const std::filesystem::path& file);
 
 /// Reads OpenEXR, Radiance HDR, PNG, JPEG, or a level of a KTX2, KTX or DDS texture (2D or cube). Errors name the file.
 Result<Picture> read_picture(const std::filesystem::path& file, const PictureOptions& options = {});
 
-/// One channel of numbers: of an OpenEXR file the channel `name` (empty: its only one, else Y, R), of a PNG the red one
-/// as its code, 0 to 255.
+/// One channel of numbers. Of an OpenEXR file the channel `name` (empty: the first that exists of object, Y, R and A,
+/// otherwise the file's first one); of a PNG or JPEG the red channel times 255, rounded; of a Radiance HDR the red
+/// channel. Errors name the file.
 Result<ImageF> read_number_image(const std::filesystem::path& file, const std::string& name = "");
 
 }  // namespace domelight

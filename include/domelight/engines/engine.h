@@ -82,12 +82,15 @@ struct Engine {
     RoughnessCurve roughness = nullptr;
     Layout layout = Layout::cube;  ///< the default layout of the maps
     CubeMirror mirror = CubeMirror::none;
-    std::string latlong = "default";  ///< convention of lat-long maps: one that only turns the default about +Y
+    /// Convention of lat-long maps, by its name (docs/conventions.md). One that differs from the default by quarter
+    /// turns about +Y only moves texels; for any other one the maps are reprojected.
+    std::string latlong = "default";
     Encoding encoding = Encoding::rgba16f;
     Container container = Container::ktx2;
     bool zstd = false;
     /// The engine filters by itself: only the environment is written, as one image of the projection `panorama`. A
-    /// lat-long image is 4 size x 2 size, another 2 size x 2 size; where `size` is 0 it is as fine as the source.
+    /// lat-long image has 4 size x 2 size texels, a square image of another projection 2 size x 2 size; if `size` is 0,
+    /// the image is as fine as the source.
     bool environment_only = false;
     std::string panorama = "latlong";  ///< name and convention, as projections.h takes them
 
@@ -121,12 +124,17 @@ double linear_roughness(int level, int levels, int size);
 /// The number of levels of an engine's cube chain from `size`^2 texels a face down to its smallest.
 int default_levels(const Engine& engine, int size);
 
-/// Phong's exponent n_s of a level >= 0 where none are given. Level 0 is the environment itself (infinity), level 1 has
-/// 2048, each further one a quarter of the one before it, as its texels are twice as wide: 2048 / 4^(level - 1); at
-/// least 1. Between whole levels it goes on without a step: below level 1 as the roughness of the matching lobe does,
-/// 2050 / level^4 - 2, and from level 6 to 7, 2 to 1, as 2^(7 - level).
+/// The default Phong exponent n_s of a level >= 0, a continuous function of `level`:
+///
+// clang-format off
+///   0        infinity: the environment itself
+///   0 .. 1   2050 / level^4 - 2, which makes the roughness of the matching GGX lobe proportional to the level
+///   1 .. 6   2048 / 4^(level - 1): a quarter for each level, because its texels are twice as wide
+///   6 .. 7   2^(7 - level)
+///   7 ..     1
+// clang-format on
 double default_phong_exponent(double level);
-/// Its inverse for exponents >= 1, infinity among them.
+/// The level with this default exponent, for exponents from 1 to infinity; 7 for exponent 1.
 double default_phong_level(double exponent);
 /// The exponents of the levels 0 .. levels - 1.
 std::vector<double> default_phong_exponents(int levels);

@@ -51,11 +51,11 @@ class Environment {
     Mat3 world_to_source;
 
     Environment();
-    /// From a lat-long image in the default convention up to `world_to_source`: 3 channels, radiance, linear Rec. 709,
-    /// finite and >= 0.
+    /// From a lat-long image: 3 channels, radiance, linear Rec. 709, finite and >= 0. The light from world direction d
+    /// is where the default convention has the direction world_to_source * d.
     static Environment from_latlong(ImageF latlong, const Mat3& world_to_source = {});
-    /// From rows of such an image, `width` x `height` texels, which `open` opens anew for each reading. `notes` are the
-    /// warnings that report() holds until an image has been read.
+    /// From rows of a lat-long image in the default convention, `width` x `height` texels, which `open` opens anew for
+    /// each reading. `notes` are the warnings that report() holds until an image has been read.
     static Environment from_rows(int width, int height, RowsOpener open, std::vector<std::string> notes = {});
     /// From a cube of radiance. `threads`: for averaging it to rows; 0: all.
     static Environment from_cube(Cubemap cube, const Mat3& world_to_source = {}, RepairReport report = {},
@@ -77,7 +77,7 @@ class Environment {
     /// The environment as rows of a lat-long image in the source's own frame, from the top. Each call begins a reading
     /// of its own. A cube is averaged over the texels of an image four times as wide as a face, a picture in another
     /// projection is reprojected; either happens once.
-    /// Errors: no light; too many bytes; what opening the file anew gives.
+    /// Errors: no light; more than `max_bytes`; those of opening the file again.
     Result<std::unique_ptr<RowSource>> rows() const;
     /// The whole of that image, read at the first call and kept for as long as a copy of the environment lives.
     Result<std::shared_ptr<const ImageF>> latlong() const;
@@ -85,7 +85,7 @@ class Environment {
     /// reads the image, as latlong() does; a cube is looked up in its own faces.
     Result<Vec3f> radiance(const Vec3d& direction) const;
 
-    /// What was repaired and what there is to say about the files. The counts of texels are complete once an image has
+    /// What was repaired, and the warnings about the files. The counts of texels are complete once an image has
     /// been read to its last row, and do not grow when it is read again.
     RepairReport report() const;
 

@@ -37,10 +37,10 @@ struct FilterOptions {
     std::vector<LevelSpec> specular;
     int irradiance_size = 0;  ///< face size (cube) or height (lat-long); 0: none
     int sh_bands = 3;         ///< spherical harmonics of the radiance, this many bands; 0: none
-    /// Where to look in the source for the light from a world direction. For an Environment, which brings a
-    /// world_to_source of its own, this one is applied before it: it then turns the world.
+    /// Where to look in the source for the light from a world direction. An Environment has a world_to_source of its
+    /// own; this matrix is applied to world directions first, and then the environment's.
     Mat3 world_to_source;
-    int threads = 0;          ///< 0: all
+    int threads = 0;  ///< 0: all
     Progress progress;
 };
 
@@ -79,20 +79,22 @@ Vec3d map_direction(Layout layout, int width, int height, int x, int y);
 struct FilterResult {
     std::vector<FilteredMap> specular;  ///< one for each LevelSpec
     FilteredMap irradiance_over_pi;     ///< E / pi
-    /// Radiance coefficients a_lm, real orthonormal basis with the Condon-Shortley sign left out, order l^2 + l + m,
-    /// world space (z is +Z): the axis of the basis is +Z as in Ramamoorthi and Hanrahan 2001; docs/conventions.md
-    /// lists the polynomials.
+    /// Radiance coefficients a_lm at index l^2 + l + m, real orthonormal basis without the Condon-Shortley sign, in
+    /// world space. The axis of the basis is +Z as in Ramamoorthi and Hanrahan 2001; docs/conventions.md lists the
+    /// polynomials.
     std::vector<Vec3d> sh;
-    Vec3d mean;                ///< mean radiance over the sphere, of the bilinear reconstruction
-    std::int64_t clamped = 0;  ///< texels whose truncation error was below zero, set to 0
-    int band_limit = 0;        ///< highest degree that was used
+    Vec3d mean;  ///< mean radiance over the sphere, of the bilinear reconstruction
+    /// Texels whose value came out negative because the expansion in harmonics is truncated; they were set to 0.
+    std::int64_t clamped = 0;
+    int band_limit = 0;  ///< highest degree that was used
 };
 
 /// The exact prefilter: every level is the environment convolved with its kernel, to about 1e-4. The source is the
 /// bilinear reconstruction of the texels (u wraps, v clamps in the half rows at the poles). docs/math/prefilter.md.
-/// Errors: what reading the source gives; "cancelled".
+/// Errors: those of reading the source; "cancelled".
 Result<FilterResult> prefilter(const Environment& environment, const FilterOptions& options);
-/// The rows of a lat-long image, in the default convention up to FilterOptions::world_to_source. They are read once.
+/// The same for the rows of a lat-long image, which are read once. The light from world direction d is where the
+/// default convention has the direction FilterOptions::world_to_source * d.
 Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options);
 Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& options);
 

@@ -11,7 +11,7 @@
 
 namespace domelight {
 
-/// Pixels that live elsewhere: interleaved channels, rows top to bottom. T may be const.
+/// A non-owning view of pixels: interleaved channels, rows top to bottom. T may be const.
 template <typename T>
 struct ImageView {
     T* data = nullptr;

@@ -10,9 +10,11 @@ namespace domelight {
 struct RepairReport {
     /// Texels with a NaN channel: set to the mean of their finite neighbours on the row, else 0.
     std::int64_t not_a_number = 0;
-    std::int64_t infinite = 0;     ///< texels with an infinite channel: set to the largest finite value of the format
-    std::int64_t negative = 0;     ///< texels with a negative channel: the channel set to 0
-    double negative_radiance = 0;  ///< the most negative value found
+    /// Texels with a channel that is infinite or, after the exposure, above 2^100: +infinity is set to the largest
+    /// finite value of the format, -infinity to 0, larger values to 2^100.
+    std::int64_t infinite = 0;
+    std::int64_t negative = 0;          ///< texels with a negative channel: the channel set to 0
+    double negative_radiance = 0;       ///< the most negative value found
     std::vector<std::string> warnings;  ///< "PNG is not HDR: values above 1 are clipped", ...
     std::int64_t repaired() const { return not_a_number + infinite + negative; }
 };

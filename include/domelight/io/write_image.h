@@ -24,12 +24,12 @@ Result<void> write_hdr(const std::filesystem::path& file, RowSource& rows, int t
 /// Whether half floats hold every value without clipping: none is beyond 65504 in either direction, nor infinite. This
 /// is the rule by which the channels of an OpenEXR image are chosen where nobody asks for half or float.
 bool fits_half(ImageView<const float> pixels);
-/// The same of a source's rows, from its next one on. Stops at the first row that does not fit.
+/// The same for the remaining rows of a source, which are read in blocks up to the first block that does not fit.
 Result<bool> fits_half(RowSource& rows);
 
 struct ExrWriteOptions {
-    /// Half or float channels. Left out: half where fits_half(), else float; of rows that are written as they are read
-    /// the values are not known before, so these become float.
+    /// Half or float channels. Empty: half if fits_half(pixels), else float. The overload with a RowSource then writes
+    /// float, because it does not know the values in advance.
     std::optional<bool> half = {};
     std::string compression = "zip";  ///< none | rle | zips | zip | piz | pxr24 | b44 | b44a | dwaa | dwab
     /// The envmap attribute: "", "latlong" (the pixels must then be in OpenEXR's own lat-long convention) or "cube"
@@ -46,7 +46,8 @@ Result<void> write_exr(const std::filesystem::path& file, RowSource& rows, const
 
 /// OpenEXR tiled image with levels (MIPMAP_LEVELS, sizes rounded down). `levels`: the finest first, each half as large
 /// as the one before in both directions. The format requires levels down to 1 x 1; those that are missing are made from
-/// the last one by averaging. With envmap "cube" each level is a strip of faces. Errors: other sizes.
+/// the last one by averaging. With envmap "cube" each level is a strip of faces. Errors: no levels; a level that is not
+/// half the size of the one before; a failure to write.
 Result<void> write_exr_levels(const std::filesystem::path& file, std::span<const ImageView<const float>> levels,
                               const ExrWriteOptions& options = {});
 

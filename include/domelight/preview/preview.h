@@ -29,7 +29,7 @@ struct PreviewInput {
     std::vector<PreviewLevel> specular;  ///< sharpest first
     std::vector<PreviewLevel> sheen;     ///< of Charlie's lobe, shown below the others
     const FilteredMap* irradiance_over_pi = nullptr;
-    std::string irradiance_detail;      ///< the second line below it; empty: its size
+    std::string irradiance_detail;      ///< the second line of the label below the irradiance; empty: its size
     std::span<const Vec3d> sh;          ///< radiance coefficients (spherical_harmonics.h)
     ImageView<const float> brdf;        ///< a BRDF table (brdf_table.h)
     int brdf_channels = 2;              ///< how many of its channels are shown, as red, green and blue
@@ -41,8 +41,8 @@ struct PreviewInput {
 };
 
 /// A contact sheet (8-bit sRGB, 3 channels) that a person can judge a bake by at a glance: the environment, each level
-/// (of the sheen too) as a chrome ball and unfolded, irradiance, its spherical-harmonic reconstruction, the BRDF table; tone mapped
-/// (AgX) and labelled.
+/// (of the sheen too) as a chrome ball and unfolded, irradiance, its spherical-harmonic reconstruction, the BRDF table;
+/// tone mapped (AgX) and labelled.
 ///
 /// Balls are seen along -Z with +X to the right and +Y up, so a chrome ball has +Z at its middle and -Z around its rim.
 /// Cubes unfold as a horizontal cross, lat-long levels in the default convention. The same bytes on any number of

@@ -75,9 +75,10 @@ inline UV disc_uv(DiscPoint p) {
     return {0.5 + 0.5 * p.x, 0.5 - 0.5 * p.y};
 }
 
-/// OpenGL's sphere map, which is the picture of a mirror ball by a camera far away on +Z: uv = h.xy with
-/// h = normalize(d + e_z). The centre shows +Z, right +X, up +Y, and the rim all around -Z alone (which is put at its
-/// right end). `d` need not be of unit length. (OpenGL 2.1 specification, 2.11.4; its t runs up.)
+/// OpenGL's sphere map, which is the picture of a mirror ball by a camera far away on +Z. The disc point of a direction
+/// d (of any length but 0) is p = h.xy with h = normalize(d / |d| + e_z). The centre shows +Z, right +X, up +Y. The
+/// whole rim shows -Z; for d = -Z the right end of the rim is returned. (OpenGL 2.1 specification, 2.11.4; its t runs
+/// up.)
 inline UV sphere_map_uv(const Vec3d& d) {
     const Vec3d n = d / length(d), h{n.x, n.y, n.z + 1};
     const double side = std::hypot(n.x, n.y);
@@ -87,7 +88,8 @@ inline UV sphere_map_uv(const Vec3d& d) {
     const double slope = side / (1 - n.z), r = 1 / std::sqrt(1 + slope * slope);
     return disc_uv({r * n.x / side, r * n.y / side});
 }
-/// Inverse of sphere_map_uv: d = 2 h_z h - e_z with h_z = sqrt(1 - |uv|^2); outside the disc -Z. Of unit length.
+/// Inverse of sphere_map_uv, of unit length: d = 2 h_z h - e_z with h = (p, h_z), h_z = sqrt(1 - |p|^2) and p =
+/// disc_point(uv). Outside the disc the direction is -Z.
 inline Vec3d sphere_map_direction(UV uv) {
     const DiscPoint p = disc_point(uv);
     const double hz2 = std::max(0.0, 1 - p.squared()), hz = std::sqrt(hz2);

@@ -113,14 +113,15 @@ struct ProjectionInfo {
     const char* name;
     const char* about;
     const char *centre, *right, *up;  ///< world axes of the default convention
-    /// fov_deg: of a mirror ball, as projection_from_name() has it; the others ignore it.
+    /// fov_deg: of a mirror ball, as in projection_from_name(); the others ignore it.
     std::shared_ptr<const ProjectionShape> (*make_shape)(double fov_deg);
 };
 std::span<const ProjectionInfo> projections();
 
-/// NAME, NAME/CONVENTION or NAME/key=value,...: a name of the table, "equirectangular" or "pbrt" (= latlong,
-/// equal-area-octahedral); a lat-long convention (docs/conventions.md), for a cube "openexr"; keys centre, right, up
-/// (signed axes) and, for mirror-ball, fov (degrees that the ball spans in the photograph, 0 for one from far away).
+/// The projection of the text NAME, NAME/CONVENTION or NAME/key=value,... NAME is a name in projections(), or
+/// "equirectangular" (= latlong) or "pbrt" (= equal-area-octahedral). CONVENTION is a lat-long convention
+/// (docs/conventions.md), for a cube "openexr". Keys are centre, right and up (signed axes) and, for mirror-ball, fov
+/// (degrees that the ball spans in the photograph, 0 for one from far away). Errors: any other text.
 Result<Projection> projection_from_name(const std::string& text);
 
 }  // namespace domelight

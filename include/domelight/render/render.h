@@ -56,7 +56,7 @@ struct EnumNames<LightStrategy> {
 
 class LightMaps;
 
-/// What is seen where there is no surface. It does not light the scene.
+/// What is seen where there is no surface. The choice does not change the lighting.
 enum class Background {
     environment,
     blurred,      ///< the environment, prefiltered for a roughness: RenderOptions::background_maps
@@ -134,16 +134,16 @@ struct RenderResult {
     /// points it is an overestimate.
     ImageF variance;
     ImageF samples;      ///< 1 channel
-    double noise = 0;    ///< standard error of L / (1 + L), mean over the picture (rms)
-    double seconds = 0;  ///< by the clock
+    double noise = 0;    ///< standard error of L / (1 + L), rms over all pixels; a pixel with one sample counts as 0
+    double seconds = 0;  ///< wall-clock time
     std::int64_t rays = 0;
     int sample_count = 0;  ///< the most of any pixel
     /// Samples whose radiance is infinite or not a number. They count as black: their pixels are too dark.
     std::int64_t non_finite_samples = 0;
 };
 
-/// The sampler options that suit the strategy: a bilinear density, with MIS compensation if the BRDF covers what that
-/// leaves out.
+/// The sampler options that suit the strategy: a bilinear density; with MIS compensation for LightStrategy::mis, where
+/// BRDF sampling covers the directions that compensation leaves out.
 EnvironmentSamplerOptions reference_sampler_options(LightStrategy strategy = LightStrategy::mis, int threads = 0);
 
 /// The bits are the same on any number of threads (unless the time limit stops the render). Errors: "cancelled".
@@ -157,11 +157,13 @@ struct ShadowCatcher {
 };
 /// Puts the scene's shadow and the background into a picture that was rendered with Background::transparent and the
 /// same options. Where a camera ray misses the scene and meets the ground, each channel of the background is multiplied
-/// by E with the scene over E without it, where E is the irradiance on the ground from the environment and the scene's
-/// lights. Both are estimated from the same light directions, so ground without shadow is unchanged to the last bit.
-/// The ground reflects no light onto the scene. With a transparent background the opacity becomes 1 - (1 - opacity) (E
-/// with / E without), in luminance, and the radiance is unchanged: a black shadow. Light that is infinite or not a
-/// number is left out, and its samples are added to RenderResult::non_finite_samples. Errors: "cancelled".
+/// by E_with / E_without: the irradiance on the ground from the environment and the scene's lights, with and without
+/// the shadows of the scene. Both are estimated from the same light directions, so ground without shadow is unchanged
+/// to the last bit. The ground reflects no light onto the scene.
+///
+/// With a transparent background the opacity becomes 1 - (1 - opacity) Y(E_with) / Y(E_without), where Y is the
+/// luminance, and the radiance is unchanged: a black shadow. Light that is infinite or not a number is left out, and
+/// its samples are added to RenderResult::non_finite_samples. Errors: "cancelled".
 Result<void> catch_shadow(RenderResult& picture, const RayScene& scene, const EnvironmentSampler& sampler,
                           const ShadowCatcher& catcher, const RenderOptions& options);
 
@@ -171,8 +173,9 @@ std::vector<std::string> not_rendered(const Scene& scene);
 
 /// A camera that looks from `eye` at `target`, +Y up.
 Camera look_at(const Vec3f& eye, const Vec3f& target, float fov_y);
-/// The camera for a picture of another shape, width / height, than it was made for: what it was made to show stays in the
-/// picture, which shows more at the sides, or above and below. A camera without a shape stays as it is.
+/// Adapts a camera to a picture of aspect ratio `aspect` = width / height, > 0. Everything that the camera shows at its
+/// own aspect ratio stays visible; a wider picture shows more at the sides, a narrower one more above and below. A
+/// camera whose `aspect` is 0 is returned unchanged.
 Camera camera_for(Camera camera, float aspect);
 /// The scene's own camera if it has one, else one that looks from the front, a little above, and frames the scene
 /// however it is turned about the vertical axis through its middle.

@@ -154,12 +154,13 @@ struct BasicGgxBrdf {
 };
 using GgxBrdf = BasicGgxBrdf<>;
 
-/// Sheen: f = colour D V with the Charlie distribution (Estevez and Kulla 2017) and Neubelt and Pettineo's visibility,
-/// as in glTF's KHR_materials_sheen. Sampled by half vectors, pdf = D NdotH / (4 VdotH), as in the Khronos tools.
+/// Sheen: f = colour D Vis with the Charlie distribution (Estevez and Kulla 2017) and Neubelt and Pettineo's
+/// visibility, as in glTF's KHR_materials_sheen. Sampled by half vectors, pdf = D NdotH / (4 VdotH), as in the Khronos
+/// tools.
 ///
-/// The weight is 4 V NdotL VdotH / NdotH. At grazing V it grows like 1 / NdotH, and cosine sampling is no worse there.
-/// With small alpha the model itself reflects more than it receives at grazing angles: its albedo reaches 1.34 at alpha
-/// = 0.1, 0.93 at 0.25 and 0.63 at 1.
+/// The weight is 4 Vis NdotL VdotH / NdotH. At grazing view directions it grows like 1 / NdotH, and cosine sampling is
+/// no worse there. With small alpha the model itself reflects more than it receives at grazing angles: its albedo
+/// reaches 1.34 at alpha = 0.1, 0.93 at 0.25 and 0.63 at 1.
 struct CharlieBrdf {
     float alpha = 1;        ///< roughness^2, [0, 1]; raised to k_least_charlie_alpha at least
     Vec3f colour{1, 1, 1};  ///< [0, 1]

@@ -13,11 +13,12 @@
 
 namespace domelight {
 
-/// What a texel is drawn in proportion to.
+/// The weight of a texel: texels are drawn with a probability proportional to it.
 enum class LightWeight {
     radiant_power,  ///< luminance (Rec. 709) times the texel's solid angle (sin theta): the default
-    grayscale,  ///< the courses' textbook form: 0.2989 R + 0.5866 G + 0.1145 B without sin theta, which draws too many
-                ///< samples at the poles
+    /// The grayscale value 0.2989 R + 0.5866 G + 0.1145 B without sin theta, as in simple shaders; it draws too many
+    /// samples at the poles.
+    grayscale,
 };
 template <>
 struct EnumNames<LightWeight> {
@@ -29,8 +30,8 @@ struct EnumNames<LightWeight> {
 };
 
 struct EnvironmentSamplerOptions {
-    /// With `bilinear` the radiance is looked up bilinearly, with every other method as the raw texel. Mixing a density
-    /// of one kind with a lookup of the other would multiply the error beside a sun.
+    /// With `bilinear` and `bilinear_plain` the radiance is interpolated bilinearly; with every other method it is that
+    /// of the texel. Mixing a density of one kind with a lookup of the other would multiply the error beside a sun.
     DistributionMethod method = DistributionMethod::bilinear;
     LightWeight weight = LightWeight::radiant_power;
     /// MIS compensation (Karlik et al. 2019): the mean is subtracted from the density, so that the dim part of the sky
@@ -68,8 +69,9 @@ class EnvironmentSampler {
   public:
     /// Reads an environment and keeps it in memory. Errors: those of reading it; no texels.
     static Result<EnvironmentSampler> build(const Environment& environment, const EnvironmentSamplerOptions& options = {});
-    /// A lat-long image (default convention up to `world_to_source`, 3 channels) in memory, which must outlive the
-    /// sampler. Errors: no texels; a value that is NaN, infinite or negative (names the texel).
+    /// A lat-long image in memory, 3 channels, which must outlive the sampler. The light from world direction d is
+    /// where the default convention has the direction world_to_source * d. Errors: no texels; a value that is NaN,
+    /// infinite or negative (names the texel).
     static Result<EnvironmentSampler> build(ImageView<const float> latlong,
                                             const EnvironmentSamplerOptions& options = {},
                                             const Mat3& world_to_source = {});
@@ -116,15 +118,16 @@ class EnvironmentSampler {
     std::unique_ptr<Distribution2D> distribution_;
 };
 
-/// The tables as textures for a shader that samples by binary search or by the courses' loop. RG float: R is the
-/// cumulative share up to and including the texel (1 for the last), G the density over the unit square. See
+/// The tables as textures for a shader that samples by binary search, or by a loop that adds up weights. RG float: R is
+/// the cumulative share up to and including the texel (1 for the last), G the density over the unit square. See
 /// docs/math/importance.md for the ten lines that read them.
 struct SamplingTextures {
     ImageF rows;     ///< 1 wide, height rows: the marginal
     ImageF columns;  ///< width x height: each row's conditional
-    /// For the loop that adds up the row averages until they reach xi times their sum, then the row's texels, one
-    /// channel, 1 wide, height rows: the average over the row of the weights (luminance times sin theta, as
-    /// EnvironmentSamplerOptions has it). All 0 in an environment without light.
+    /// The average weight of each row (luminance times sin theta, or as EnvironmentSamplerOptions::weight says); one
+    /// channel, 1 x height texels; all 0 in an environment without light. It serves a shader without cumulative tables:
+    /// a loop adds up these averages until the sum reaches xi times their total, then adds up the weights of the row
+    /// found.
     ImageF row_averages;
     double total_average = 0;  ///< the average of the row averages
 };

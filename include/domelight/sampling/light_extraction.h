@@ -3,7 +3,7 @@
 //
 //     auto found = extract_lights(image);
 //     for (const ExtractedLight& light : found->lights) shade(light.direction, light.irradiance);  // with shadows
-//     bake(found->remainder);                                                                      // without them
+//     auto rest = Environment::from_latlong(std::move(found->remainder));  // to bake or to sample without the lights
 //
 // docs/lights.md says how a source is found and what the numbers mean.
 
@@ -20,14 +20,16 @@ namespace domelight {
 struct LightExtractionOptions {
     int max_lights = 8;         ///< the strongest are kept, 0 .. 1024
     double least_share = 0.01;  ///< of the environment's luminance that a light must hold, 0 .. 1
-    /// In every direction from a source, within the largest diameter, the luminance must fall below its peak divided by
-    /// this, and the mean of its surroundings must be below its own mean divided by this; 1.5 .. 1e6.
+    /// The least contrast c of a source, 1.5 .. 1e6: in every direction the luminance must fall to peak / c or less
+    /// within the largest diameter, and the mean luminance around the source must be at most the source's mean
+    /// luminance / c.
     double least_contrast = 4;
-    /// The largest diameter (degrees, above 0 and up to 30) that still counts as small; three texels always do. No
-    /// lights are found in an image whose texels are wider than this.
+    /// The largest diameter of a source that can be a light, in degrees, 0.001 .. 30. A source up to three texels
+    /// across always can. In an image whose texels are wider than the largest diameter, no lights are found.
     double largest_diameter_deg = 6;
-    double merge_deg = 1.5;  ///< sources closer than this (degrees, >= 0) are merged into one light: a sun behind twigs
-    int threads = 0;         ///< 0: all. The results do not depend on it
+    /// Sources closer than this (degrees, 0 .. 30) are merged into one light: a sun behind twigs.
+    double merge_deg = 1.5;
+    int threads = 0;  ///< 0: all. The results do not depend on it
 };
 
 /// Errors: an option out of its range, which the error names.
@@ -71,8 +73,10 @@ struct LightExtraction {
 
 /// Splits an environment into small bright sources and the rest.
 ///
-/// latlong          radiance, 3 channels, rows top to bottom, default convention up to `world_to_source`
-/// world_to_source  as in Environment: the lights' directions are the world's, the remainder stays as the source is
+/// latlong          radiance, 3 channels, rows top to bottom
+/// world_to_source  the light from world direction d is where the default convention has the direction
+///                  world_to_source * d, as in Environment. The lights' directions are in the world; the remainder is
+///                  laid out as `latlong`.
 ///
 /// A constant or a black image has no lights. The bits are the same on any number of threads. Errors: no texels; not 3
 /// channels; a texel that is NaN, infinite or negative (named); an option out of its range.

@@ -30,8 +30,9 @@ inline constexpr std::array<std::uint16_t, k_halton_dimensions> k_primes{
     83,  89,  97,  101, 103, 107, 109, 113, 127, 131, 137, 139, 149, 151, 157, 163, 167, 173, 179, 181, 191, 193,
     197, 199, 211, 223, 227, 229, 233, 239, 241, 251, 257, 263, 269, 271, 277, 281, 283, 293, 307, 311};
 
-/// Coordinate `dimension` (0..63) of point `index` of the Halton sequence: the radical inverse in that prime base, the
-/// digits of the index mirrored about the point (Halton 1960). Rounded to 2^-32.
+/// Coordinate `dimension` (0..63) of point `index` of the Halton sequence: the radical inverse of `index` in base
+/// k_primes[dimension], which is its digits mirrored about the radix point (Halton 1960). Rounded down to a multiple of
+/// 2^-32.
 constexpr std::uint32_t halton(std::uint32_t index, int dimension) {
     const std::uint32_t base = k_primes[dimension];
     if (base == 2) return reverse_bits(index);
@@ -99,8 +100,9 @@ constexpr std::uint32_t pascal_transform(std::uint32_t i) {
     return i;
 }
 
-/// Point `index` of the two-dimensional Sobol sequence, a (0, 2)-sequence in base 2: of any 2^m points from a multiple
-/// of 2^m on, each elementary interval of area 2^-m holds one (Sobol 1967; the second coordinate's matrix is Pascal's).
+/// Point `index` of the two-dimensional Sobol sequence, a (0, 2)-sequence in base 2: among 2^m consecutive points whose
+/// first index is a multiple of 2^m, each elementary interval of area 2^-m contains exactly one (Sobol 1967; the second
+/// coordinate's matrix is Pascal's).
 constexpr UnitPoint sobol(std::uint32_t index) {
     return {reverse_bits(index), reverse_bits(pascal_transform(index))};
 }
@@ -132,9 +134,10 @@ constexpr UnitPoint r2(std::uint32_t index) {
 /// cancel where the eye (or a denoiser) averages. rotate(p, pixel_rotation(x, y)) makes a sequence for each pixel out
 /// of one, and the noise has little power at low frequencies, as with a blue-noise mask, but without a table.
 ///
-/// x is Roberts' dither mask (2018), x / g + y / g^2 mod 1 of the pixel. The slopes of the second mask are the best of
-/// 40000 tried, by how far apart the rotations lie: for pixels d <= 12 apart the distance on the torus is at least 0.35
-/// / d, and in either coordinate alone at least 0.17 / d^2 (random slopes: 0.1 and 0.05).
+/// The first coordinate is Roberts' dither mask (2018), pixel_x / g + pixel_y / g^2 mod 1. The two factors of the
+/// second were the best of 40000 pairs by the least distance between rotations: for pixels d <= 12 apart the distance
+/// on the torus is at least 0.35 / d, and in either coordinate alone at least 0.17 / d^2 (random factors: 0.1 and
+/// 0.05).
 constexpr UnitPoint pixel_rotation(std::uint32_t pixel_x, std::uint32_t pixel_y) {
     constexpr std::uint32_t a = unit_fixed(0.7548776662466927), b = unit_fixed(0.5698402909980532);
     constexpr std::uint32_t c = unit_fixed(0.52152512), d = unit_fixed(0.3089682);

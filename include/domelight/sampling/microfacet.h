@@ -33,7 +33,8 @@ T ggx_smith_root(T cosine, T alpha) {
     return std::sqrt(a2 + (1 - a2) * cosine * cosine);
 }
 
-/// Smith's masking for GGX, in (0, 1]: the share of microfacets facing V that V sees. Walter et al. 2007, eq. 34.
+/// Smith's masking for GGX, in [0, 1], 0 at NdotV = 0: the visible share of the microfacets that face V (NdotV in [0,
+/// 1], alpha > 0). Walter et al. 2007, eq. 34.
 template <typename T>
 T ggx_g1(T NdotV, T alpha) {
     return 2 * NdotV / (NdotV + ggx_smith_root(NdotV, alpha));
@@ -46,8 +47,8 @@ T ggx_visibility(T NdotL, T NdotV, T alpha) {
     return T(0.5) / (NdotV * ggx_smith_root(NdotL, alpha) + NdotL * ggx_smith_root(NdotV, alpha));
 }
 
-/// The same with masking and shadowing independent of each other, G1(l) G1(v): Walter et al. 2007, eq. 23. Always
-/// smaller.
+/// The same with masking and shadowing independent of each other, G1(l) G1(v): Walter et al. 2007, eq. 23. Never
+/// larger.
 template <typename T>
 T ggx_visibility_separable(T NdotL, T NdotV, T alpha) {
     return 1 / ((NdotL + ggx_smith_root(NdotL, alpha)) * (NdotV + ggx_smith_root(NdotV, alpha)));
@@ -63,7 +64,7 @@ T charlie_d(T sin2_H, T alpha) {
     return (2 + 1 / alpha) * std::pow(sin2_H, T(0.5) / alpha) / T(2 * k_pi);
 }
 
-/// Visibility of the sheen lobe, 1 / (4 (NdotL + NdotV - NdotL NdotV)): Neubelt and Pettineo 2013, as glTF has it.
+/// Visibility of the sheen lobe, 1 / (4 (NdotL + NdotV - NdotL NdotV)): Neubelt and Pettineo 2013, as in glTF.
 template <typename T>
 T sheen_visibility(T NdotL, T NdotV) {
     return T(0.25) / (NdotL + NdotV - NdotL * NdotV);
@@ -138,9 +139,9 @@ inline Vec3f ggx_visible_normal_heitz(const Vec3f& V, float alpha, UnitPoint u) 
     return normalize(Vec3f{alpha * n.x, alpha * n.y, std::max(1e-20f, n.z)});
 }
 
-/// The factor k of the lowest z of the cap to sample. In the stretched space, reflections of V by GGX's visible normals
-/// fill {z > -axis.z}; those that leave the surface fill only {z > -k axis.z} (Eto and Tokuyoshi 2023, eq. 5, one alpha
-/// in (0, 1]).
+/// The factor k by which Eto and Tokuyoshi make the cap lower: the cap to sample is {z > -k axis.z}, and k = 1 would be
+/// the full cap. In the stretched space, reflections of V by GGX's visible normals fill {z > -axis.z}; those that leave
+/// the surface fill only {z > -k axis.z} (Eto and Tokuyoshi 2023, eq. 5, one alpha in (0, 1]).
 inline float ggx_cap_bound(const Vec3f& V, float alpha) {
     const float s = 1 + std::sqrt(V.x * V.x + V.y * V.y), a2 = alpha * alpha, s2 = s * s;
     return (1 - a2) * s2 / (s2 + a2 * V.z * V.z);

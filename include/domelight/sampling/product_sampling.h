@@ -16,9 +16,10 @@ namespace domelight {
 ///             candidate
 /// candidates  1..64 points, one for each candidate
 /// choice      the point whose x chooses among the candidates
-/// returns     the candidate kept. 1 / pdf_solid_angle is an unbiased estimate of one over its density (Talbot 2005,
-///             eq. 3.6). Use it like the density of any sampler, but not in MIS weights, which need a density that
-///             depends on the direction alone. It is 0 if no candidate had a target above 0.
+/// returns     the candidate kept. Its pdf_solid_angle is not its true density, but 1 / pdf_solid_angle is an unbiased
+///             estimate of 1 / density (Talbot 2005, eq. 3.6): divide by it as usual, but do not use it in MIS weights,
+///             which need a density that depends on the direction alone. pdf_solid_angle is 0 if no candidate had a
+///             target above 0.
 // clang-format on
 inline LightSample sample_product(const EnvironmentSampler& sampler,
                                   const std::function<float(const LightSample&)>& target,

@@ -1,6 +1,6 @@
 #pragma once
-// The reflection integral under an environment, L_o = ∫ f(V, L) L_i(L) NdotL dL, estimated by every strategy that
-// courses on importance sampling teach.
+// The reflection integral under an environment, L_o = ∫ f(V, L) L_i(L) NdotL dL, estimated by each of the usual
+// strategies for choosing directions.
 
 #include "domelight/base/names.h"
 #include "domelight/sampling/brdf.h"

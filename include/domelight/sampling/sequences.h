@@ -25,9 +25,12 @@ struct EnumNames<Sequence> {
     };
 };
 
-/// Point `index` (< count) of `count` jittered points in random order: one in each cell of a grid of m columns and n
-/// rows, m = floor(sqrt(count)), n = ceil(count / m), the last row not always full; one in each of `count` strata of y,
-/// and, where count = m n, of x. Each point alone is uniform over the keys, for every count from 1 to 2^31.
+/// Point `index` (< count) of `count` jittered points in random order, for every count from 1 to 2^31.
+///
+/// The square is divided into m = floor(sqrt(count)) columns and n = ceil(count / m) rows; each cell holds one point.
+/// If count < m n, the last row is lower than the others and has fewer points than columns. Each of `count` equal
+/// strata of y also holds one point, and so does each of x if count = m n. Over random keys every point is uniformly
+/// distributed.
 ///
 /// Chiu, Shirley and Wang 1994, "Multi-jittered sampling", by hashed permutations as in Kensler 2013. Each row and each
 /// column has a permutation of its own: with Kensler's shared permutations the error of smooth integrands falls like
@@ -44,8 +47,8 @@ inline UnitPoint stratified(std::uint64_t key, std::uint32_t index, std::uint32_
 
 /// Point `index` of a sequence, in the pair of dimensions `pair` (0: the first two): a pure function of its arguments.
 ///
-/// seed    another seed is another randomisation of the same sequence. Seed 0 leaves it out where a sequence has a
-///         textbook form: hammersley, halton, r2 (pair 0) and sobol (pair 0) are then the plain points
+/// seed    selects the randomisation. With seed 0, hammersley, halton, r2 (pair 0) and sobol (pair 0) are not
+///         randomised; for random and stratified, 0 is a seed like any other
 /// index   any; stratified and hammersley are sets, so that from `count` on they start anew with another randomisation
 /// count   how many points will be drawn, 1..2^31; only stratified and hammersley look at it
 /// pair    any; pairs are independent of each other. halton and hammersley run out of prime bases at pair 32 and are
@@ -100,7 +103,7 @@ inline UnitPoint unit_point(Sequence sequence, std::uint64_t seed, std::uint32_t
 /// The points of a Monte Carlo sum: `count` of one sequence.
 struct PointSet {
     Sequence sequence = Sequence::hammersley;
-    std::uint64_t seed = 0;  ///< as unit_point() has it; 0: the plain points where a sequence has a textbook form
+    std::uint64_t seed = 0;  ///< as in unit_point()
     int count = 1024;        ///< 1 or more
     /// Point i, 0 <= i < count.
     UnitPoint operator[](int i) const { return unit_point(sequence, seed, std::uint32_t(i), std::uint32_t(count)); }

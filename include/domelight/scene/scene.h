@@ -47,8 +47,9 @@ struct SceneTexture {
 inline float f0_of_reflectance(float reflectance) {
     return 0.16f * reflectance * reflectance;
 }
-/// The same reflectance as the index of refraction that has this F0 = ((ior - 1) / (ior + 1))^2: 0.5 is 1.5, glTF's
-/// default. A glTF material without KHR_materials_ior may state it as extras.reflectance.
+/// The index of refraction whose F0 = ((ior - 1) / (ior + 1))^2 is f0_of_reflectance(reflectance): a reflectance of 0.5
+/// gives 1.5, glTF's default. A glTF material without KHR_materials_ior may state its reflectance as
+/// extras.reflectance.
 inline float ior_of_reflectance(float reflectance) {
     return (1 + 0.4f * reflectance) / (1 - 0.4f * reflectance);
 }
@@ -61,8 +62,9 @@ struct Material {
     std::string name;
     bool unlit = false;    ///< KHR_materials_unlit: the base colour, and nothing else
     bool lambert = false;  ///< extras.lambert: a pure Lambert surface of the base colour, without specular reflection
-    bool phong =
-        false;  ///< a modified Phong surface: base colour diffuse (1 - metalness), specular f0, exponent from roughness
+    /// A modified Phong surface: diffuse albedo = base colour (1 - metalness), specular albedo = F0, exponent derived
+    /// from the roughness.
+    bool phong = false;
     /// extras.separableMasking: Smith's masking as G1(l) G1(v) instead of the height-correlated G2, for comparison with
     /// older renderers.
     bool separable_masking = false;
@@ -170,15 +172,15 @@ struct Scene {
 /// How a scene is read. A scene beyond one of the limits is refused with an error that states the limit, before the
 /// memory is allocated; no part of it is returned.
 struct SceneOptions {
-    /// Bytes, >= 0, that the file and what it is decoded to may need together: buffers, meshes, images, and each
-    /// instance with what the renderer makes of it. The file itself may not be larger either.
+    /// The largest number of bytes, >= 0, for the file and everything decoded from it: buffers, meshes, images, and
+    /// each instance with what the renderer makes of it.
     std::int64_t max_bytes = std::int64_t(4) << 30;
-    /// glTF: times, >= 0, that primitives of meshes may stand in the scene, nodes and EXT_mesh_gpu_instancing together.
-    /// A primitive that stands in exactly the same place again is left out with a warning and does not count.
+    /// glTF: the largest number of instances of mesh primitives, >= 0, counted over nodes and EXT_mesh_gpu_instancing.
+    /// A second instance of a primitive with exactly the same transform is left out with a warning and does not count.
     std::int64_t max_instances = std::int64_t(1) << 20;
-    /// KHR_lights_punctual has lux and candela: intensities are divided by this, unless the file says what one unit of
-    /// its environment's irradiance is in lux (extras.lux_per_unit of the light or of the asset, as `domelight lights`
-    /// writes it).
+    /// The illuminance in lux that an irradiance of 1 in the environment's unit stands for, > 0. Intensities in
+    /// KHR_lights_punctual are in lux and candela and are divided by it, unless the file states a value of its own
+    /// (extras.lux_per_unit of the light or of the asset, as `domelight lights` writes it).
     float lux_per_unit = 683;
     int threads = 0;  ///< for decoding textures; 0: all
 };
@@ -186,14 +188,15 @@ struct SceneOptions {
 /// Reads glTF 2.0 (.gltf, .glb), .obj or .ply. Errors name the file and what is wrong in it: broken JSON, missing
 /// buffers and textures, paths out of the file's folder, cyclic nodes, indices and accessors out of range, extensions
 /// that are required and unknown, JSON nested more than 256 deep, no triangles, more memory than
-/// SceneOptions::max_bytes or more instances than SceneOptions::max_instances. Repaired with a warning: NaN vertices and
-/// degenerate triangles (left out), normals of length 0 (recomputed).
+/// SceneOptions::max_bytes or more instances than SceneOptions::max_instances. Repaired with a warning: NaN vertices
+/// and degenerate triangles (left out), normals of length 0 (recomputed).
 Result<Scene> load_scene(const std::filesystem::path& file, const SceneOptions& options = {});
 
 /// Lights that were taken out of an environment: what `domelight lights` writes as lights.gltf.
 struct EnvironmentLights {
-    std::vector<PunctualLight> lights;  ///< in the environment's unit, in the world that it had when they were taken out
-    double rotate_y_deg = 0;            ///< how far the environment was turned about +Y then
+    /// In the environment's unit. Directions are in the world as it was when the lights were extracted.
+    std::vector<PunctualLight> lights;
+    double rotate_y_deg = 0;  ///< by how many degrees the environment was turned about +Y then
     std::vector<std::string> warnings;
 };
 /// Reads the lights of a glTF 2.0 file, with or without triangles. Errors: as load_scene, and a file that is not glTF.

@@ -11,7 +11,7 @@
 
 namespace domelight {
 
-/// How much work a study is.
+/// The size and quality of a study.
 struct RenderStudyOptions {
     int size = 88;     ///< pixels of one small picture, square
     int samples = 16;  ///< of each pixel where strategies are compared; all other counts follow from it
@@ -58,7 +58,7 @@ struct StrategyFigure {
     const StrategyCell& at(bool occlusion, double roughness, int light, LightStrategy strategy) const;
 };
 
-/// One line of the second.
+/// One line of the second figure: the error of a strategy by the number of samples.
 struct NoiseLine {
     bool occlusion = false;
     LightStrategy strategy = LightStrategy::mis;
@@ -76,14 +76,14 @@ struct NoiseFigure {
     std::vector<NoiseLine> lines;
 };
 
-/// The third: errors of split-sum shading by roughness and view angle.
+/// The third figure: errors of split-sum shading by roughness and view angle.
 struct SplitSumFigure {
     std::vector<double> roughness;
     int bins = 10;  ///< of NdotV, equal ones
     int samples = 0, views = 0;
     struct Part {
         bool occlusion = false;        ///< of the reference; split-sum never has any
-        ImageF error;                  ///< bins x roughness: RMSE of L / (1 + L); NaN where no pixel is
+        ImageF error;                  ///< bins x roughness: RMSE of L / (1 + L); NaN for a bin without pixels
         ImageF difference;             ///< mean of split-sum's L / (1 + L) minus the reference's
         double noise = 0;              ///< of the reference: standard error of L / (1 + L), rms
         double rmse = 0;               ///< over all of it
@@ -93,7 +93,7 @@ struct SplitSumFigure {
     std::vector<ImageF> pictures;  ///< of split-sum
 };
 
-/// Each reports its own progress from 0 to 1. Errors: "cancelled", what rendering gives.
+/// Each function reports its progress from 0 to 1. Errors: "cancelled"; those of rendering.
 Result<StrategyFigure> study_light_strategies(const StudyScene& scene, StudyLight environment,
                                               const RenderStudyOptions& options);
 Result<NoiseFigure> study_noise(const StudyScene& scene, const StudyLight& environment,

@@ -22,7 +22,7 @@ struct StrategyStudyOptions {
     int samples = 4096;     ///< the most that a strategy gets, at least 1
     Sequence sequence = Sequence::random;
     std::uint64_t seed = 1;  ///< of the first run
-    /// Names out of studied_strategies(); empty: all. "environment" always runs.
+    /// Names from studied_strategies(); empty: all. "environment" always runs.
     std::vector<std::string> strategies = {};
     int threads = 0;  ///< 0: all
     Progress progress = {};
@@ -43,8 +43,10 @@ struct StrategyResult {
     /// Variance of one sample over the squared luminance, as an integral (see study_strategies()). Only for strategies
     /// of one density on random points.
     std::optional<double> variance;
+    /// The RMS error that follows from `variance`; `error` where that is not known.
     double expected_error() const { return variance ? std::sqrt(*variance / estimate.samples) : error; }
-    /// Whether the runs met so little of the light that their measured error is far too small.
+    /// Whether the measured error is too small, below 2/3 of expected_error(), because the runs seldom hit the bright
+    /// light.
     bool missed() const { return expected_error() > 1.5 * error; }
     double efficiency = 0;       ///< 1 / (variance x CPU time), that of environment sampling being 1; may be infinite
     double for_one_percent = 0;  ///< samples until the error is 1 %; infinite where more samples do not help
@@ -55,24 +57,24 @@ struct StrategyStudy {
     Vec3d reference_error;  ///< standard error of the reference; 0: exact
     std::string reference_method;
     int samples = 0;
-    int runs = 0;        ///< with so many samples; up to four times as many with fewer samples
+    int runs = 0;        ///< number of runs with `samples` samples; up to four times as many at smaller sample counts
     int candidates = 8;  ///< of Strategy::product, for each direction kept
     std::vector<StrategyResult> strategies;
 
     const StrategyResult* find(const std::string& name) const;  ///< null where it was not studied
     /// Efficiency of `name` over that of `than`; NaN where one of the two was not studied.
     double efficiency_ratio(const std::string& name, const std::string& than) const;
-    /// How many directions drawn from the environment one direction kept by Strategy::product is worth, where the
-    /// shadow ray is the whole cost; 0: unknown.
+    /// The number of samples of Strategy::environment that have the same error as one sample kept by Strategy::product:
+    /// the gain if shadow rays are the only cost. 0: unknown.
     double product_gain_per_ray() const;
 };
 
 /// Runs every strategy many times over at growing N. Errors: options out of range; "cancelled"; no light to
 /// reflect; those of building a sampler.
 ///
-/// A strategy that seldom meets the sun looks better than it is in any few runs. So for those of one density p, on
-/// random points, the variance is computed and not measured: int (f L cos)^2 / p dL - (int f L cos dL)^2, the first by
-/// multiple importance sampling.
+/// A few runs underestimate the error of a strategy that seldom samples the sun. For strategies with a single density p
+/// on random points the variance is therefore computed and not measured: int (f L_i cos)^2 / p dw - (int f L_i cos
+/// dw)^2 over the solid angle w, the first integral by multiple importance sampling.
 Result<StrategyStudy> study_strategies(const EnvironmentSampler& sampler, const StrategyStudyOptions& options = {});
 
 }  // namespace domelight

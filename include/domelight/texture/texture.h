@@ -59,9 +59,9 @@ int encoding_bytes(Encoding encoding);     ///< of a block
 int encoding_channels(Encoding encoding);  ///< that carry data: 3, 2 (red and green) or 1
 double encoding_max(Encoding encoding);    ///< largest value a channel can hold
 
-/// How thoroughly the encodings that search for the best block (bc6h, astc) search; the others ignore it. fast: a few
-/// candidates. standard: nearly the best quality. high: some tenths of a decibel more. exhaustive: every mode and
-/// partition, for comparison.
+/// The effort of the encodings that search for the best block (bc6h, uastc_hdr, astc4x4_hdr, astc6x6_hdr); the others
+/// ignore it. fast: a few candidates. standard: nearly the best quality. high: some tenths of a decibel more.
+/// exhaustive: every mode and partition, for comparison.
 enum class EncodingQuality { fast, standard, high, exhaustive };
 template <>
 struct EnumNames<EncodingQuality> {
@@ -77,11 +77,12 @@ struct EnumNames<EncodingQuality> {
 /// The errors of an encoded level.
 struct EncodingReport {
     std::int64_t clipped_texels = 0;
-    /// Radiant power lost by clipping over the level's power, 0..1, solid-angle weighted luminance.
+    /// The share of the level's power that clipping lost, 0..1: luminance weighted by solid angle.
     double clipped_energy = 0;
     double rms_error = 0;  ///< relative RMS error of the stored values against the float ones, clipped texels left out
-    /// dB: the error of log2(v + 1e-4 of the level's mean luminance), channel by channel, against the range of this
-    /// logarithm over the level; clipped texels left out. Infinite if nothing was lost.
+    /// PSNR in dB of x = log2(v + 1e-4 m) over all channels, weighted by solid angle, where m is the level's mean
+    /// luminance and the peak is the range max(x) - min(x) over the level (values below 0 count as 0); clipped texels
+    /// left out. Infinite if nothing was lost.
     double log_psnr = std::numeric_limits<double>::infinity();
 };
 
@@ -119,7 +120,7 @@ Texture encode_table(ImageView<const float> table, Encoding encoding);
 /// Float texels of one face of a level, in as many channels as the encoding has.
 ImageF decode_texture(const Texture& texture, int level, int face);
 
-/// All levels of a cube of colours. Errors: not six faces; two channels.
+/// All levels of an RGB cube. Errors: not six faces; fewer than three channels.
 Result<std::vector<Cubemap>> decode_cubes(const Texture& texture);
 
 enum class Supercompression { none, zstd };
@@ -143,7 +144,8 @@ struct TextureInfo {
     bool eight_bits = false;  ///< 8 bits a channel: a picture for a screen, or RGBM and similar
 };
 Result<TextureInfo> read_texture_info(const std::filesystem::path& file);
-/// Reads a texture in one of our encodings, or in half or float RGB or R (the missing channels are added). Every size
+/// Reads a texture in one of our encodings, or in half or float RGB or R (a missing green is
+/// set to 0, a missing alpha to 1). Every size
 /// and offset is checked against the file before memory is allocated; a texture that needs more than 2 GiB is refused.
 Result<Texture> read_texture(const std::filesystem::path& file);
 

@@ -10,7 +10,7 @@ namespace domelight {
 enum class BrdfG {
     correlated,  ///< height-correlated Smith (Heitz 2014, eq. 99): the default
     smith,       ///< separable Smith
-    karis,       ///< the courses' Schlick form with k = alpha / 2 (Karis 2013)
+    karis,       ///< Schlick's form of Smith's masking with k = alpha / 2 (Karis 2013)
 };
 template <>
 struct EnumNames<BrdfG> {
@@ -39,11 +39,11 @@ struct BrdfTableOptions {
 ImageF brdf_table(const BrdfTableOptions& options = {});
 
 /// The multiple-scattering form that Filament reads: (∫ D Vis Fc NdotL dl, ∫ D Vis NdotL dl) = (bias, scale + bias).
-/// The third channel is the same.
+/// The third channel (sheen) is copied unchanged.
 ImageF brdf_table_multiscatter(ImageView<const float> table);
 
-/// The courses' integrateBRDF for split-sum, for comparison: GGX half vectors (Karis 2013) from the same points for each
-/// texel.
+/// The same table by Karis' IntegrateBRDF (2013), for comparison: a mean over GGX half vectors, drawn by the same
+/// points for every texel.
 ImageF brdf_table_montecarlo(const BrdfTableOptions& options, const PointSet& points);
 
 /// The default table (128^2, correlated), computed when the library was built.

@@ -9,8 +9,9 @@
 
 namespace domelight {
 
-/// Real orthonormal spherical harmonics Y_lm of a unit direction in world space for l < bands, order l^2 + l + m, polar
-/// axis +Z, no Condon-Shortley sign: Y_1 = sqrt(3 / 4 pi) (y, z, x), as in Ramamoorthi and Hanrahan 2001 (eqs. 3).
+/// Real orthonormal spherical harmonics Y_lm of a unit direction in world space for l < bands, at index l^2 + l + m,
+/// polar axis +Z, no Condon-Shortley sign: Y_1 = sqrt(3 / 4 pi) (y, z, x), as in Ramamoorthi and Hanrahan 2001 (eqs.
+/// 3).
 void sh_basis(const Vec3d& direction, int bands, std::span<double> out);
 
 /// Against the ringing of few bands: see sh_window().

@@ -29,8 +29,8 @@ inline bool is_phong(Lobe lobe) {
     return lobe == Lobe::phong_brdf || lobe == Lobe::phong_plain;
 }
 
-/// A lobe with its width: a density over directions (per steradian) of c = cos of the angle to the lobe's axis,
-/// normalised to 1 over the sphere. docs/math/prefilter.md derives each one.
+/// A lobe with its width: a density per steradian that depends only on c, the cosine of the angle to the lobe's axis,
+/// and integrates to 1 over the sphere. docs/math/prefilter.md derives each one.
 struct ZonalKernel {
     Lobe lobe = Lobe::ggx;
     double width = 1;  ///< ggx and charlie: alpha = roughness^2, in (0, 1]; phong: the exponent n >= 0
@@ -48,8 +48,8 @@ struct ZonalKernel {
     /// 1e-9.
     std::vector<double> coefficients(int band_limit) const;
 
-    /// The kernel's characteristic width as an angle (radians): b = 2 alpha / sqrt(1 - alpha^2) for ggx, and the
-    /// corresponding angle for the other lobes.
+    /// The kernel's characteristic width as an angle in radians, at most pi. ggx: 2 alpha / sqrt(1 - alpha^2); charlie:
+    /// 1 / (p + 1) with p = 1 / (2 alpha); phong: sqrt(8 / p) with p the power of the cosine.
     double angular_width() const;
 };
 

@@ -21,13 +21,13 @@ class AreaResampler {
     virtual ImageF finish() = 0;
 };
 
-/// To a cube of `size`^2 faces. `world_to_source` as in Environment: any orthogonal matrix. Where the source's polar
-/// axis is an axis of the cube (whatever the rotation about it and the mirroring), only a short window of rows is kept
-/// in memory. Any other orientation needs the whole source in memory and takes about 300 times as long.
+/// To a cube whose faces have size x size texels. `world_to_source` as in Environment: any orthogonal matrix. Where the
+/// source's polar axis is an axis of the cube (whatever the rotation about it and the mirroring), only a short window
+/// of rows is kept in memory. Any other orientation needs the whole source in memory and takes about 300 times as long.
 std::unique_ptr<AreaResampler> area_resample_to_cube(int width, int height, int size, const Mat3& world_to_source,
                                                      int threads);
-/// To a lat-long image 2 out_height x out_height. Likewise fast where both images have the same polar axis, either way
-/// up.
+/// To a lat-long image of 2 out_height x out_height texels. This is fast if both images have the same polar axis, in
+/// the same or in opposite directions.
 std::unique_ptr<AreaResampler> area_resample_to_latlong(int width, int height, int out_height,
                                                         const Mat3& world_to_source, int threads);
 /// From a cube, reconstructed bilinearly across its edges, to another size and orientation. The mean is kept. If the

@@ -24,12 +24,12 @@ Vec3d radiant_power(const ProjectedImage& image, int threads = 0);
 
 /// The same light in another projection, in charts of width x height texels.
 ///
-/// The reprojection is conservative. Within each source texel the radiance is a limited parabola in each direction
-/// whose mean is that texel's value, and every target texel is the mean over its own solid angle, by exact overlap of
-/// the texels' outlines in the source picture (docs/convert.md). So power is kept, a constant stays constant, no
-/// negative value appears, and reducing does not alias. Texels that lie across a seam, a pole or a disc's rim are
-/// supersampled. Directions that a partial projection leaves out are black; the cone hidden behind a mirror ball
-/// repeats the rim. The bytes are the same on any number of threads.
+/// The reprojection is conservative. Within each source texel the radiance is modelled as a slope-limited parabola
+/// along each axis whose mean is the texel's value, and every target texel is the mean over its own solid angle, by
+/// exact overlap of the texels' outlines in the source picture (docs/convert.md). So power is kept, a constant stays
+/// constant, no negative value appears, and reducing does not alias. Texels that lie across a seam, a pole or a disc's
+/// rim are supersampled. Directions that a partial projection leaves out are black; the cone hidden behind a mirror
+/// ball repeats the rim. The bytes are the same on any number of threads.
 ProjectedImage reproject(const ProjectedImage& source, const Projection& target, int width, int height, int threads = 0,
                          const Progress& progress = {});
 

@@ -23,9 +23,10 @@ struct Conversion {
                          ///< (reproject.h)
 };
 
-/// An environment in another projection, whatever it came in. Lat-long rows to a cube or to another lat-long map about
-/// the same axis are never in memory together; where texels only change places they keep their bits; all else is done
-/// by reproject().
+/// Converts an environment of any projection to the projection `target`. From lat-long rows to a cube, or to a lat-long
+/// map about the same axis, the rows are streamed (unless `sharp`): the source is never in memory as a whole. If texels
+/// only change places, their values are copied. Everything else is done by reproject().
+/// Errors: those of reading the environment; "cancelled", which can happen only while rows are streamed.
 Result<Conversion> convert(const Environment& environment, const Projection& target, const ConvertOptions& options);
 
 /// The height of the target's charts at which its finest texels are as fine as the source's.

@@ -19,15 +19,16 @@ struct EnvironmentOptions {
     /// (the equal-area octahedral square). Empty: the convention that the file states, otherwise default.
     std::string latlong = "";
     Decode decode = Decode::automatic;  ///< of PNG, JPEG, and DDS of eight bits a channel
-    double rotate_y_deg = 0;  ///< turns the light about +Y: +X moves towards +Z
-    std::string up = "+Y";    ///< the world axis (of the file's author) that the image's top shows: +Y, +Z, ...
-    double exposure = 0;      ///< stops: radiance is multiplied by 2^exposure
+    double rotate_y_deg = 0;            ///< turns the light about +Y: +X moves towards +Z
+    /// The axis, in the coordinate system of the file's author, at the top of the image: +Y, +Z, ...
+    std::string up = "+Y";
+    double exposure = 0;                             ///< stops: radiance is multiplied by 2^exposure
     std::int64_t max_bytes = std::int64_t(1) << 30;  ///< images whose decoding would need more memory are refused
     int threads = 0;                                 ///< for decoding; 0: all
 };
 
-/// Opens an environment. `files` is one image, the six faces of a cube in any order (recognised by name), or the
-/// front and the back of a dual paraboloid.
+/// Opens an environment. `files` is one image or cube texture (KTX2, KTX, DDS, .env), the six faces of a cube in any
+/// order (recognised by name), or the front and the back of a dual paraboloid.
 /// Errors: no such file, unknown or broken format, wrong shape, over `max_bytes`; each names the file.
 Result<Environment> open_environment(const std::vector<std::filesystem::path>& files,
                                      const EnvironmentOptions& options = {});

@@ -9,14 +9,14 @@
 
 namespace domelight {
 
-/// Writes a file by way of a temporary neighbour that replaces it once `write` has succeeded and every byte was
-/// accepted and the file closed; removed otherwise (also on SIGINT and SIGTERM in a program that calls
-/// remove_temporaries_on_signals). `write` gets the temporary path. Links are followed and stay links, also one that
-/// leads to a file which does not exist yet: that file is created. A device or pipe is written to directly, and so is a
-/// file that is itself a temporary one of a bake. Not flushed to the disk itself: that would take longer than a bake,
-/// and only a power cut in the following seconds could tell.
-/// Errors: a folder, links that lead in a circle, no folder to create the file in, what `write` returns; each names
-/// `file`.
+/// Writes a temporary file in the same folder and renames it to `file` once it has been written and closed without an
+/// error. On any error the temporary file is removed, also on SIGINT and SIGTERM in a program that calls
+/// remove_temporaries_on_signals(). `write` gets the path of the temporary file. Links are followed and stay links;
+/// where one leads to a file that does not exist yet, that file is created. A device or a pipe is written to directly,
+/// and so is a temporary file of a bake. The data is not flushed to the disk (no fsync), because that would take longer
+/// than a bake: a power cut within the next few seconds can lose the file.
+/// Errors: `file` is a folder; links that lead in a circle; no folder to create the file in; those of `write`. Each
+/// names `file`.
 Result<void> write_file_atomically(const std::filesystem::path& file,
                                    const std::function<Result<void>(const std::filesystem::path&)>& write);
 Result<void> write_file_atomically(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);

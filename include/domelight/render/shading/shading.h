@@ -14,8 +14,9 @@ namespace domelight {
 /// The maps of a bake. Lookups take world directions.
 class LightMaps {
   public:
-    /// Reads a bake for the generic engine (`domelight bake -o DIR`) with either lobe: specular.ktx2, irradiance.ktx2,
-    /// sh.json, brdf.ktx2, roughness or exponent by level from manifest.json. Errors name the file.
+    /// Reads a bake for the generic engine (`domelight bake -o DIR`) with the lobe ggx or one of Phong's:
+    /// specular.ktx2, irradiance.ktx2, sh.json and brdf.ktx2, and the roughness or exponent of each level from
+    /// manifest.json. Errors name the file.
     static Result<LightMaps> load(const std::filesystem::path& folder);
     /// Bakes the maps of the generic engine in memory. lobe: ggx, or phong_brdf with its default exponents.
     static Result<LightMaps> bake(ImageView<const float> latlong, const Mat3& world_to_source, int threads = 0,
@@ -84,13 +85,16 @@ struct EnumNames<MapLookup> {
     };
 };
 
-/// What a metallic-roughness surface leaves for its diffuse layer, for each channel; the layer's albedo already holds
-/// the factor 1 - metalness. F0 is the mix of 0.04 (or of what the index of refraction says) and the base colour.
+/// The factor, for each channel, by which the diffuse layer of a metallic-roughness surface is multiplied; the layer's
+/// albedo already holds the factor 1 - metalness. F0 is the mix of 0.04 (or of the F0 of the index of refraction) and
+/// the base colour.
 enum class DiffuseWeight {
-    energy,   ///< 1 - (F0 scale + F90 bias), less the multiple scattering where that is on: what the specular layer does
-              ///< not reflect, so that a white surface reflects an even light as it is
-    fresnel,  ///< 1 - F(NdotV), as most courses write it; a white plastic in an even light of 1 then shows 0.28 where it
-              ///< is rough and seen at a slant (roughness 1, NdotV = 0.05)
+    /// 1 - (F0 scale + F90 bias), minus the multiple scattering if that is on: the energy that the specular layer does
+    /// not reflect. A white surface then reflects uniform light unchanged.
+    energy,
+    /// 1 - F(NdotV), the simpler form of many shaders. A white plastic under uniform light of radiance 1 then reflects
+    /// only 0.28 at roughness 1 and NdotV = 0.05.
+    fresnel,
 };
 template <>
 struct EnumNames<DiffuseWeight> {

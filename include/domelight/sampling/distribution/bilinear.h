@@ -12,8 +12,8 @@ namespace domelight {
 /// Cumulative tables, shapes and guides of `count` piecewise-linear densities of `items` segments each, in quanta of 1
 /// / (2^32 - 1).
 ///
-/// A segment has a whole number of quanta, at least one unless the density is zero at both ends, and a shape r: the
-/// density changes linearly from 2 r to 2 (1 - r) times its average.
+/// A segment has a whole number of quanta, at least one unless the density is zero at both ends, and a shape r: along
+/// the segment the density changes linearly from 2 r to 2 (1 - r) times the segment's average.
 struct BilinearRows {
     static constexpr std::uint32_t k_total = 0xffffffffu;
     int count = 0, items = 0;

@@ -82,10 +82,12 @@ class Distribution2D {
     virtual std::size_t memory_bytes() const = 0;
 };
 
-/// Sampling methods. Densities are proportional to the weights in each texel, except with `bilinear`.
+/// Sampling methods. The density is constant in each texel and proportional to its weight, except with `bilinear` and
+/// `bilinear_plain`.
 enum class DistributionMethod {
     linear,         ///< plain: linear search of cumulative sums in double
-    walk,           ///< plain: the loop of a shader, which adds weights until the sum reaches u
+    walk,           ///< plain: the loop of a shader, which subtracts weights from xi times their sum until one is
+                    ///< larger than the rest
     binary,         ///< binary search of float cumulative sums
     guided,         ///< guide tables into fixed-point cumulative sums; constant time, monotone
     alias,          ///< alias tables; fastest on random points, but separates neighbouring points

@@ -10,11 +10,11 @@ namespace domelight {
 
 /// Cumulative tables of `count` discrete distributions over `items` items each, in quanta of 2^-32, with guide tables.
 ///
-/// Item i of a distribution owns q_i of the 2^32 quanta: none if its weight is zero, otherwise at least one, and 2^32
-/// in all. The item drawn for xi is the one that owns quantum xi. The guide table (Chen and Asau 1974; the "indexed
-/// search" or cutpoint method of Devroye 1986, III.2.4) has about as many cells as items. Cell k holds the first item
-/// that owns a quantum of number k 2^32 / cells or more. The search for any xi in the cell starts there and takes two
-/// or three steps on average, whatever the weights.
+/// Item i of a distribution owns q_i of the 2^32 quanta: q_i = 0 if its weight is zero, otherwise q_i >= 1, and the sum
+/// of all q_i is 2^32. The item drawn for xi is the one that owns quantum xi. The guide table (Chen and Asau 1974; the
+/// "indexed search" or cutpoint method of Devroye 1986, III.2.4) has about as many cells as items. Cell k stores the
+/// item that owns quantum number k 2^32 / cells, the first quantum of the cell. The search for any xi in the cell
+/// starts there and takes two or three steps on average, whatever the weights.
 struct GuidedRows {
     int count = 0, items = 0;
     int shift = 0;  ///< cell of xi: xi >> shift

@@ -1,5 +1,5 @@
 #pragma once
-// The textbook's way to sample a piecewise-constant density, in double. The fast methods are tested against it.
+// Sampling of a piecewise-constant density in its simplest form, in double. The fast methods are tested against it.
 
 #include "domelight/sampling/distribution/distribution.h"
 
