@@ -9,9 +9,9 @@
 #include "domelight/compare/picture_reader.h"
 #include "domelight/texture/texture.h"
 
+#include "base/instruction_set.h"
 #include "texture/block/bc6h_encode.h"
 #include "texture/block/bc6h_encode_simd.h"
-#include "base/instruction_set.h"
 
 #include <fmt/core.h>
 

@@ -8,14 +8,14 @@
 // Without a file: the 4k environment under DOMELIGHT_DATA, else the built-in sky. CPU time of this thread, medians of
 // interleaved rounds.
 
+#include "domelight/environment/sky/sky.h"
 #include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"
-#include "domelight/sampling/distribution/distribution.h"
 #include "domelight/projection/projection.h"
-#include "domelight/environment/sky/sky.h"
+#include "domelight/sampling/distribution/distribution.h"
 
-#include "measure.h"
 #include "base/instruction_set.h"
+#include "measure.h"
 
 #include <fmt/core.h>
 #include <time.h>

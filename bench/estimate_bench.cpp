@@ -7,12 +7,12 @@
 // per sample and variance are measured in the same run, with independent random points; "Sobol" is the time with
 // Owen-scrambled Sobol points, by the number of them at which the error over 16 randomisations falls below 1 %.
 
+#include "domelight/environment/sky/sky.h"
+#include "domelight/image/colour.h"
 #include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"
-#include "domelight/image/colour.h"
 #include "domelight/projection/projection.h"
 #include "domelight/sampling/reflection_estimate.h"
-#include "domelight/environment/sky/sky.h"
 
 #include "measure.h"
 

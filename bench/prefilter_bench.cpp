@@ -1,8 +1,8 @@
 // The exact filter's time from float rows in memory to float maps, with level 0 and irradiance: 4096 x 2048 to 1024^2
 // and 11 levels, and smaller jobs. CPU time of the whole process. In the rows "/AVX2" the kernels use at most AVX2.
 
-#include "domelight/filtering/prefilter.h"
 #include "domelight/environment/sky/sky.h"
+#include "domelight/filtering/prefilter.h"
 
 #include "base/instruction_set.h"
 

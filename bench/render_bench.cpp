@@ -13,13 +13,13 @@
 //   sphere under the built-in sky. The view is the one of all comparisons: eye (0, 0.8, 4.2), target the origin, 35
 //   degrees.
 
+#include "domelight/base/random.h"
+#include "domelight/compare/metrics.h"
+#include "domelight/environment/sky/sky.h"
 #include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"
-#include "domelight/compare/metrics.h"
-#include "domelight/base/random.h"
 #include "domelight/render/render.h"
 #include "domelight/sampling/sequences.h"
-#include "domelight/environment/sky/sky.h"
 
 #include "io/exr/exr_layers.h"
 #include "io/file/file_reader.h"

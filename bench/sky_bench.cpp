@@ -1,7 +1,7 @@
 // The sky: milliseconds to set it up, texels a second, and its photometric figures; and the milliseconds of the contact
 // sheet.
-#include "domelight/preview/preview.h"
 #include "domelight/environment/sky/sky.h"
+#include "domelight/preview/preview.h"
 
 #include "environment/sky/sky_model.h"
 

@@ -1,7 +1,7 @@
 // The encoder of UASTC HDR on each instruction set, and its decoder, with the error beside the time.
-#include "texture/texel/half.h"
-#include "texture/block/uastc_hdr.h"
 #include "base/instruction_set.h"
+#include "texture/block/uastc_hdr.h"
+#include "texture/texel/half.h"
 
 #include <benchmark/benchmark.h>
 

@@ -2,8 +2,8 @@
 // The error of a filtered map against the truth, which the tests check and `accuracy_bench` prints.
 
 #include "domelight/filtering/prefilter.h"
-#include "domelight/projection/projection.h"
 #include "domelight/filtering/reference.h"
+#include "domelight/projection/projection.h"
 
 #include <algorithm>
 #include <cmath>

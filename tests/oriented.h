@@ -1,9 +1,9 @@
 #pragma once
 // An environment whose radiance states its direction: 2 + (x, y, z).
 
-#include "domelight/image/row_source.h"
-#include "domelight/image/repair_report.h"
 #include "domelight/environment/environment.h"
+#include "domelight/image/repair_report.h"
+#include "domelight/image/row_source.h"
 #include "domelight/projection/projection.h"
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 // `stretched_bench` prints.
 
 #include "domelight/base/parallel.h"
-#include "domelight/sampling/reflection_estimate.h"
 #include "domelight/render/shading/shading.h"
+#include "domelight/sampling/reflection_estimate.h"
 
 #include "render/shading/shading_models.h"
 

@@ -4,8 +4,8 @@
 #include "cli/bake/bake_report.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
-#include "cli/console/output_endings.h"
 #include "cli/console/environment_options.h"
+#include "cli/console/output_endings.h"
 #include "cli/console/point_options.h"
 #include "projection/latlong_convention.h"
 

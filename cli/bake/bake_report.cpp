@@ -2,10 +2,10 @@
 
 #include "domelight/base/version.h"
 
-#include "io/file/json.h"
 #include "cli/console/console.h"
 #include "cli/console/field_options.h"
 #include "cli/console/print.h"
+#include "io/file/json.h"
 
 #include <fmt/core.h>
 
@@ -91,9 +91,8 @@ void print_json(const std::vector<BakeOutcome>& outcomes) {
             bake["stages"].push_back({{"stage", s.stage}, {"seconds", s.seconds}, {"cpu_seconds", s.cpu_seconds}});
         bake["engines"] = Json::array();
         for (const EngineReport& e : o.report.engines)
-            bake["engines"].push_back({{"engine", e.name},
-                                       {"folder", e.folder.string()},
-                                       {"manifest", *Json::parse(e.manifest)}});
+            bake["engines"].push_back(
+                {{"engine", e.name}, {"folder", e.folder.string()}, {"manifest", *Json::parse(e.manifest)}});
         bakes.push_back(bake);
     }
     print_document(Json{{"version", version()}, {"bakes", bakes}});

@@ -2,12 +2,12 @@
 #include "domelight/bake/brdf_file.h"
 #include "domelight/base/version.h"
 
-#include "io/file/json.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/output_endings.h"
 #include "cli/console/point_options.h"
 #include "cli/console/print.h"
+#include "io/file/json.h"
 
 #include <fmt/core.h>
 

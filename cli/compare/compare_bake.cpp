@@ -7,15 +7,15 @@
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/texture/texture.h"
 
-#include "compare/latlong_level.h"
-#include "io/file/json.h"
-#include "projection/convention_text.h"
 #include "cli/console/environment_options.h"
 #include "cli/console/field_options.h"
+#include "cli/console/print.h"
+#include "compare/latlong_level.h"
 #include "io/environment/cube_texture_reader.h"
 #include "io/file/file_reader.h"
+#include "io/file/json.h"
+#include "projection/convention_text.h"
 #include "projection/latlong_convention.h"
-#include "cli/console/print.h"
 
 #include <fmt/core.h>
 
@@ -129,8 +129,8 @@ Result<Bake> read_pictures(const std::vector<std::string>& words, int threads) {
 }
 
 Result<Bake> read_bake(const BakeWords& w, int threads) {
-    auto bake =
-        w.bake.size() == 1 && is_texture_file(w.bake[0]) ? read_chain(w.bake[0], threads) : read_pictures(w.bake, threads);
+    auto bake = w.bake.size() == 1 && is_texture_file(w.bake[0]) ? read_chain(w.bake[0], threads)
+                                                                 : read_pictures(w.bake, threads);
     if (bake) bake->lobe = w.lobe.value_or(bake->lobe);
     if (!bake || w.engine.empty()) return bake;
     const auto engine = find_engine(w.engine);
@@ -238,8 +238,8 @@ const char* width_legend(Lobe lobe) {
 
 void print_text(const BakeWords& w, const Bake& bake, const BakeAudit& audit, const std::string& as_convention) {
     const CubeOrientation& o = audit.orientation;
-    print("{}: {}, {}², {} level{}\n", join(w.bake, " "), bake.format, bake.levels[0].cube.size(),
-          bake.levels.size(), bake.levels.size() == 1 ? "" : "s");
+    print("{}: {}, {}², {} level{}\n", join(w.bake, " "), bake.format, bake.levels[0].cube.size(), bake.levels.size(),
+          bake.levels.size() == 1 ? "" : "s");
     print("against the exact filter ({}) of {}\n\n", name_of(audit.lobe),
           w.env.empty() ? "the built-in sky" : join(w.env, " "));
     print("  verdict       {}\n", audit.verdict);

@@ -5,10 +5,10 @@
 #include "domelight/compare/picture_comparison.h"
 #include "domelight/io/write_image.h"
 
-#include "io/file/json.h"
 #include "cli/console/field_options.h"
 #include "cli/console/output_endings.h"
 #include "cli/console/print.h"
+#include "io/file/json.h"
 
 #include <fmt/core.h>
 

@@ -250,7 +250,8 @@ Result<void> Arguments::parse(const std::vector<std::string>& words) {
             return Error{"unknown option --env", "",
                          "The environment stands without an option: domelight " + command_ + " ENV ..."};
         const std::string guess = did_you_mean(name, names);
-        return Error{"unknown option " + first, "", guess.empty() ? "Accepted: " + join(names, ", ") + "." : guess + see};
+        return Error{"unknown option " + first, "",
+                     guess.empty() ? "Accepted: " + join(names, ", ") + "." : guess + see};
     } catch (const CLI::ArgumentMismatch&) {
         // The one that is the last word has nothing behind it; CLI11's own text does not read well.
         return Error{"needs one value", words.empty() ? "" : words.back(), see};

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/environment/environment.h"
+#include "domelight/io/environment/open_environment.h"
 
 #include "cli/console/arguments.h"
 

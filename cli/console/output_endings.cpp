@@ -31,15 +31,15 @@ Result<void> check_ending(const char* option, const std::string& file, std::span
 }
 
 Result<void> check_folder(const char* option, const std::string& folder) {
-    static const std::vector<std::string> k_files{".hdr", ".exr",  ".ktx2", ".ktx",  ".dds",  ".env", ".png",
-                                                  ".jpg", ".jpeg", ".json", ".gltf", ".glb"};
+    static const std::vector<std::string> k_files{".hdr", ".exr", ".ktx2", ".ktx",  ".dds",  ".env",
+                                                  ".png", ".jpg", ".jpeg", ".json", ".gltf", ".glb"};
     std::error_code ignored;
     if (std::filesystem::is_directory(folder, ignored)) return {};
     const std::string extension = lower_case_extension(folder);
     if (std::find(k_files.begin(), k_files.end(), extension) == k_files.end()) return {};
-    return Error{fmt::format("\"{}\" is the name of a file, and several files are written into a folder", folder), option,
-                 fmt::format("Name a folder: {} {}.", option,
-                             std::filesystem::path(folder).replace_extension().string())};
+    return Error{
+        fmt::format("\"{}\" is the name of a file, and several files are written into a folder", folder), option,
+        fmt::format("Name a folder: {} {}.", option, std::filesystem::path(folder).replace_extension().string())};
 }
 
 }  // namespace domelight::cli

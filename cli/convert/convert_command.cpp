@@ -50,10 +50,9 @@ std::string latlong_list() {
 }
 
 void declare(Arguments& a, ConvertWords& w) {
-    a.positional(
-        "IN", w.files,
-        "an environment (or the six faces of a cube, a folder of them, front and back of a dual paraboloid), "
-        "or any picture, to write it as a .png or .jpg. Without -o, the last name is the output, a new file");
+    a.positional("IN", w.files,
+                 "an environment (or the six faces of a cube, a folder of them, front and back of a dual paraboloid), "
+                 "or any picture, to write it as a .png or .jpg. Without -o, the last name is the output, a new file");
     a.text("-o,--output", "OUT", w.output.file,
            "the output: .hdr, .exr, .ktx2, .ktx, .dds, or .png or .jpg for viewing");
     a.group("What to make");
@@ -164,27 +163,26 @@ Json json_of(const Vec3d& v) {
 
 void print_json(const ConvertWords& w, const Environment& environment, const Conversion& made,
                 const WrittenPicture& written) {
-    Json json{
-        {"version", version()},
-        {"source",
-         {{"file", environment.file.string()},
-          {"projection", environment.projection},
-          {"width", environment.width},
-          {"height", environment.height},
-          {"repaired", environment.report().repaired()}}},
-        {"files", written.files},
-        {"projection", w.to},
-        {"layout", w.output.layout},
-        {"width", made.image.width()},
-        {"height", made.image.height()},
-        {"encoding", written.encoding_name},
-        {"method", made.method},
-        {"power",
-         {{"before", json_of(made.power_before)},
-          {"after", json_of(made.power_after)},
-          {"relative_change", relative(luminance(made.power_before), luminance(made.power_after))}}},
-        {"clipped_texels", written.encoding.clipped_texels},
-        {"clipped_energy", written.encoding.clipped_energy}};
+    Json json{{"version", version()},
+              {"source",
+               {{"file", environment.file.string()},
+                {"projection", environment.projection},
+                {"width", environment.width},
+                {"height", environment.height},
+                {"repaired", environment.report().repaired()}}},
+              {"files", written.files},
+              {"projection", w.to},
+              {"layout", w.output.layout},
+              {"width", made.image.width()},
+              {"height", made.image.height()},
+              {"encoding", written.encoding_name},
+              {"method", made.method},
+              {"power",
+               {{"before", json_of(made.power_before)},
+                {"after", json_of(made.power_after)},
+                {"relative_change", relative(luminance(made.power_before), luminance(made.power_after))}}},
+              {"clipped_texels", written.encoding.clipped_texels},
+              {"clipped_energy", written.encoding.clipped_energy}};
     print_document(json);
 }
 
@@ -204,8 +202,8 @@ void print_text(const ConvertWords& w, const Conversion& made, const WrittenPict
           100 * relative(before, after), method_words(made.method));
     if (written.widened) print("32-bit float channels: {}\n", k_why_float_channels);
     if (written.encoding.clipped_texels > 0)
-        print("{} clips {} texels and {:.3g} % of the power\n", written.encoding_name,
-              written.encoding.clipped_texels, 100 * written.encoding.clipped_energy);
+        print("{} clips {} texels and {:.3g} % of the power\n", written.encoding_name, written.encoding.clipped_texels,
+              100 * written.encoding.clipped_energy);
 }
 
 Result<void> check(ConvertWords& w) {

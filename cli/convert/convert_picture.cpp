@@ -5,9 +5,9 @@
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
-#include "io/file/json.h"
-#include "cli/console/print.h"
 #include "cli/console/output_endings.h"
+#include "cli/console/print.h"
+#include "io/file/json.h"
 #include "preview/screen_picture.h"
 
 #include <fmt/core.h>
@@ -66,7 +66,7 @@ void print_result(const PictureConversion& c, const Picture& picture, const Disp
         print_document(json);
     } else if (!common.quiet) {
         print("{}: {} x {}, every pixel as it is{}\n", c.output, width, height,
-                   screen ? fmt::format(", tone map {}, exposure {:+.2f} stops", tonemap, ev) : "");
+              screen ? fmt::format(", tone map {}, exposure {:+.2f} stops", tonemap, ev) : "");
     }
 }
 
@@ -89,7 +89,8 @@ Result<void> check_picture_output(const PictureConversion& c) {
     const bool channels = c.encoding == "auto" || c.encoding == "half" || c.encoding == "float";
     if (!c.encoding.empty() && !(exr && channels))
         return Error{fmt::format("\"{}\" does not go with {}", c.encoding, lower_case_extension(c.output)),
-                     "--encoding", "A picture in an .exr: auto, half, float. The other formats have one encoding each."};
+                     "--encoding",
+                     "A picture in an .exr: auto, half, float. The other formats have one encoding each."};
     return check_display_options(c.display, c.output);
 }
 

@@ -4,14 +4,14 @@
 #include "domelight/study/environment_survey.h"
 #include "domelight/texture/texture.h"
 
-#include "io/file/json.h"
-#include "io/file/sha256.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
-#include "cli/console/print.h"
 #include "cli/console/environment_options.h"
 #include "cli/console/field_options.h"
+#include "cli/console/print.h"
 #include "compare/picture_survey.h"
+#include "io/file/json.h"
+#include "io/file/sha256.h"
 
 #include <fmt/core.h>
 
@@ -86,9 +86,8 @@ void print_environment(const std::string& name, const Environment& e, const Envi
     if (s.lights.empty()) print("  bright light     none stands out\n");
     const RepairReport r = e.report();
     if (r.repaired())
-        print(
-            "  bad texels       {} not a number, {} infinite, {} negative (down to {:.4g}); repaired on reading\n",
-            r.not_a_number, r.infinite, r.negative, r.negative_radiance);
+        print("  bad texels       {} not a number, {} infinite, {} negative (down to {:.4g}); repaired on reading\n",
+              r.not_a_number, r.infinite, r.negative, r.negative_radiance);
     else
         print("  bad texels       none\n");
 }
@@ -148,12 +147,11 @@ void print_picture(const std::string& file, const PictureFacts& facts, const Pic
     print("  exposure         {:+.2f} stops suit a screen\n", s.ev);
     if (!picture.opacity.empty())
         print("  opacity          {:.1f} % of the picture is covered{}\n", 100 * s.coverage,
-                   s.coverage == 1 ? ""
-                   : s.cut_out     ? ", the rest is transparent"
-                                   : ", and the background shows in the rest");
+              s.coverage == 1 ? ""
+              : s.cut_out     ? ", the rest is transparent"
+                              : ", and the background shows in the rest");
     if (s.not_a_number + s.infinite + s.negative > 0)
-        print("  bad pixels       {} not a number, {} infinite, {} negative\n", s.not_a_number, s.infinite,
-                   s.negative);
+        print("  bad pixels       {} not a number, {} infinite, {} negative\n", s.not_a_number, s.infinite, s.negative);
     else
         print("  bad pixels       none\n");
     if (picture.rgb.width() == picture.rgb.height())
@@ -242,7 +240,8 @@ int info_texture(const std::string& file, const InfoWords& w) {
 void list_files(const Json& json, std::vector<std::pair<std::string, std::string>>& files, int depth = 0) {
     if (depth > 16 || !json.is_structured()) return;
     if (json.is_object() && json.contains("file") && json["file"].is_string() && json.contains("sha256"))
-        files.emplace_back(json["file"].get<std::string>(), json["sha256"].is_string() ? json["sha256"].get<std::string>() : "");
+        files.emplace_back(json["file"].get<std::string>(),
+                           json["sha256"].is_string() ? json["sha256"].get<std::string>() : "");
     for (const auto& [key, value] : json.items()) list_files(value, files, depth + 1);
     for (const Json& element : json.elements()) list_files(element, files, depth + 1);
 }
@@ -310,8 +309,7 @@ int info_bake(const fs::path& folder, const InfoWords& w) {
           member(manifest["options"], "for"));
     for (const auto& [role, map] : manifest.items())
         if (map.is_object() && map.contains("quantity") && map.contains("encoding")) {
-            print("  {}: {}, {}, {}\n", role, member(map, "quantity"), member(map, "encoding"),
-                  member(map, "layout"));
+            print("  {}: {}, {}, {}\n", role, member(map, "quantity"), member(map, "encoding"), member(map, "layout"));
             if (member(map, "quantity") == "radiance") print_levels(map);
         }
     for (const Json& state : states.elements()) print("  {:<28} {}\n", member(state, "file"), member(state, "state"));

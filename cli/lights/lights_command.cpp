@@ -1,23 +1,23 @@
+#include "domelight/base/version.h"
+#include "domelight/filtering/resample/area_resample.h"
 #include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/io/file/atomic_file.h"
-#include "domelight/filtering/resample/area_resample.h"
-#include "domelight/base/version.h"
 #include "domelight/io/write_image.h"
 #include "domelight/sampling/light_extraction.h"
 
-#include "io/file/json.h"
 #include "bake/staging.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
+#include "cli/console/environment_options.h"
 #include "cli/console/output_endings.h"
 #include "cli/console/print.h"
-#include "io/file/sha256.h"
-#include "cli/console/environment_options.h"
 #include "io/file/file_reader.h"
+#include "io/file/json.h"
+#include "io/file/sha256.h"
 #include "io/image_reader.h"
-#include "scene/gltf/gltf_lights_writer.h"
 #include "preview/lights_sheet.h"
+#include "scene/gltf/gltf_lights_writer.h"
 
 #include <fmt/core.h>
 
@@ -44,8 +44,9 @@ void declare(Arguments& a, LightsWords& w) {
         fmt::format("an environment; without one, {}; six faces (px nx py ny pz nz) are one cube", k_built_in_sky));
     a.group("What counts as a light");
     a.integer("--max-lights", "N", w.max_lights, "the largest number of lights; weaker ones stay in the remainder (8)");
-    a.number("--least-share", "SHARE", w.options.least_share, "the least share of all luminance that a light must "
-                                                              "have, 0 to 1 (0.01)");
+    a.number("--least-share", "SHARE", w.options.least_share,
+             "the least share of all luminance that a light must "
+             "have, 0 to 1 (0.01)");
     a.number("--least-contrast", "RATIO", w.options.least_contrast,
              "the peak luminance of a light must be at least this many times the luminance around it, 1.5 or more (4)");
     a.number(
@@ -217,10 +218,7 @@ Result<Json> write_all(const LightsWords& w, Outcome& o) {
         gltf_lights(o.found.lights, w.lux_per_unit, turned_deg, fmt::format("domelight {}", version()));
     if (auto ok = write_text(staging->stage("lights.gltf"), gltf); !ok) return ok.error();
     Json json = document(w, o);
-    if (auto ok =
-            write_text(staging->stage("lights.json"), json.dump(2) + "\n");
-        !ok)
-        return ok.error();
+    if (auto ok = write_text(staging->stage("lights.json"), json.dump(2) + "\n"); !ok) return ok.error();
     if (auto ok = staging->commit("lights.json"); !ok) return ok.error();
     return json;
 }

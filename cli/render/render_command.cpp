@@ -1,14 +1,14 @@
 #include "domelight/base/version.h"
 
-#include "io/file/json.h"
 #include "cli/commands.h"
 #include "cli/console/environment_options.h"
 #include "cli/console/field_options.h"
 #include "cli/console/interruption.h"
+#include "cli/console/print.h"
 #include "cli/render/render_outputs.h"
 #include "cli/render/render_study_command.h"
 #include "cli/render/render_turntable.h"
-#include "cli/console/print.h"
+#include "io/file/json.h"
 #include "preview/tonemap.h"
 
 #include <fmt/core.h>
@@ -73,10 +73,12 @@ void declare(Arguments& a, RenderWords& w) {
     a.integer("--bounces", "N", w.bounces, "reference: bounces of indirect light; 0 is direct light with shadows (4)");
     a.choice("--occlusion", w.occlusion, std::vector<NamedValue<bool>>{{true, "on"}, {false, "off"}},
              "off: no shadows, no indirect light and no occlusion maps, to compare with a shader that has none (on)");
-    a.flag("--multiple-scattering", w.multiple_scattering, "compensate the energy that single scattering loses on "
-                                                           "rough surfaces");
-    a.text("--maps", "DIR", w.maps, "split-sum, stretched, phong: the folder of a bake by `domelight bake` (baked in "
-                                    "memory)");
+    a.flag("--multiple-scattering", w.multiple_scattering,
+           "compensate the energy that single scattering loses on "
+           "rough surfaces");
+    a.text("--maps", "DIR", w.maps,
+           "split-sum, stretched, phong: the folder of a bake by `domelight bake` (baked in "
+           "memory)");
     a.choice("--irradiance", w.sh_irradiance, std::vector<NamedValue<bool>>{{false, "cube"}, {true, "sh"}},
              "split-sum, stretched, phong: the irradiance cube, or nine harmonics (cube)");
     a.choice(
@@ -115,8 +117,8 @@ void print_result(const RenderWords& w, const Scene& scene, const RenderResult& 
         print_document(json);
     } else if (!w.common.quiet) {
         print("{}: {} x {}, {} triangles, {} sample{} a pixel{}, {:.2f} s", join(w.outputs, ", "), o.width, o.height,
-              scene.triangle_count(), r.sample_count, r.sample_count == 1 ? "" : "s",
-              o.noise > 0 ? " at most" : "", r.seconds);
+              scene.triangle_count(), r.sample_count, r.sample_count == 1 ? "" : "s", o.noise > 0 ? " at most" : "",
+              r.seconds);
         if (w.reference())
             print(", {}, {:.2f} million rays a second",
                   r.sample_count > 1 ? fmt::format("noise {:.4f} of L/(1+L)", r.noise) : "noise unknown",

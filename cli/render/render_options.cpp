@@ -44,7 +44,8 @@ Result<void> check_numbers(const RenderWords& w) {
          {std::pair{"--camera-position", &w.camera_position}, {"--camera-target", &w.camera_target}}) {
         if (!value->empty() && value->size() != 3) return Error{"needs three numbers", option, "x,y,z"};
         for (const double v : *value)
-            if (!(std::abs(v) <= 1e9)) return Error{fmt::format("{:g} is not finite and within 1e9 metres", v), option, "x,y,z"};
+            if (!(std::abs(v) <= 1e9))
+                return Error{fmt::format("{:g} is not finite and within 1e9 metres", v), option, "x,y,z"};
     }
     return {};
 }

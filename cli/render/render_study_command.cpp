@@ -1,13 +1,13 @@
 #include "cli/render/render_study_command.h"
 
-#include "domelight/io/file/atomic_file.h"
 #include "domelight/base/version.h"
+#include "domelight/io/file/atomic_file.h"
 #include "domelight/io/write_image.h"
 #include "domelight/study/render_study_pictures.h"
 
-#include "io/file/json.h"
 #include "cli/console/interruption.h"
 #include "cli/console/print.h"
+#include "io/file/json.h"
 
 #include <fmt/core.h>
 

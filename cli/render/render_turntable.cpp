@@ -4,12 +4,12 @@
 #include "domelight/io/picture/animation.h"
 #include "domelight/io/write_image.h"
 
-#include "io/file/json.h"
 #include "cli/console/interruption.h"
+#include "cli/console/print.h"
 #include "cli/render/render_outputs.h"
 #include "io/file/file_reader.h"
+#include "io/file/json.h"
 #include "io/picture/texture_image.h"
-#include "cli/console/print.h"
 #include "preview/exposure_meter.h"
 
 #include <fmt/core.h>

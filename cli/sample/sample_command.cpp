@@ -1,16 +1,16 @@
 #include "domelight/base/version.h"
 #include "domelight/io/write_image.h"
 
-#include "io/file/json.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
-#include "cli/console/print.h"
 #include "cli/console/environment_options.h"
-#include "preview/sample_picture.h"
+#include "cli/console/print.h"
 #include "cli/sample/sample_estimate.h"
 #include "cli/sample/sample_explain.h"
 #include "cli/sample/sample_options.h"
 #include "cli/sample/sample_output.h"
+#include "io/file/json.h"
+#include "preview/sample_picture.h"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -140,8 +140,7 @@ int run_sample(const std::vector<std::string>& words) {
               {"seed", w.seed_number}};
     const auto done = work(w, *sampler, json);
     if (!done) return print_error(done.error());
-    if (w.common.json && json.contains("files"))
-        print_document(json);
+    if (w.common.json && json.contains("files")) print_document(json);
     return exit_done;
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "domelight/sampling/environment_sampler.h"
 #include "domelight/base/progress.h"
+#include "domelight/sampling/environment_sampler.h"
 
-#include "io/file/json.h"
 #include "cli/sample/sample_options.h"
+#include "io/file/json.h"
 
 #include <string>
 

@@ -103,8 +103,9 @@ void declare_sample_options(Arguments& a, SampleWords& w) {
     a.positional("ENV", w.inputs,
                  fmt::format("one image, or the six faces of a cube; without one, {}", k_built_in_sky));
     a.group("What to draw");
-    a.integer("-n,--count", "N", w.count, "the number of samples (1024); with --estimate the largest number for each "
-                                          "strategy (4096)");
+    a.integer("-n,--count", "N", w.count,
+              "the number of samples (1024); with --estimate the largest number for each "
+              "strategy (4096)");
     a.text("-o,--output", "FILE", w.output,
            "file for the samples, .csv or .json; without it, and if nothing else is asked for, CSV on stdout");
     a.choice(
@@ -127,12 +128,14 @@ void declare_sample_options(Arguments& a, SampleWords& w) {
     a.text("--seed", "N", w.seed,
            "selects the randomisation of the points; 0: none for hammersley, halton, sobol and r2 (1)");
     a.group("Pictures and tables");
-    a.text("--picture", "FILE", w.picture, "the environment as it is stored, with the samples drawn on it, .png or "
-                                           ".jpg");
+    a.text("--picture", "FILE", w.picture,
+           "the environment as it is stored, with the samples drawn on it, .png or "
+           ".jpg");
     a.text("--heat", "FILE", w.heat, "the density as a heat map, .png or .jpg");
     a.choice("--heat-measure", w.heat_measure, "the density per steradian or over the image (solid-angle)");
-    a.integer("--picture-width", "PIXELS", w.picture_width, "width of the environment in these pictures, 256 to 8192 "
-                                                            "(1024)");
+    a.integer("--picture-width", "PIXELS", w.picture_width,
+              "width of the environment in these pictures, 256 to 8192 "
+              "(1024)");
     a.text("--tables", "DIR", w.tables,
            "folder for the textures with which a shader samples: the cumulative functions rows.* and columns.* (RG "
            "float), and row_averages.* (R float) for a shader that adds up weights in a loop");

@@ -1,13 +1,13 @@
 #include "cli/sample/sample_output.h"
 
-#include "domelight/io/file/atomic_file.h"
 #include "domelight/base/version.h"
+#include "domelight/io/file/atomic_file.h"
 #include "domelight/io/write_image.h"
 #include "domelight/texture/texture.h"
 
+#include "bake/staging.h"
 #include "io/file/json.h"
 #include "io/file/printable.h"
-#include "bake/staging.h"
 
 #include <fmt/core.h>
 #include <fmt/format.h>

@@ -3,12 +3,12 @@
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
-#include "io/file/json.h"
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/display_options.h"
-#include "cli/console/print.h"
 #include "cli/console/output_endings.h"
+#include "cli/console/print.h"
+#include "io/file/json.h"
 #include "preview/screen_picture.h"
 
 #include <fmt/core.h>
@@ -136,10 +136,10 @@ void print_result(const SkyWords& w, const std::string& channels, const WatchedR
     const int height = w.sky.height;
     if (w.common.json) {
         Json json{{"version", version()},
-                                    {"file", w.output},
-                                    {"width", 2 * height},
-                                    {"height", height},
-                                    {"largest", rows.largest()}};
+                  {"file", w.output},
+                  {"width", 2 * height},
+                  {"height", height},
+                  {"largest", rows.largest()}};
         if (is_exr(w)) json["channels"] = channels;
         if (!w.axes)
             json["sky"] = {{"sun_elevation_deg", w.sky.sun_elevation_deg},

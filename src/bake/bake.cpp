@@ -1,9 +1,9 @@
 #include "domelight/bake/bake.h"
 
-#include "domelight/base/version.h"
 #include "domelight/bake/brdf_file.h"
-#include "domelight/filtering/resample/reproject.h"
 #include "domelight/base/parallel.h"
+#include "domelight/base/version.h"
+#include "domelight/filtering/resample/reproject.h"
 #include "domelight/io/file/atomic_file.h"
 #include "domelight/io/write_image.h"
 
@@ -132,8 +132,8 @@ class EngineBake {
     /// Encodes and writes everything, or starts to do so.
     void start(const FilterJob::Maps& maps, const FilterResult& result, std::vector<StageTime>& stages) {
         const StageClock clock(stages, "encode");
-        report_.sh =
-            make_sh_report(result.sh, options_.sh_bands, options_.sh_window, *maps.irradiance_over_pi, options_.threads);
+        report_.sh = make_sh_report(result.sh, options_.sh_bands, options_.sh_window, *maps.irradiance_over_pi,
+                                    options_.threads);
         report_.sh.files.reserve(2);
         write_light(maps);
         write_sh();

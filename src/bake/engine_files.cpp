@@ -1,8 +1,8 @@
 #include "bake/engine_files.h"
 
 #include "domelight/base/version.h"
-#include "domelight/texture/container/babylon_env.h"
 #include "domelight/io/write_image.h"
+#include "domelight/texture/container/babylon_env.h"
 
 #include "scene/gltf/gltf_image_light.h"
 #include "texture/container/playcanvas_atlas.h"
@@ -24,8 +24,8 @@ void start_writing(BakedMap& report, const BakeOptions& options, const std::file
     });
 }
 
-void write_babylon(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
-                   const std::filesystem::path& path, Background& background) {
+void write_babylon(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format,
+                   const BakeOptions& options, const std::filesystem::path& path, Background& background) {
     auto env = std::make_shared<BabylonEnv>();
     env->cube = encode_chain(report, levels, format, options);
     env->irradiance = babylon_polynomial(format.radiance_sh);
@@ -33,8 +33,8 @@ void write_babylon(BakedMap& report, std::span<const FilteredMap> levels, const 
                   [env, threads = options.threads](const auto& file) { return write_env(file, *env, threads); });
 }
 
-void write_gltf(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
-                const std::filesystem::path& path, Background& background) {
+void write_gltf(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format,
+                const BakeOptions& options, const std::filesystem::path& path, Background& background) {
     auto light = std::make_shared<GltfImageLightFile>();
     light->cube = encode_chain(report, levels, format, options);
     light->name = std::filesystem::path(format.name).filename().string();
@@ -56,8 +56,8 @@ void write_playcanvas(BakedMap& report, std::span<const FilteredMap> levels, con
                   [atlas](const auto& file) { return write_playcanvas_atlas(file, *atlas); });
 }
 
-void write_openexr(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
-                   const std::filesystem::path& path, Background& background) {
+void write_openexr(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format,
+                   const BakeOptions& options, const std::filesystem::path& path, Background& background) {
     ExrWriteOptions exr;
     exr.half = format.encoding == Encoding::rgba16f;
     exr.attributes = format.metadata;

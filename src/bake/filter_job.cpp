@@ -4,9 +4,9 @@
 #include "domelight/image/row_source.h"
 
 #include "bake/tap.h"
-#include "io/file/sha256.h"
 #include "filtering/prefilter_runs.h"
 #include "io/environment/convert_rows.h"
+#include "io/file/sha256.h"
 
 #include <algorithm>
 #include <functional>
@@ -122,8 +122,9 @@ Result<void> FilterJob::read_rows(const Environment& environment, const BakeOpti
     results_ = *std::move(results);
     const ProjectedImage source{projection_from_name("latlong")->turned(environment.world_to_source), std::move(kept)};
     for (std::size_t i = 0; i < conversions.size(); ++i)
-        panoramas_.emplace_back(Layout::latlong, conversions[i].rows ? conversions[i].rows->finish()
-                                                                     : reprojected(source, panorama_specs_[i], options));
+        panoramas_.emplace_back(Layout::latlong, conversions[i].rows
+                                                     ? conversions[i].rows->finish()
+                                                     : reprojected(source, panorama_specs_[i], options));
     if (hash_rows) rows_sha256_ = hash.finish();
     return {};
 }

@@ -106,8 +106,8 @@ Result<void> write_plain_chain(BakedMap& report, std::span<const FilteredMap> le
     return {};
 }
 
-void write_chain(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
-                 Staging& staging, Background& background) {
+void write_chain(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format,
+                 const BakeOptions& options, Staging& staging, Background& background) {
     report.file.file = format.name + container_extension(format.container);
     const auto path = staging.stage(report.file.file);
     if (is_engine_file(format.container))
@@ -185,8 +185,8 @@ bool is_widened(std::span<const FilteredMap> levels, const MapFormat& format) {
 
 }  // namespace
 
-void write_map(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& planned, const BakeOptions& options,
-               Staging& staging, Background& background) {
+void write_map(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& planned,
+               const BakeOptions& options, Staging& staging, Background& background) {
     MapFormat format = planned;
     report.widened = is_widened(levels, planned);
     if (report.widened) format.encoding = Encoding::rgba32f;

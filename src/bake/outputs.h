@@ -51,8 +51,8 @@ struct MapFormat {
 /// Encodes a map's levels now and writes them, or starts to do so. Fills in `report`, whose role, lobe, quantity,
 /// layout and levels (one for each of `levels`) are set; its file names are valid at once, its hashes after
 /// `background.wait()`. `report` must not be moved until then.
-void write_map(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format, const BakeOptions& options,
-               Staging& staging, Background& background);
+void write_map(BakedMap& report, std::span<const FilteredMap> levels, const MapFormat& format,
+               const BakeOptions& options, Staging& staging, Background& background);
 
 /// What encoding did to each level goes into the report.
 void take_reports(BakedMap& report, const std::vector<EncodingReport>& encoded);

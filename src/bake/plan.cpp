@@ -135,9 +135,9 @@ Result<std::string> latlong_projection(const std::string& convention) {
     const std::size_t slash = convention.find('/');
     const std::string before = convention.substr(0, slash);
     const bool prefixed = before == "latlong" || before == "equirectangular";
-    std::string name = "latlong/" + (!prefixed                      ? convention
+    std::string name = "latlong/" + (!prefixed                    ? convention
                                      : slash == std::string::npos ? std::string("default")
-                                                                    : convention.substr(slash + 1));
+                                                                  : convention.substr(slash + 1));
     if (const auto projection = projection_from_name(name); !projection)
         return projection.error().at(field_place("latlong_out"));
     return name;
@@ -248,8 +248,9 @@ Result<void> check_latlong_out(const EnginePlan& plan, const BakeOptions& o) {
     const bool has_maps = plan.layout == Layout::latlong && !engine.environment_only;
     const bool has_panorama = engine.environment_only || !engine.panorama_file.empty();
     if (has_maps && own_container(plan.container))
-        return field_error("latlong_out", fmt::format("does not apply to `engines` {}: its file has a fixed convention, {}",
-                                                      engine.name, engine.latlong));
+        return field_error("latlong_out",
+                           fmt::format("does not apply to `engines` {}: its file has a fixed convention, {}",
+                                       engine.name, engine.latlong));
     if (has_maps || (has_panorama && projection_from_name(engine.panorama)->name() == "latlong")) return {};
     if (has_panorama)
         return field_error("latlong_out", fmt::format("does not apply to `engines` {}: its image is a fixed one, {}",

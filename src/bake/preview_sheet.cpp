@@ -35,7 +35,8 @@ std::string brdf_detail(BrdfForm form) {
 std::string irradiance_detail(const EnginePlan& plan, const FilteredMap& over_pi) {
     if (plan.container == Container::playcanvas_atlas) return "in the atlas";
     if (plan.engine->environment_only || plan.engine->irradiance_file.empty()) return "for comparison; not a file";
-    return size_text(over_pi) + (plan.irradiance_quantity == Quantity::irradiance ? ", stored as E" : ", stored as E / π");
+    return size_text(over_pi) +
+           (plan.irradiance_quantity == Quantity::irradiance ? ", stored as E" : ", stored as E / π");
 }
 
 std::string subtitle(const EnginePlan& plan, const EngineReport& report) {

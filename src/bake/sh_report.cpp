@@ -25,8 +25,7 @@ std::array<double, 3> channels(const Vec3d& v) {
 /// Solid angles of a map's texels: of one face (all are alike), or of a lat-long row's texels.
 class SolidAngles {
   public:
-    explicit SolidAngles(const FilteredMap& map)
-        : cube_(map.layout == Layout::cube), width_(cube_ ? map.width() : 1) {
+    explicit SolidAngles(const FilteredMap& map) : cube_(map.layout == Layout::cube), width_(cube_ ? map.width() : 1) {
         for (int y = 0; y < map.height(); ++y)
             for (int x = 0; x < width_; ++x)
                 omega_.push_back(cube_ ? cube_solid_angle(x, y, width_)

@@ -20,7 +20,9 @@ inline std::string as_text(std::string_view words) {
     return std::string(words);
 }
 template <typename Number>
-    requires requires(Number n) { decimal(n); }
+requires requires(Number n) {
+    decimal(n);
+}
 std::string as_text(Number number) {
     return decimal(number);
 }

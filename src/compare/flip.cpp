@@ -1,7 +1,7 @@
 // FLIP: Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astrom, Fairchild 2020, "FLIP: A difference evaluator for
 // alternating images". Section and equation numbers are that paper's. HDR-FLIP is in flip_hdr.cpp.
-#include "domelight/compare/metrics.h"
 #include "domelight/base/parallel.h"
+#include "domelight/compare/metrics.h"
 
 #include "compare/flip_linear.h"
 #include "compare/plane_filter.h"

@@ -1,7 +1,7 @@
 // HDR-FLIP: Andersson, Nilsson, Shirley, Akenine-Moeller 2021, "Visualizing errors in rendered high dynamic range
 // images".
-#include "domelight/compare/metrics.h"
 #include "domelight/base/parallel.h"
+#include "domelight/compare/metrics.h"
 
 #include "compare/flip_linear.h"
 

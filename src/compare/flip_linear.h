@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/compare/metrics.h"
 #include "domelight/base/vec.h"
+#include "domelight/compare/metrics.h"
 
 namespace domelight {
 

@@ -1,7 +1,7 @@
 // Structural similarity: Wang, Bovik, Sheikh, Simoncelli 2004, "Image quality assessment: from error visibility to
 // structural similarity".
-#include "domelight/compare/metrics.h"
 #include "domelight/base/parallel.h"
+#include "domelight/compare/metrics.h"
 
 #include "compare/plane_filter.h"
 

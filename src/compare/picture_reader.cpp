@@ -4,10 +4,10 @@
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/texture/texture.h"
 
-#include "io/file/printable.h"
 #include "io/environment/cube_input.h"
 #include "io/environment/cube_texture_reader.h"
 #include "io/exr/exr_layers.h"
+#include "io/file/printable.h"
 #include "io/image_reader.h"
 #include "io/picture/texture_image.h"
 

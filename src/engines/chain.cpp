@@ -32,8 +32,9 @@ std::vector<LevelPlan> default_chain(const Engine& engine, Lobe lobe) {
     const auto exponents = default_phong_exponents(count);
     std::vector<LevelPlan> levels;
     for (int l = 0; l < count; ++l)
-        levels.push_back(is_phong(lobe) ? phong_level(lobe, engine.size >> l, exponents[std::size_t(l)])
-                                        : glossy_level(lobe, engine.size >> l, engine.roughness(l, count, engine.size)));
+        levels.push_back(is_phong(lobe)
+                             ? phong_level(lobe, engine.size >> l, exponents[std::size_t(l)])
+                             : glossy_level(lobe, engine.size >> l, engine.roughness(l, count, engine.size)));
     return levels;
 }
 

@@ -168,8 +168,7 @@ Result<std::shared_ptr<const ImageF>> Environment::State::resampled() const {
     if (cube) return std::make_shared<const ImageF>(area_resample_cube_to_latlong(*cube, latlong_height, {}, threads));
     const std::int64_t bytes = std::int64_t(latlong_width) * latlong_height * 3 * std::int64_t(sizeof(float));
     if (bytes > max_bytes)
-        return Error{text("the lat-long image needs ", bytes, " bytes, more than the limit of ", max_bytes), "",
-                     ""};
+        return Error{text("the lat-long image needs ", bytes, " bytes, more than the limit of ", max_bytes), "", ""};
     return std::make_shared<const ImageF>(
         reproject(*picture, *projection_from_name("latlong"), latlong_width, latlong_height, threads).pixels);
 }

@@ -1,17 +1,16 @@
-#include "filtering/prefilter_runs.h"
-
-#include "domelight/filtering/resample/area_resample.h"
 #include "domelight/base/parallel.h"
+#include "domelight/filtering/resample/area_resample.h"
 #include "domelight/projection/projection.h"
 
-#include "filtering/harmonic/bright_texels.h"
-#include "filtering/harmonic/cube_analysis.h"
 #include "filtering/direct/direct_sums.h"
 #include "filtering/filter_plan.h"
-#include "filtering/kernel/residual_kernel.h"
+#include "filtering/harmonic/bright_texels.h"
+#include "filtering/harmonic/cube_analysis.h"
 #include "filtering/harmonic/sh_analysis.h"
 #include "filtering/harmonic/sh_synthesis.h"
 #include "filtering/harmonic/spectrum_evaluate.h"
+#include "filtering/kernel/residual_kernel.h"
+#include "filtering/prefilter_runs.h"
 
 #include <cmath>
 #include <deque>

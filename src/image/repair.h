@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domelight/image/repair_report.h"
-#include "domelight/image/image.h"
 #include "domelight/base/vec.h"
+#include "domelight/image/image.h"
+#include "domelight/image/repair_report.h"
 
 #include <array>
 #include <optional>

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "domelight/image/image.h"
 #include "domelight/base/result.h"
-#include "domelight/io/decode.h"
 #include "domelight/base/vec.h"
+#include "domelight/image/image.h"
+#include "domelight/io/decode.h"
 
 #include "io/file/file_reader.h"
 

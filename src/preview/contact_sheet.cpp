@@ -1,7 +1,7 @@
 #include "domelight/base/parallel.h"
+#include "domelight/filtering/harmonic/spherical_harmonics.h"
 #include "domelight/preview/preview.h"
 #include "domelight/projection/projection.h"
-#include "domelight/filtering/harmonic/spherical_harmonics.h"
 
 #include "image/draw.h"
 #include "preview/agx_display.h"
@@ -432,8 +432,7 @@ void Sheet::brdf_panel(int x, int y, int size) {
                      return a * (1 - (fy - j)) + b * (fy - j);
                  };
                  std::uint8_t* p = image.at(x + i, y + row);
-                 for (int c = 0; c < 3; ++c)
-                     p[c] = codes[std::size_t(std::clamp(value(c), 0.0f, 1.0f) * 4095 + 0.5f)];
+                 for (int c = 0; c < 3; ++c) p[c] = codes[std::size_t(std::clamp(value(c), 0.0f, 1.0f) * 4095 + 0.5f)];
              }
          }});
 }

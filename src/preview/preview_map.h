@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domelight/image/image.h"
-#include "domelight/filtering/prefilter.h"
 #include "domelight/base/vec.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/image/image.h"
 
 #include "preview/texel4.h"
 

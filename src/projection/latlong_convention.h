@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domelight/projection/projections.h"
 #include "domelight/base/result.h"
 #include "domelight/base/vec.h"
+#include "domelight/projection/projections.h"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/render/render.h"
 #include "domelight/base/unit_point.h"
+#include "domelight/render/render.h"
 
 #include "render/ray_scene.h"
 

@@ -1,7 +1,7 @@
 #include "render/environment_map.h"
 
-#include "domelight/filtering/resample/area_resample.h"
 #include "domelight/base/parallel.h"
+#include "domelight/filtering/resample/area_resample.h"
 
 #include "projection/bilinear.h"
 

@@ -1,7 +1,7 @@
 // The ground of a photograph under a scene: only the shadow that the scene casts on it is drawn.
 
-#include "domelight/image/colour.h"
 #include "domelight/base/parallel.h"
+#include "domelight/image/colour.h"
 #include "domelight/sampling/sequences.h"
 #include "domelight/sampling/warps.h"
 

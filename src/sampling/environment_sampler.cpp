@@ -266,7 +266,8 @@ SamplingTextures sampling_textures(const EnvironmentSampler& sampler) {
     double total = 0;
     for (const double s : sums) total += s;
     out.total_average = total / (double(image.width) * image.height);
-    fill(image.height, total, [&](int y) { return sums[y]; }, [&](int y) { return out.rows.at(0, y); });
+    fill(
+        image.height, total, [&](int y) { return sums[y]; }, [&](int y) { return out.rows.at(0, y); });
     return out;
 }
 

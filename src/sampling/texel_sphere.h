@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/projection/projection.h"
 #include "domelight/base/vec.h"
+#include "domelight/projection/projection.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -112,8 +112,9 @@ SampleExplanation explain_sample(const EnvironmentSampler& sampler, const std::a
     } else {
         e.row = search(xi_v, even_places(h), [&](int j) { return std::array{row_density(j), row_density(j)}; });
         e.row_above = e.row_below = e.row.index;
-        e.column = search(xi_u, even_places(w),
-                          [&](int i) { return std::array{density(i, e.row.index), density(i, e.row.index)}; });
+        e.column = search(xi_u, even_places(w), [&](int i) {
+            return std::array{density(i, e.row.index), density(i, e.row.index)};
+        });
     }
     e.row.search = search_words(sampler, e.row, false, 0);
     e.column.search = search_words(sampler, e.column, true, e.row_above);

@@ -1,8 +1,8 @@
 #include "texture/chain_encoder.h"
 
 #include "texture/block/block_codec.h"
-#include "texture/texel/rgbe.h"
 #include "texture/texel/encode_row_simd.h"
+#include "texture/texel/rgbe.h"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,11 @@
 // Sizes and ranges of the encodings.
 #include "domelight/texture/texture.h"
 
+#include "texture/block/uastc_hdr.h"
 #include "texture/texel/half.h"
 #include "texture/texel/r11g11b10f.h"
 #include "texture/texel/rgb9e5.h"
 #include "texture/texel/rgba8_ranges.h"
-#include "texture/block/uastc_hdr.h"
 
 #include <iterator>
 #include <limits>

@@ -119,8 +119,11 @@ TEST_CASE("bake: engines that take the environment alone get it in their own con
 }
 
 TEST_CASE("bake: an image for an engine that filters by itself is as large as its source") {
-    const std::tuple<const char*, const char*, int> engines[] = {
-        {"blender", "default", 2}, {"godot", "usd", 2}, {"usd", "usd", 2}, {"mitsuba", "mitsuba", 2}, {"pbrt", "pbrt", 1}};
+    const std::tuple<const char*, const char*, int> engines[] = {{"blender", "default", 2},
+                                                                 {"godot", "usd", 2},
+                                                                 {"usd", "usd", 2},
+                                                                 {"mitsuba", "mitsuba", 2},
+                                                                 {"pbrt", "pbrt", 1}};
     for (const int height : {24, 512})
         for (const auto& [engine, convention, aspect] : engines) {
             CAPTURE(engine);
@@ -215,13 +218,11 @@ TEST_CASE("bake: everything lat-long lies in the convention that is asked for, a
         CHECK(manifest.find("\"projection\": \"latlong/" + convention + "\"") != std::string::npos);
         CHECK(manifest.find(projection_convention("latlong/" + convention)) != std::string::npos);
     };
-    const std::tuple<const char*, Container, const char*> files[] = {{"generic", Container::exr, "specular.exr"},
-                                                                     {"generic", Container::exr_mip, "specular.exr"},
-                                                                     {"generic", Container::hdr, "specular.hdr"},
-                                                                     {"blender", Container::exr, "sky.exr"},
-                                                                     {"usd", Container::hdr, "sky.hdr"},
-                                                                     {"materialx", Container::exr_mip, "sky.exr"},
-                                                                     {"unity", Container::dds, "sky_latlong.exr"}};
+    const std::tuple<const char*, Container, const char*> files[] = {
+        {"generic", Container::exr, "specular.exr"}, {"generic", Container::exr_mip, "specular.exr"},
+        {"generic", Container::hdr, "specular.hdr"}, {"blender", Container::exr, "sky.exr"},
+        {"usd", Container::hdr, "sky.hdr"},          {"materialx", Container::exr_mip, "sky.exr"},
+        {"unity", Container::dds, "sky_latlong.exr"}};
     for (const char* convention : {"usd", "mitsuba", "openexr", "materialx", "mod", "centre=-Y,right=+X,up=+Z",
                                    "centre=+X,right=-Z"})  // the last one mirrors
         for (const auto& [engine, format, file] : files) {

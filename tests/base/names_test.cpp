@@ -1,6 +1,7 @@
 #include "domelight/base/names.h"
-#include "domelight/base/version.h"
+
 #include "domelight/bake/bake.h"
+#include "domelight/base/version.h"
 #include "domelight/io/decode.h"
 #include "domelight/render/shading/shading.h"
 #include "domelight/sampling/reflection_estimate.h"
@@ -29,7 +30,8 @@ std::vector<E> enumerators() {
     std::vector<E> found;
     [&]<int... i>(std::integer_sequence<int, i...>) {
         ((is_enumerator<E(i)>() ? found.push_back(E(i)) : void()), ...);
-    }(std::make_integer_sequence<int, 32>());
+    }
+    (std::make_integer_sequence<int, 32>());
     return found;
 }
 

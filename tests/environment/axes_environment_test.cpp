@@ -1,5 +1,5 @@
-#include "domelight/projection/projection.h"
 #include "domelight/environment/sky/sky.h"
+#include "domelight/projection/projection.h"
 
 #include "image/font.h"
 #include "test.h"

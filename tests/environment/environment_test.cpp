@@ -1,6 +1,7 @@
 // Environment: rows, texels and directions of the same light can be read again and again, however it is stored.
 
 #include "domelight/environment/environment.h"
+
 #include "domelight/filtering/prefilter.h"
 #include "domelight/io/environment/convert.h"
 #include "domelight/io/environment/open_environment.h"
@@ -67,10 +68,9 @@ Environment turned_picture() {
     const ProjectedImage latlong{*projection_from_name("latlong"), test::direction_image(k_height)};
     const Mat3 turn = rotation_y(0.5);
     // Written in the picture's own frame, the world is turned.
-    return Environment::from_picture(
-        reproject({latlong.projection.turned(turn.transposed()), latlong.pixels}, *projection_from_name("octahedral"),
-                  128, 128),
-        turn);
+    return Environment::from_picture(reproject({latlong.projection.turned(turn.transposed()), latlong.pixels},
+                                               *projection_from_name("octahedral"), 128, 128),
+                                     turn);
 }
 
 /// Everything that must be the same for a second reader as for the first.
@@ -99,8 +99,12 @@ TEST_CASE("environment: rows, texels and directions agree, of every storage, aga
     SUBCASE("a lat-long image in memory") {
         check_readable_again(Environment::from_latlong(test::direction_image(k_height)), 0.08);
     }
-    SUBCASE("a cube") { check_readable_again(turned_cube(), 0.08); }
-    SUBCASE("another projection") { check_readable_again(turned_picture(), 0.08); }
+    SUBCASE("a cube") {
+        check_readable_again(turned_cube(), 0.08);
+    }
+    SUBCASE("another projection") {
+        check_readable_again(turned_picture(), 0.08);
+    }
     SUBCASE("files: a convention of their own") {
         const test::TemporaryFolder folder;
         const auto file = folder / "d.exr";
@@ -142,8 +146,7 @@ TEST_CASE("environment: readers at the same time find the same rows and one repo
     std::vector<ImageF> read(4);
     {
         std::vector<std::jthread> readers;
-        for (ImageF& into : read)
-            readers.emplace_back([&] { into = *read_latlong(**environment->rows()); });
+        for (ImageF& into : read) readers.emplace_back([&] { into = *read_latlong(**environment->rows()); });
     }
     for (const ImageF& one : read)
         CHECK(std::equal(one.pixels().begin(), one.pixels().end(), read[0].pixels().begin(), read[0].pixels().end()));

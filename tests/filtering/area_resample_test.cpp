@@ -2,9 +2,9 @@
 
 #include "domelight/projection/projection.h"
 
+#include "base/instruction_set.h"
 #include "filtering/resample/area_resample_cube.h"
 #include "filtering/resample/area_resample_plain.h"
-#include "base/instruction_set.h"
 #include "test.h"
 
 #include <hwy/targets.h>

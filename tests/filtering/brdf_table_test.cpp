@@ -2,8 +2,8 @@
 
 #include "domelight/base/vec.h"
 
-#include "filtering/brdf/brdf_quadrature.h"
 #include "base/gauss_legendre.h"
+#include "filtering/brdf/brdf_quadrature.h"
 #include "test.h"
 
 #include <cmath>

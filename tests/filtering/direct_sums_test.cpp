@@ -4,8 +4,8 @@
 #include "domelight/io/environment/open_environment.h"
 
 #include "accuracy.h"
-#include "filtering/prefilter_checks.h"
 #include "filtering/direct/refined_rows.h"
+#include "filtering/prefilter_checks.h"
 #include "test.h"
 
 #include <optional>

@@ -1,8 +1,8 @@
 #include "domelight/filtering/prefilter.h"
 #include "domelight/projection/projection.h"
 
-#include "projection/bordered_cube.h"
 #include "base/gauss_legendre.h"
+#include "projection/bordered_cube.h"
 #include "test.h"
 
 #include <random>

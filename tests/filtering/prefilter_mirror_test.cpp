@@ -50,8 +50,7 @@ TEST_CASE("prefilter: a source that is mirrored or turned in any way gives the c
                         for (int x = 0; x < 8; ++x) {
                             const CubePoint p = cube_point(m * cube_direction(f, {(x + 0.5) / 8, (y + 0.5) / 8}));
                             const float* a = turned.specular[level].face(f).at(x, y);
-                            const float* b =
-                                plain.specular[level].face(p.face).at(int(p.uv.u * 8), int(p.uv.v * 8));
+                            const float* b = plain.specular[level].face(p.face).at(int(p.uv.u * 8), int(p.uv.v * 8));
                             for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(double(a[c]) - b[c]));
                         }
                 CAPTURE(order);

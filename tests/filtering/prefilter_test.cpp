@@ -1,8 +1,8 @@
-#include "domelight/image/row_source.h"
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/filtering/prefilter.h"
 
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
 
 #include "accuracy.h"
 #include "filtering/harmonic/ring_grid.h"

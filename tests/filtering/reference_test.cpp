@@ -71,8 +71,8 @@ TEST_CASE("convolve_exactly: a constant environment stays constant, at every siz
         for (const ZonalKernel& kernel : k_kernels)
             for (const Vec3d& value : convolve_exactly(image, kernel, directions()))
                 // The error of the quadrature is 1e-9 to 5e-8 at 1k, and a little more if a patch spans radians.
-                CHECK_MESSAGE(std::abs(value.y / 0.75 - 1) < 1e-6, width, " x ", height, " ", name_of(kernel.lobe),
-                              " ", kernel.width);
+                CHECK_MESSAGE(std::abs(value.y / 0.75 - 1) < 1e-6, width, " x ", height, " ", name_of(kernel.lobe), " ",
+                              kernel.width);
     }
 }
 

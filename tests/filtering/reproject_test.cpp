@@ -142,8 +142,9 @@ TEST_CASE("reproject: the same grid returns the texels, nothing negative appears
     std::uniform_real_distribution<double> unit(0, 1);
     for (const std::string name : {"latlong", "cube", "octahedral", "equal-area-octahedral"}) {
         INFO(name);
-        const ProjectedImage source =
-            picture(name, 16, [&](const Vec3d&) { return Vec3d{unit(random), std::pow(unit(random), 30) * 1e5, 0}; });
+        const ProjectedImage source = picture(name, 16, [&](const Vec3d&) {
+            return Vec3d{unit(random), std::pow(unit(random), 30) * 1e5, 0};
+        });
         const ProjectedImage same = to(source, name, 16);
         double worst = 0;
         for (std::size_t i = 0; i < source.pixels.pixels().size(); ++i)
@@ -189,8 +190,9 @@ TEST_CASE("reproject: the same bytes on any number of threads") {
 
 TEST_CASE("reproject: reducing does not alias") {
     // Every other row: stripes far finer than the target's texels become their mean.
-    const ProjectedImage stripes = picture(
-        "latlong", 256, [](const Vec3d& d) { return Vec3d{1, 1, 1} * (int(latlong_uv(d).v * 256) % 2 == 0 ? 2 : 0); });
+    const ProjectedImage stripes = picture("latlong", 256, [](const Vec3d& d) {
+        return Vec3d{1, 1, 1} * (int(latlong_uv(d).v * 256) % 2 == 0 ? 2 : 0);
+    });
     const Vec3d mean = radiant_power(stripes) / (4 * k_pi);
     const ProjectedImage small = to(stripes, "cube", 4);
     for (const float v : small.pixels.pixels()) CHECK(std::abs(v / mean.x - 1) < 0.03);  // at a pole a stripe is a disc

@@ -1,12 +1,12 @@
-#include "domelight/image/row_source.h"
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
 
-#include "domelight/projection/projection.h"
 #include "domelight/filtering/kernel/zonal_kernel.h"
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
+#include "domelight/projection/projection.h"
 
-#include "filtering/reference/source.h"
 #include "base/gauss_legendre.h"
+#include "filtering/reference/source.h"
 #include "test.h"
 
 #include <cmath>

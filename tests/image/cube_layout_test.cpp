@@ -1,4 +1,5 @@
 #include "domelight/image/cube_layout.h"
+
 #include "domelight/projection/projection.h"
 
 #include "test.h"

@@ -1,12 +1,13 @@
 #include "domelight/io/file/atomic_file.h"
+
 #include "domelight/io/write_image.h"
 #include "domelight/texture/texture.h"
 
-#include "texture/chain_encoder.h"
-#include "io/io_helpers.h"
 #include "io/file/output_file.h"
-#include "texture/container/texture_stream.h"
+#include "io/io_helpers.h"
 #include "test.h"
+#include "texture/chain_encoder.h"
+#include "texture/container/texture_stream.h"
 
 #include <fcntl.h>
 #include <sys/resource.h>

@@ -1,14 +1,14 @@
+#include "domelight/bake/bake.h"
 #include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"
-#include "domelight/bake/bake.h"
 #include "domelight/io/write_image.h"
 #include "domelight/projection/projections.h"
 
 #include "oriented.h"
 #include "test.h"
 
-#include <ImfEnvmapAttribute.h>
 #include <ImfChannelList.h>
+#include <ImfEnvmapAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfStandardAttributes.h>
 #include <ImfTiledInputFile.h>

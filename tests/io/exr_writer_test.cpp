@@ -1,9 +1,9 @@
 #include "domelight/io/write_image.h"
 #include "domelight/projection/projection.h"
 
-#include "texture/texel/half.h"
 #include "io/io_helpers.h"
 #include "test.h"
+#include "texture/texel/half.h"
 
 #include <ImfChannelList.h>
 #include <ImfEnvmap.h>

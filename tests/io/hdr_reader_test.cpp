@@ -3,8 +3,8 @@
 
 #include "io/hdr/hdr_scanline_reader.h"
 #include "io/reader_samples.h"
-#include "texture/texel/rgbe_decode.h"
 #include "test.h"
+#include "texture/texel/rgbe_decode.h"
 
 #include <cmath>
 

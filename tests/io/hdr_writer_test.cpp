@@ -1,8 +1,8 @@
 #include "domelight/io/write_image.h"
 
-#include "texture/texel/rgbe.h"
 #include "io/io_helpers.h"
 #include "test.h"
+#include "texture/texel/rgbe.h"
 
 #include <cmath>
 #include <cstdio>

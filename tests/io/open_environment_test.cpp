@@ -1,11 +1,11 @@
-#include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"
-#include "domelight/environment/environment.h"
 
+#include "domelight/environment/environment.h"
+#include "domelight/image/row_source.h"
 #include "domelight/projection/projection.h"
 
-#include "io/reader_samples.h"
 #include "io/file/printable.h"
+#include "io/reader_samples.h"
 #include "test.h"
 
 #include <ImfChannelList.h>

@@ -1,7 +1,6 @@
 #pragma once
 // Small images that the tests of the readers write byte by byte, and helpers that read them.
 
-
 #include "io/image_reader.h"
 
 #include <array>

@@ -1,6 +1,6 @@
+#include "domelight/environment/sky/sky.h"
 #include "domelight/preview/preview.h"
 #include "domelight/projection/projection.h"
-#include "domelight/environment/sky/sky.h"
 
 #include "preview/preview_map.h"
 #include "preview/tonemap.h"

@@ -26,7 +26,8 @@ TEST_CASE("latlong_of_convention: a convention's words lead back to it") {
         const std::string projection = std::string("latlong/") + axes;
         CHECK(latlong_of_convention(projection_convention(projection)) == projection);
     }
-    for (const char* text : {"", "lat-long", "lat-long, centre +X, right +X, up +Y", "lat-long, centre +W, right +Z, up +Y",
-                             "octahedral, centre +Y, right +X, up +Z", "texture(cube, d) is the light"})
+    for (const char* text :
+         {"", "lat-long", "lat-long, centre +X, right +X, up +Y", "lat-long, centre +W, right +Z, up +Y",
+          "octahedral, centre +Y, right +X, up +Z", "texture(cube, d) is the light"})
         CHECK_FALSE(latlong_of_convention(text));
 }

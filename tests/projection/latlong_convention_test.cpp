@@ -1,8 +1,8 @@
 #include "projection/latlong_convention.h"
 
 #include "domelight/image/image.h"
-#include "domelight/projection/projection.h"
 #include "domelight/image/row_source.h"
+#include "domelight/projection/projection.h"
 
 #include "projection/latlong_regrid.h"
 #include "test.h"

@@ -1,14 +1,14 @@
 // glTF's layers: their samples against the densities that they state, their energy, their symmetries, and pictures
 // whose values are known.
-#include "domelight/render/render.h"
-#include "domelight/sampling/sequences.h"
-#include "domelight/render/shading/shading.h"
 #include "domelight/environment/sky/sky.h"
+#include "domelight/render/render.h"
+#include "domelight/render/shading/shading.h"
+#include "domelight/sampling/sequences.h"
 
-#include "sampling/distribution/chi_square.h"
-#include "render/surface/lobe_albedo.h"
 #include "render/shapes.h"
+#include "render/surface/lobe_albedo.h"
 #include "render/surface/surface.h"
+#include "sampling/distribution/chi_square.h"
 #include "sampling/hemisphere_quadrature.h"
 #include "test.h"
 
@@ -62,7 +62,8 @@ double integrate_patch(int i, const G& g, double tolerance) {
 double albedo(const Seen& seen, double tolerance = 1e-5) {
     double sum = 0;
     for (int i = 0; i < k_patches; ++i)
-        sum += integrate_patch(i, [&](const Vec3d& L) { return double(seen.evaluate(L).y); }, tolerance);
+        sum += integrate_patch(
+            i, [&](const Vec3d& L) { return double(seen.evaluate(L).y); }, tolerance);
     return sum;
 }
 
@@ -198,8 +199,10 @@ TEST_CASE("lobes: draws follow the stated density, and weigh what the lobes refl
                 }
                 double drawn = 0, reflected = 0;
                 for (int i = 0; i < k_patches; ++i) {
-                    drawn += expected[i] = integrate_patch(i, [&](const Vec3d& L) { return seen.pdf(L); }, 3e-6);
-                    reflected += integrate_patch(i, [&](const Vec3d& L) { return double(seen.evaluate(L).y); }, 3e-6);
+                    drawn += expected[i] = integrate_patch(
+                        i, [&](const Vec3d& L) { return seen.pdf(L); }, 3e-6);
+                    reflected += integrate_patch(
+                        i, [&](const Vec3d& L) { return double(seen.evaluate(L).y); }, 3e-6);
                 }
                 expected[k_patches] = std::max(0.0, 1 - drawn);
                 CHECK(drawn < 1 + 2e-3);

@@ -2,10 +2,10 @@
 // / 4 (F = 1), a function of the angle to the normal alone, so that the picture of a distant patch is an integral that
 // can be written down.
 
-#include "domelight/sampling/microfacet.h"
+#include "domelight/environment/sky/sky.h"
 #include "domelight/projection/projection.h"
 #include "domelight/render/render.h"
-#include "domelight/environment/sky/sky.h"
+#include "domelight/sampling/microfacet.h"
 
 #include "render/shapes.h"
 #include "test.h"

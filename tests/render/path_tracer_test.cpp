@@ -1,6 +1,6 @@
+#include "domelight/environment/sky/sky.h"
 #include "domelight/filtering/reference.h"
 #include "domelight/render/render.h"
-#include "domelight/environment/sky/sky.h"
 
 #include "render/shapes.h"
 #include "test.h"

@@ -1,11 +1,11 @@
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/render/shading/shading.h"
 
 #include "domelight/bake/bake.h"
+#include "domelight/environment/sky/sky.h"
+#include "domelight/filtering/reference.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/io/write_image.h"
 #include "domelight/projection/projection.h"
-#include "domelight/filtering/reference.h"
-#include "domelight/environment/sky/sky.h"
 
 #include "render/shading/shading_models.h"
 #include "render/shapes.h"
@@ -125,8 +125,7 @@ TEST_CASE("split-sum: a white plastic in an even light reflects all of it, unles
                 CHECK(reflected(shade_split_sum) == doctest::Approx(1).epsilon(1e-3));
                 CHECK(reflected(shade_stretched) == doctest::Approx(1).epsilon(1e-3));
                 o.diffuse_weight = DiffuseWeight::fresnel;
-                if (!multiple)
-                    worst_of_fresnel = std::max(worst_of_fresnel, std::abs(reflected(shade_split_sum) - 1));
+                if (!multiple) worst_of_fresnel = std::max(worst_of_fresnel, std::abs(reflected(shade_split_sum) - 1));
             }
         }
     CHECK(worst_of_fresnel > 0.05);  // this known error is the reason why it is not the default

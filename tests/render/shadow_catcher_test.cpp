@@ -1,7 +1,7 @@
-#include "domelight/image/row_source.h"
 #include "domelight/base/parallel.h"
-#include "domelight/render/shading/shading.h"
 #include "domelight/environment/sky/sky.h"
+#include "domelight/image/row_source.h"
+#include "domelight/render/shading/shading.h"
 
 #include "render/shapes.h"
 #include "test.h"

@@ -1,9 +1,9 @@
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/environment/sky/sky.h"
 #include "domelight/filtering/kernel/zonal_kernel.h"
+#include "domelight/io/environment/open_environment.h"
 
-#include "render/shapes.h"
 #include "render/shading/stretched_lobe.h"
+#include "render/shapes.h"
 #include "shading_error.h"
 #include "test.h"
 

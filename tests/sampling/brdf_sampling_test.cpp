@@ -3,8 +3,8 @@
 #include "domelight/sampling/brdf.h"
 #include "domelight/sampling/sequences.h"
 
-#include "sampling/distribution/chi_square.h"
 #include "filtering/brdf/brdf_quadrature.h"
+#include "sampling/distribution/chi_square.h"
 #include "sampling/hemisphere_quadrature.h"
 #include "test.h"
 

@@ -1,9 +1,9 @@
 #include "domelight/sampling/environment_sampler.h"
-#include "domelight/image/colour.h"
 
+#include "domelight/environment/sky/sky.h"
+#include "domelight/image/colour.h"
 #include "domelight/projection/projection.h"
 #include "domelight/sampling/sequences.h"
-#include "domelight/environment/sky/sky.h"
 
 #include "sampling/distribution/chi_square.h"
 #include "test.h"
@@ -110,8 +110,7 @@ TEST_CASE(
                 double sum = 0;
                 for (const double e : expected) sum += e;
                 INFO(name << ", " << name_of(method) << ", variant " << variant);
-                CHECK(sum == doctest::Approx(1).epsilon(
-                                 4e-3));  // the midpoint sum's error beside a pole
+                CHECK(sum == doctest::Approx(1).epsilon(4e-3));  // the midpoint sum's error beside a pole
                 constexpr int samples = 20000;
                 std::vector<double> observed(expected.size());
                 for (int i = 0; i < samples; ++i) {

@@ -1,15 +1,15 @@
-#include "domelight/image/row_source.h"
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/sampling/light_extraction.h"
 
-#include "domelight/filtering/prefilter.h"
-#include "domelight/projection/projection.h"
 #include "domelight/environment/sky/sky.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
+#include "domelight/projection/projection.h"
 
-#include "scene/gltf/gltf_lights_writer.h"
+#include "environment/sky/sky_model.h"
 #include "preview/lights_sheet.h"
 #include "sampling/harmonic_fill.h"
-#include "environment/sky/sky_model.h"
+#include "scene/gltf/gltf_lights_writer.h"
 #include "test.h"
 
 #include <algorithm>
@@ -100,7 +100,7 @@ void check_sound(const ImageF& image, const LightExtraction& found) {
         CHECK((l.share > 0 && l.share <= 1 + 1e-9));
         CHECK(std::isfinite(l.mean_radiance.x + l.mean_radiance.y + l.mean_radiance.z));
     }
-    for (double Vec3d::* c : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
+    for (double Vec3d::*c : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
         CHECK(std::abs(before.*c - lights.*c - after.*c) <= 1e-5 * before.*c);
         CHECK(after.*c <= before.*c * (1 + 1e-12));
         CHECK(found.report.original_power.*c == doctest::Approx(before.*c).epsilon(1e-9));

@@ -1,12 +1,12 @@
-#include "domelight/image/row_source.h"
-#include "domelight/io/environment/open_environment.h"
 #include "domelight/sampling/reflection_estimate.h"
 
-#include "domelight/filtering/prefilter.h"
-#include "domelight/sampling/product_sampling.h"
-#include "domelight/projection/projection.h"
-#include "domelight/filtering/reference.h"
 #include "domelight/environment/sky/sky.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/filtering/reference.h"
+#include "domelight/image/row_source.h"
+#include "domelight/io/environment/open_environment.h"
+#include "domelight/projection/projection.h"
+#include "domelight/sampling/product_sampling.h"
 
 #include "test.h"
 
@@ -67,8 +67,8 @@ TEST_CASE("estimate_reflection: every strategy agrees with the exact irradiance 
             EstimateOptions o;
             o.samples = 100000;
             const Estimate e = estimate_reflection(surface, s, strategy, o);
-            INFO(name_of(strategy) << " at " << normal.x << " " << normal.y << " " << normal.z << ": "
-                                         << e.radiance.y << " +- " << e.standard_error.y << ", exact " << truth.y);
+            INFO(name_of(strategy) << " at " << normal.x << " " << normal.y << " " << normal.z << ": " << e.radiance.y
+                                   << " +- " << e.standard_error.y << ", exact " << truth.y);
             CHECK(largest_deviation(e, truth) < 4.5);  // 7e-6 for one, two-sided; 60 numbers
             // The check is meaningful, because the interval is narrow.
             CHECK(e.standard_error.y / truth.y < most_error);
@@ -104,7 +104,7 @@ TEST_CASE("estimate_reflection: the lobe of the prefilter gives the exact prefil
             o.seed = 5;
             const Estimate e = estimate_reflection(prefilter_lobe(axis, kernel), *sampler, strategy, o);
             INFO(name_of(strategy) << ", roughness " << roughness << ": " << e.radiance.y << " +- "
-                                         << e.standard_error.y << ", exact " << truth.y);
+                                   << e.standard_error.y << ", exact " << truth.y);
             CHECK(largest_deviation(e, truth) < 4.5);
         }
     }

@@ -163,8 +163,8 @@ TEST_CASE("gltf malformed: broken JSON and broken containers") {
     CHECK(contains(error_of(load_text("{\"asset\":", "a.gltf")), "a.gltf: broken JSON: parse error at line 1"));
     CHECK(contains(error_of(load_text("[]", "a.gltf")), "not an object"));
     CHECK(contains(error_of(load_text(std::string(200000, '['), "a.gltf")), "broken JSON"));
-    CHECK(
-        contains(error_of(load_text(std::string(100000, '[') + std::string(100000, ']'), "a.gltf")), "nested more than 256 deep"));
+    CHECK(contains(error_of(load_text(std::string(100000, '[') + std::string(100000, ']'), "a.gltf")),
+                   "nested more than 256 deep"));
     CHECK(contains(error_of(load_text("", "a.gltf")), "empty"));
     CHECK(contains(error_of(load_text("glTF", "a.glb")), "ends too early"));
     CHECK(contains(error_of(load_text(std::string("glTF\1\0\0\0\24\0\0\0\0\0\0\0JSON", 20), "a.glb")), "version 1"));

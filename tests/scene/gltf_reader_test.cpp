@@ -345,7 +345,8 @@ TEST_CASE("gltf: the file says what one unit of irradiance is in lux, else the o
     CHECK(intensity_in(sample, options) == doctest::Approx(10));
 }
 
-TEST_CASE("load_environment_lights: lights of a file with or without triangles, and how far their environment was turned") {
+TEST_CASE(
+    "load_environment_lights: lights of a file with or without triangles, and how far their environment was turned") {
     const TemporaryFolder folder;
     const auto load = [&](GltfSample& sample, const char* name = "lights.gltf") {
         std::ofstream(folder / name) << sample.text();

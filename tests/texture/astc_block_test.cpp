@@ -1,12 +1,12 @@
 #include "texture/block/astc_block.h"
 
+#include "test.h"
 #include "texture/block/astc_codec.h"
 #include "texture/block/astc_ise.h"
 #include "texture/block/bc6h.h"
-#include "texture/texel/half.h"
 #include "texture/block/uastc_hdr.h"
+#include "texture/texel/half.h"
 #include "texture/uastc_samples.h"
-#include "test.h"
 
 #include <algorithm>
 #include <set>

@@ -2,8 +2,8 @@
 
 #include "domelight/texture/texture.h"
 
-#include "texture/uastc_samples.h"
 #include "test.h"
+#include "texture/uastc_samples.h"
 
 #include <cmath>
 
@@ -36,8 +36,8 @@ TEST_CASE("astc hdr: levels of any size come back, in both sizes of block") {
             const ImageF face = decode_texture(texture, l, 4);
             double off = 0;
             for (std::size_t i = 0; i < face.pixels().size(); ++i)
-                off = std::max(
-                    off, std::abs(double(std::log2(face.pixels()[i] / chain[std::size_t(l)].face(4).data[i]))));
+                off = std::max(off,
+                               std::abs(double(std::log2(face.pixels()[i] / chain[std::size_t(l)].face(4).data[i]))));
             CHECK(off < 0.5);  // the range of the noise
             CHECK(reports[std::size_t(l)].rms_error > 0);
             CHECK(reports[std::size_t(l)].rms_error < 0.12);

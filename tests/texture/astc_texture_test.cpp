@@ -1,8 +1,8 @@
 #include "domelight/texture/texture.h"
 
-#include "texture/uastc_samples.h"
 #include "io/io_helpers.h"
 #include "test.h"
+#include "texture/uastc_samples.h"
 
 #include <fstream>
 #include <iterator>

@@ -3,11 +3,11 @@
 #include "domelight/compare/picture_reader.h"
 #include "domelight/texture/texture.h"
 
-#include "texture/block/bc6h_encode.h"
-#include "texture/texel/half.h"
-#include "texture/block/bc6h_encode_simd.h"
 #include "base/instruction_set.h"
 #include "test.h"
+#include "texture/block/bc6h_encode.h"
+#include "texture/block/bc6h_encode_simd.h"
+#include "texture/texel/half.h"
 
 #include <algorithm>
 #include <array>

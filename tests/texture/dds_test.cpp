@@ -1,8 +1,8 @@
 #include "domelight/texture/texture.h"
 
 #include "io/io_helpers.h"
-#include "texture/container/texture_reading.h"
 #include "test.h"
+#include "texture/container/texture_reading.h"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 #include "domelight/projection/projection.h"
 #include "domelight/texture/texture.h"
 
+#include "test.h"
 #include "texture/chain_encoder.h"
 #include "texture/texel/encode_row.h"
 #include "texture/texel/encode_row_simd.h"
-#include "test.h"
 
 #include <cmath>
 #include <limits>

@@ -1,9 +1,9 @@
 #include "domelight/texture/texture.h"
 
 #include "io/io_helpers.h"
+#include "test.h"
 #include "texture/container/texture_reading.h"
 #include "texture/container/vulkan_formats.h"
-#include "test.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,7 +1,7 @@
+#include "test.h"
 #include "texture/texel/r11g11b10f.h"
 #include "texture/texel/rgb9e5.h"
 #include "texture/texel/rgbe.h"
-#include "test.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,9 @@
+#include "texture/texel_order.h"
+
 #include "domelight/engines/engine.h"
 #include "domelight/projection/projection.h"
 
 #include "texture/chain_encoder.h"
-#include "texture/texel_order.h"
 
 #include <doctest/doctest.h>
 

@@ -2,9 +2,9 @@
 
 #include "domelight/texture/texture.h"
 
-#include "texture/chain_encoder.h"
 #include "io/file/sha256.h"
 #include "test.h"
+#include "texture/chain_encoder.h"
 
 #include <cmath>
 #include <fstream>

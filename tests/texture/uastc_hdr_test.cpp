@@ -2,14 +2,14 @@
 
 #include "domelight/texture/texture.h"
 
+#include "base/instruction_set.h"
+#include "io/file/file_reader.h"
+#include "io/image_reader.h"
+#include "test.h"
 #include "texture/block/astc_codec.h"
 #include "texture/block/astc_ise.h"
 #include "texture/texel/half.h"
 #include "texture/uastc_samples.h"
-#include "io/file/file_reader.h"
-#include "io/image_reader.h"
-#include "base/instruction_set.h"
-#include "test.h"
 
 #include <algorithm>
 #include <cmath>

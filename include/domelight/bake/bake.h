@@ -187,7 +187,8 @@ Result<void> check_bake_options(const BakeOptions& options);
 /// several engines, each has a subfolder with its name. Everything is first written next to its final place and moved
 /// there when all is complete, so an error changes nothing.
 /// Errors: those of check_bake_options(), of reading the environment and of writing; `folder` is a file; "cancelled".
-Result<BakeReport> bake(const Environment& environment, const BakeOptions& options, const std::filesystem::path& folder);
+Result<BakeReport> bake(const Environment& environment, const BakeOptions& options,
+                        const std::filesystem::path& folder);
 
 /// Whether `folder` already holds exactly what a bake of these files with these options would write: the same version,
 /// options and source hash, and every file with its hash.

@@ -41,7 +41,9 @@ struct EnumNames;
 
 /// An enumeration with a table of names.
 template <typename E>
-concept NamedEnum = std::is_enum_v<E> && requires { EnumNames<E>::table; };
+concept NamedEnum = std::is_enum_v<E> && requires {
+    EnumNames<E>::table;
+};
 
 /// The name of a value: "ggx".
 template <NamedEnum E>

@@ -18,8 +18,8 @@ namespace domelight {
 
 /// A level of a bake.
 struct CubeLevel {
-    Cubemap cube;                     ///< RGB radiance, faces in the file's order
-    std::optional<double> roughness;  ///< the roughness that the file or its format states, [0, 1]
+    Cubemap cube;                         ///< RGB radiance, faces in the file's order
+    std::optional<double> roughness;      ///< the roughness that the file or its format states, [0, 1]
     std::optional<double> exponent = {};  ///< the same for a Phong lobe, >= 0; infinity: the environment itself
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/image/image.h"
 #include "domelight/compare/metrics.h"
+#include "domelight/image/image.h"
 
 #include <cstdint>
 #include <string>

@@ -1,8 +1,8 @@
 #pragma once
 // Differences between two pictures. All functions take two RGB images of the same size and an optional mask.
 
-#include "domelight/image/image.h"
 #include "domelight/base/result.h"
+#include "domelight/image/image.h"
 
 #include <cstdint>
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/image/image.h"
 #include "domelight/base/result.h"
+#include "domelight/image/image.h"
 #include "domelight/io/decode.h"
 
 #include <filesystem>
@@ -37,8 +37,8 @@ struct PictureOptions {
     int level = 0;           ///< textures: which level
     /// The meaning of a file's layer "variance": the variance of the pixel's value, or that of one sample, to be
     /// divided by the channel "samples".
-    std::string variance = "pixel";  ///< pixel | sample
-    bool opacity = false;            ///< read it where there is one
+    std::string variance = "pixel";     ///< pixel | sample
+    bool opacity = false;               ///< read it where there is one
     Decode decode = Decode::automatic;  ///< PNG and JPEG
     std::int64_t max_bytes = std::int64_t(1) << 30;
     int threads = 0;

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "domelight/base/names.h"
-#include "domelight/image/image.h"
 #include "domelight/base/progress.h"
-#include "domelight/environment/environment.h"
 #include "domelight/base/result.h"
-#include "domelight/image/row_source.h"
 #include "domelight/base/vec.h"
+#include "domelight/environment/environment.h"
 #include "domelight/filtering/kernel/zonal_kernel.h"
+#include "domelight/image/image.h"
+#include "domelight/image/row_source.h"
 
 #include <cstdint>
 #include <span>

@@ -29,8 +29,8 @@ struct ImageView {
           stride(stride_ ? stride_ : std::ptrdiff_t(width_) * channels_) {}
     /// A mutable view is also a const one.
     template <typename U>
-        requires std::is_same_v<T, const U>
-    ImageView(const ImageView<U>& v) : ImageView(v.data, v.width, v.height, v.channels, v.stride) {}
+    requires std::is_same_v<T, const U> ImageView(const ImageView<U>& v)
+        : ImageView(v.data, v.width, v.height, v.channels, v.stride) {}
 
     T* row(int y) const {
         assert(y >= 0 && y < height);

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/image/image.h"
 #include "domelight/base/result.h"
+#include "domelight/image/image.h"
 
 namespace domelight {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domelight/image/image.h"
-#include "domelight/filtering/prefilter.h"
 #include "domelight/base/vec.h"
+#include "domelight/filtering/prefilter.h"
+#include "domelight/image/image.h"
 
 #include <cstdint>
 #include <optional>
@@ -29,10 +29,10 @@ struct PreviewInput {
     std::vector<PreviewLevel> specular;  ///< sharpest first
     std::vector<PreviewLevel> sheen;     ///< of Charlie's lobe, shown below the others
     const FilteredMap* irradiance_over_pi = nullptr;
-    std::string irradiance_detail;      ///< the second line of the label below the irradiance; empty: its size
-    std::span<const Vec3d> sh;          ///< radiance coefficients (spherical_harmonics.h)
-    ImageView<const float> brdf;        ///< a BRDF table (brdf_table.h)
-    int brdf_channels = 2;              ///< how many of its channels are shown, as red, green and blue
+    std::string irradiance_detail;  ///< the second line of the label below the irradiance; empty: its size
+    std::span<const Vec3d> sh;      ///< radiance coefficients (spherical_harmonics.h)
+    ImageView<const float> brdf;    ///< a BRDF table (brdf_table.h)
+    int brdf_channels = 2;          ///< how many of its channels are shown, as red, green and blue
     std::string brdf_detail = "red scale, green bias";  ///< what these channels hold
     std::optional<double> exposure_ev;  ///< stops; empty: the exposure that brings the environment's log-average
                                         ///< luminance to 0.18

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "domelight/projection/projection.h"
 #include "domelight/base/result.h"
 #include "domelight/base/vec.h"
+#include "domelight/projection/projection.h"
 
 #include <memory>
 #include <span>

@@ -7,8 +7,8 @@
 //     auto picture = render_reference(*traced, *sampler, options);
 
 #include "domelight/base/names.h"
-#include "domelight/sampling/environment_sampler.h"
 #include "domelight/base/progress.h"
+#include "domelight/sampling/environment_sampler.h"
 #include "domelight/scene/scene.h"
 
 #include <functional>
@@ -87,9 +87,8 @@ struct RenderOptions {
     Camera camera;
     LightStrategy strategy = LightStrategy::mis;
     int samples = 64;  ///< of each pixel
-    double noise =
-        0;  ///< > 0: a pixel gets more samples (up to `most_samples`) while the standard error of its L / (1 + L) is
-            ///< above this
+    /// > 0: a pixel gets more samples (up to `most_samples`) while the standard error of its L / (1 + L) is above this
+    double noise = 0;
     int most_samples = 65536;
     double seconds = 0;  ///< > 0: stop after this time; the result then depends on the machine
     int bounces = 0;     ///< of indirect light; 0: direct light with shadows

@@ -8,8 +8,8 @@
 // docs/math/importance.md derives the densities.
 
 #include "domelight/base/names.h"
-#include "domelight/sampling/distribution/distribution.h"
 #include "domelight/environment/environment.h"
+#include "domelight/sampling/distribution/distribution.h"
 
 namespace domelight {
 
@@ -68,7 +68,8 @@ struct LightSampleSpans {
 class EnvironmentSampler {
   public:
     /// Reads an environment and keeps it in memory. Errors: those of reading it; no texels.
-    static Result<EnvironmentSampler> build(const Environment& environment, const EnvironmentSamplerOptions& options = {});
+    static Result<EnvironmentSampler> build(const Environment& environment,
+                                            const EnvironmentSamplerOptions& options = {});
     /// A lat-long image in memory, 3 channels, which must outlive the sampler. The light from world direction d is
     /// where the default convention has the direction world_to_source * d. Errors: no texels; a value that is NaN,
     /// infinite or negative (names the texel).

@@ -7,9 +7,9 @@
 //
 // docs/lights.md says how a source is found and what the numbers mean.
 
-#include "domelight/image/image.h"
 #include "domelight/base/result.h"
 #include "domelight/base/vec.h"
+#include "domelight/image/image.h"
 
 #include <cstdint>
 #include <vector>

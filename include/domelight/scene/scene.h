@@ -2,9 +2,9 @@
 // A scene: surfaces with materials and textures, lights and cameras, in the world of glTF 2.0: metres, right-handed, +Y
 // up.
 
-#include "domelight/image/rgba8_image.h"
 #include "domelight/base/result.h"
 #include "domelight/base/vec.h"
+#include "domelight/image/rgba8_image.h"
 
 #include <cstdint>
 #include <filesystem>

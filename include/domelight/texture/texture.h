@@ -2,8 +2,8 @@
 
 #include "domelight/base/large_allocator.h"
 #include "domelight/base/names.h"
-#include "domelight/filtering/prefilter.h"
 #include "domelight/base/result.h"
+#include "domelight/filtering/prefilter.h"
 
 #include <algorithm>
 #include <cstdint>

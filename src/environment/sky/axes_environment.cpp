@@ -1,6 +1,6 @@
 #include "domelight/base/parallel.h"
-#include "domelight/projection/projection.h"
 #include "domelight/environment/sky/sky.h"
+#include "domelight/projection/projection.h"
 
 #include "image/font.h"
 

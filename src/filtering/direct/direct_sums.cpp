@@ -72,7 +72,9 @@ class DirectSums::Pyramid {
     int height_at(int l) const { return (height_ + (1 << l) - 1) >> l; }
     double row_angle() const { return k_pi / height_; }
     /// sin θ at the upper edge of a row, and at the image's lower edge.
-    double edge_sine(int l, int row) const { return std::max(levels_[std::size_t(l)].edge_sines[std::size_t(row)], 0.0); }
+    double edge_sine(int l, int row) const {
+        return std::max(levels_[std::size_t(l)].edge_sines[std::size_t(row)], 0.0);
+    }
 
     void add_rows(ImageView<const float> rows, const std::function<void()>& batch_is_ready) {
         rows_.add_rows(rows);
@@ -95,16 +97,16 @@ class DirectSums::Pyramid {
     simd::CellRows cells(int l) const {
         const PyramidLevel& level = levels_[std::size_t(l)];
         const double h = row_angle(), size = h * (1 << l);
-        return {level.row(level.first_row), level.stride,       level.first_row,
-                level.x.data(),             level.places.data(), float((3 * h * h - size * size) / 24)};
+        return {
+            level.row(level.first_row),           level.stride, level.first_row, level.x.data(), level.places.data(),
+            float((3 * h * h - size * size) / 24)};
     }
     /// Patch row p lies between the texel rows p - 1 and p; the first and the last one reach the poles.
     simd::PatchRow patches(int p, int row_begin, int row_end, int first_texel) const {
         const PyramidLevel& texels = levels_.front();
         const int above = std::max(p - 1, 0), below = std::min(p, height_ - 1);
-        return {texels.row(above) + first_texel, texels.row(below) + first_texel,
-                above >= row_begin && above < row_end, below >= row_begin && below < row_end,
-                patch_nodes_.data() + 3 * p};
+        return {texels.row(above) + first_texel, texels.row(below) + first_texel, above >= row_begin && above < row_end,
+                below >= row_begin && below < row_end, patch_nodes_.data() + 3 * p};
     }
     std::ptrdiff_t texel_stride() const { return levels_.front().stride; }
 
@@ -138,7 +140,8 @@ class DirectSums::Pyramid {
         level.stride = (width + 2 * level.margin + k_lanes + 15) / 16 * 16;
         level.planes = AlignedArray<float>(std::size_t(level.rows_held + (l == 0)) * 4 * std::size_t(level.stride));
         level.x.assign(std::size_t(width) + k_lanes, 0);
-        for (int i = 0; i < width; ++i) level.x[std::size_t(i)] = 0.5f * float(i * cell + std::min((i + 1) * cell, width_));
+        for (int i = 0; i < width; ++i)
+            level.x[std::size_t(i)] = 0.5f * float(i * cell + std::min((i + 1) * cell, width_));
         for (int y = 0; y < height; ++y) {
             const double top = row_angle() * y * cell, bottom = row_angle() * std::min((y + 1) * cell, height_);
             level.places.push_back(colatitude(0.5 * (top + bottom), (std::cos(top) - std::cos(bottom)) * cell));
@@ -149,7 +152,8 @@ class DirectSums::Pyramid {
     }
 
     void add_patch_nodes() {
-        constexpr double node[3] = {0.1127016653792583, 0.5, 0.8872983346207417}, share[3] = {5 / 18., 8 / 18., 5 / 18.};
+        constexpr double node[3] = {0.1127016653792583, 0.5, 0.8872983346207417},
+                         share[3] = {5 / 18., 8 / 18., 5 / 18.};
         for (int p = 0; p <= height_; ++p) {
             const double top = std::max(p - 0.5, 0.0), size = std::min(p + 0.5, double(height_)) - top;
             for (int n = 0; n < 3; ++n) {
@@ -199,12 +203,14 @@ class DirectSums::Pyramid {
         const PyramidLevel& fine = levels_[std::size_t(l) - 1];
         PyramidLevel& coarse = levels_[std::size_t(l)];
         const int upper = 2 * y, lower = std::min(2 * y + 1, height_at(l - 1) - 1), width = width_at(l - 1);
-        const float a = fine.places[std::size_t(upper)].weight, b = upper < lower ? fine.places[std::size_t(lower)].weight : 0;
+        const float a = fine.places[std::size_t(upper)].weight,
+                    b = upper < lower ? fine.places[std::size_t(lower)].weight : 0;
         const float wa = 0.5f * a / (a + b), wb = 0.5f * b / (a + b);
         for (int c = 0; c < 4; ++c) {
             const float *p = fine.row(upper) + c * fine.stride, *q = fine.row(lower) + c * fine.stride;
             float* out = coarse.row(y) + c * coarse.stride;
-            for (int x = 0; x < width / 2; ++x) out[x] = wa * (p[2 * x] + p[2 * x + 1]) + wb * (q[2 * x] + q[2 * x + 1]);
+            for (int x = 0; x < width / 2; ++x)
+                out[x] = wa * (p[2 * x] + p[2 * x + 1]) + wb * (q[2 * x] + q[2 * x + 1]);
             if (width % 2) out[width / 2] = wa * p[width - 1] + wb * q[width - 1];
         }
     }
@@ -264,7 +270,7 @@ class DirectSums::Level {
         double theta;
         simd::LobeAxis axis;
         simd::LobeSum sum;
-        int index;            ///< in the map
+        int index;                ///< in the map
         bool all_around = false;  ///< so near a pole that whole rows are summed around it
     };
     /// Rows [row_begin, row_end) and columns [begin, end) of the image, the latter from minus a half turn on; of cells
@@ -321,15 +327,15 @@ class DirectSums::Level {
             simd::PatchColumns columns{0, pyramid_.columns(), box.all_around, pyramid_.texel_stride()};
             if (!box.all_around) columns.first = int(box.begin), columns.count = int(box.end - box.begin);
             for (int p = std::max(box.row_begin, begin); p <= std::min(box.row_end, last); ++p)
-                add(texel.sum, simd::sum_patches(
-                                   pyramid_.patches(p, box.row_begin, box.row_end, columns.first - 1), columns,
-                                   texel.axis));
+                add(texel.sum, simd::sum_patches(pyramid_.patches(p, box.row_begin, box.row_end, columns.first - 1),
+                                                 columns, texel.axis));
         });
     }
 
     void add_cells(int l, int row_begin, int row_end) {
         const bool is_last = l + 1 == int(reach_.size());
-        const double cell = pyramid_.row_angle() * (1 << l), reach = is_last ? 4 : reach_[std::size_t(l) + 1] + 3 * cell;
+        const double cell = pyramid_.row_angle() * (1 << l),
+                     reach = is_last ? 4 : reach_[std::size_t(l) + 1] + 3 * cell;
         for_texels(row_begin * cell - reach, row_end * cell + reach, [&](Texel& texel) {
             const Box outer = is_last ? Box{0, pyramid_.height_at(l), 0, 0, true} : box(texel, l + 1);
             const Box inner = l > 0 ? box(texel, l) : has_core_ ? core(texel) : Box{};

@@ -14,9 +14,9 @@ struct Colatitude {
 /// The axis of a GGX lobe, K ~ max(c, 0) / (s^2 + b^2)^2 with s the chord and c the cosine.
 struct LobeAxis {
     Colatitude at;
-    double x;        ///< azimuth in columns of the image
-    float b2;        ///< b^2, b = 2 α / √(1 − α²)
-    float columns;   ///< of the image, all around
+    double x;       ///< azimuth in columns of the image
+    float b2;       ///< b^2, b = 2 α / √(1 − α²)
+    float columns;  ///< of the image, all around
 };
 
 /// The weighted sum of texels, and of the weights alone.

@@ -3,8 +3,8 @@
 #include "domelight/base/frame.h"
 #include "domelight/projection/projection.h"
 
-#include "filtering/harmonic/tent_nodes.h"
 #include "filtering/harmonic/row_kernels.h"
+#include "filtering/harmonic/tent_nodes.h"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "domelight/image/image.h"
 #include "domelight/filtering/kernel/zonal_kernel.h"
+#include "domelight/image/image.h"
 
 #include "filtering/harmonic/bright_texels.h"
-#include "filtering/harmonic/sh_analysis.h"
 #include "filtering/harmonic/direct_lights.h"
+#include "filtering/harmonic/sh_analysis.h"
 
 #include <vector>
 

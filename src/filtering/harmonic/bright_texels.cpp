@@ -2,8 +2,8 @@
 
 #include "domelight/projection/projection.h"
 
-#include "filtering/harmonic/tent_nodes.h"
 #include "filtering/harmonic/row_kernels.h"
+#include "filtering/harmonic/tent_nodes.h"
 
 #include <algorithm>
 #include <cmath>

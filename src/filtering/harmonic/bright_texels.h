@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/image/image.h"
 #include "domelight/base/vec.h"
+#include "domelight/image/image.h"
 
 #include "filtering/harmonic/row_kernels.h"
 #include "filtering/harmonic/zonal_sum.h"

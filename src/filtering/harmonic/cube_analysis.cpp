@@ -3,9 +3,9 @@
 #include "domelight/base/parallel.h"
 #include "domelight/projection/projection.h"
 
+#include "base/gauss_legendre.h"
 #include "filtering/harmonic/ring_analysis.h"
 #include "filtering/harmonic/sphere_grid.h"
-#include "base/gauss_legendre.h"
 
 #include <algorithm>
 #include <cmath>

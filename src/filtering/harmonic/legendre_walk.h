@@ -1,7 +1,7 @@
 #pragma once
 
-#include "filtering/harmonic/ring_grid.h"
 #include "filtering/harmonic/legendre_kernels.h"
+#include "filtering/harmonic/ring_grid.h"
 
 #include <algorithm>
 #include <cmath>

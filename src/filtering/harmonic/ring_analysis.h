@@ -1,9 +1,9 @@
 #pragma once
 
+#include "filtering/harmonic/batch_fft.h"
 #include "filtering/harmonic/latitude_reduction.h"
 #include "filtering/harmonic/ring_grid.h"
 #include "filtering/harmonic/spectrum.h"
-#include "filtering/harmonic/batch_fft.h"
 
 #include <complex>
 #include <span>

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "domelight/image/image.h"
 #include "domelight/base/vec.h"
+#include "domelight/image/image.h"
 
 #include "base/aligned.h"
 #include "filtering/harmonic/bright_split.h"
-#include "filtering/harmonic/ring_grid.h"
 #include "filtering/harmonic/grid_lookup.h"
+#include "filtering/harmonic/ring_grid.h"
 
 #include <cstdint>
 

@@ -7,9 +7,9 @@
 #include "domelight/base/parallel.h"
 #include "domelight/filtering/reference.h"
 
+#include "base/gauss_legendre.h"
 #include "filtering/kernel/kernel_density.h"
 #include "filtering/reference/source.h"
-#include "base/gauss_legendre.h"
 
 #include <cassert>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/sampling/low_discrepancy.h"
 #include "domelight/filtering/reference.h"
+#include "domelight/sampling/low_discrepancy.h"
 
 #include "filtering/kernel/kernel_density.h"
 #include "filtering/reference/source.h"

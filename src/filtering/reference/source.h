@@ -1,8 +1,8 @@
 #pragma once
 
+#include "domelight/base/vec.h"
 #include "domelight/image/image.h"
 #include "domelight/projection/projection.h"
-#include "domelight/base/vec.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include "filtering/resample/area_resample_tile.h"
 
-#include "domelight/projection/projection.h"
 #include "domelight/base/vec.h"
+#include "domelight/projection/projection.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 
 #include "domelight/base/parallel.h"
 
-#include "io/file/printable.h"
 #include "io/exr/exr_header_reader.h"
 #include "io/exr/exr_stream.h"
+#include "io/file/printable.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

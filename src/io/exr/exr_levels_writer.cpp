@@ -1,9 +1,9 @@
 // Writes OpenEXR images with levels.
 #include "domelight/base/parallel.h"
 
-#include "texture/texel/half.h"
 #include "io/exr/exr_stream.h"
 #include "io/exr/exr_writing.h"
+#include "texture/texel/half.h"
 
 #include <ImfFrameBuffer.h>
 #include <ImfTiledOutputFile.h>
@@ -84,9 +84,9 @@ Result<void> write_exr_levels(const std::filesystem::path& file, std::span<const
                               const ExrWriteOptions& options) {
     if (levels.empty()) return Error{"no level to write", file.string(), ""};
     const bool cube = options.envmap == "cube";
-    const bool half = options.half ? *options.half : std::all_of(levels.begin(), levels.end(), [](const auto& level) {
-        return fits_half(level);
-    });
+    const bool half =
+        options.half ? *options.half
+                     : std::all_of(levels.begin(), levels.end(), [](const auto& level) { return fits_half(level); });
     if (const auto fit = check_sizes(levels, cube); !fit) return fit.error().at(file.string());
     return write_exr_file(file, [&](ExrOutputStream& stream) -> Result<void> {
         auto header = exr_header(levels[0].width, levels[0].height, levels[0].channels, half, options);

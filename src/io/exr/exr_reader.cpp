@@ -1,10 +1,10 @@
 #include "domelight/base/parallel.h"
 
-#include "io/file/printable.h"
 #include "image/colour_primaries.h"
 #include "image/repair.h"
 #include "io/exr/exr_header_reader.h"
 #include "io/exr/exr_stream.h"
+#include "io/file/printable.h"
 #include "io/image_reader.h"
 
 #include <ImfChannelList.h>

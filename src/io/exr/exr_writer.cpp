@@ -1,12 +1,12 @@
 // Writes OpenEXR scanline images.
+#include "domelight/base/parallel.h"
 #include "domelight/io/file/atomic_file.h"
 #include "domelight/io/write_image.h"
-#include "domelight/base/parallel.h"
 
-#include "texture/texel/half.h"
 #include "io/exr/exr_stream.h"
 #include "io/exr/exr_writing.h"
 #include "io/file/output_file.h"
+#include "texture/texel/half.h"
 
 #include <ImfChannelList.h>
 #include <ImfEnvmapAttribute.h>

@@ -45,7 +45,7 @@ Result<std::vector<std::uint8_t>> drain(int fd, const std::filesystem::path& fil
 Result<std::shared_ptr<const FileBytes>> FileBytes::open(const std::filesystem::path& file, std::int64_t max_bytes) {
     const Descriptor descriptor{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
     if (descriptor.fd < 0) return Error{errno == ENOENT ? "no such file" : std::strerror(errno), file.string(), ""};
-    struct stat about{};
+    struct stat about {};
     if (fstat(descriptor.fd, &about) != 0) return system_error(file, "stat");
     if (S_ISDIR(about.st_mode)) return Error{"is a folder, not an image", file.string(), ""};
 

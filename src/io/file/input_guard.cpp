@@ -8,7 +8,8 @@ Result<void> check_not_an_input(const std::filesystem::path& output, std::span<c
     for (const std::filesystem::path& input : inputs) {
         std::error_code missing;
         if (std::filesystem::equivalent(output, input, missing) && !missing)
-            return Error{"is read here, and would be overwritten", output.string(), "Name another place for the output."};
+            return Error{"is read here, and would be overwritten", output.string(),
+                         "Name another place for the output."};
     }
     return {};
 }

@@ -102,7 +102,7 @@ class JsonTree : public nlohmann::json_sax<nlohmann::json> {
     }
 
     Json root_;
-    std::vector<Json> open_;          ///< the arrays and objects around what is parsed
+    std::vector<Json> open_;         ///< the arrays and objects around what is parsed
     std::vector<std::string> keys_;  ///< of each of them, the key of the member that comes next
     std::string error_;
 };

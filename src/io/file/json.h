@@ -31,8 +31,7 @@ class Json {
     Json() = default;
     Json(std::nullptr_t) {}
     template <typename T>
-        requires std::is_arithmetic_v<T>
-    Json(T value) {
+    requires std::is_arithmetic_v<T> Json(T value) {
         if constexpr (std::is_same_v<T, bool>)
             value_ = value;
         else if constexpr (std::is_floating_point_v<T>)

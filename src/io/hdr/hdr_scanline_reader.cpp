@@ -90,9 +90,11 @@ void fill_short(std::uint8_t* to, int value, int n) {
 
 ScanlineStep skip_hdr_scanline(std::span<const std::uint8_t> data, int width) {
     if (is_new_rle(data, width)) {
-        return walk_new_rle(data, width, [](int, int, int, int) {}, [](int, int, int, const std::uint8_t*) {});
+        return walk_new_rle(
+            data, width, [](int, int, int, int) {}, [](int, int, int, const std::uint8_t*) {});
     }
-    return walk_old_rle(data, width, [](int, const std::uint8_t*) {}, [](int, int) {});
+    return walk_old_rle(
+        data, width, [](int, const std::uint8_t*) {}, [](int, int) {});
 }
 
 ScanlineStep decode_hdr_scanline(std::span<const std::uint8_t> data, int width, std::uint8_t* planes,

@@ -1,11 +1,11 @@
 // Writes Radiance HDR pictures (Ward, "The RADIANCE Picture File Format"; Real Pixels, Graphics Gems II).
-#include "domelight/io/file/atomic_file.h"
-#include "domelight/io/write_image.h"
 #include "domelight/base/parallel.h"
 #include "domelight/base/version.h"
+#include "domelight/io/file/atomic_file.h"
+#include "domelight/io/write_image.h"
 
-#include "texture/texel/rgbe.h"
 #include "io/file/output_file.h"
+#include "texture/texel/rgbe.h"
 
 #include <string>
 #include <vector>

@@ -19,7 +19,7 @@ std::vector<float> screen_curve(Decode decode, int levels) {
         const double v = double(i) / (levels - 1);
         curve[std::size_t(i)] = float(decode == Decode::linear    ? v
                                       : decode == Decode::gamma22 ? std::pow(v, 2.2)
-                                                            : srgb_to_linear(v));
+                                                                  : srgb_to_linear(v));
     }
     return curve;
 }

@@ -89,8 +89,8 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
     const Json& levels = chain["levels"];
     if (levels.size() != specular->size())
         return Error{
-            fmt::format("describes {} specular levels, but specular.ktx2 has {}", levels.size(), specular->size()), name,
-            ""};
+            fmt::format("describes {} specular levels, but specular.ktx2 has {}", levels.size(), specular->size()),
+            name, ""};
     const auto lobe = lobe_of(chain["lobe"].is_string() ? chain["lobe"].get<std::string>() : name_of(Lobe::ggx));
     if (!lobe) return lobe.error().at(name);
     impl.lobe = *lobe;
@@ -117,7 +117,8 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
     std::vector<Vec3d> radiance;
     for (const Json& c : coefficients.elements())
         if (c.size() == 3 && std::ranges::all_of(c.elements(), &Json::is_number))
-            radiance.push_back({c.elements()[0].get<double>(), c.elements()[1].get<double>(), c.elements()[2].get<double>()});
+            radiance.push_back(
+                {c.elements()[0].get<double>(), c.elements()[1].get<double>(), c.elements()[2].get<double>()});
     if (radiance.empty()) return Error{"has no coefficients", (folder / "sh.json").string(), ""};
     if (radiance.size() > 9) radiance.resize(9);
     impl.sh_irradiance = sh_irradiance_over_pi(radiance);
@@ -131,8 +132,7 @@ Result<LightMaps> LightMaps::bake(ImageView<const float> latlong, const Mat3& wo
     FilterOptions options;
     for (const LevelPlan& level : default_chain(engine, lobe)) {
         options.specular.push_back(level.spec);
-        maps.impl_->roughness.push_back(
-            is_phong(lobe) ? matching_roughness(level.exponent) : float(level.roughness));
+        maps.impl_->roughness.push_back(is_phong(lobe) ? matching_roughness(level.exponent) : float(level.roughness));
     }
     options.irradiance_size = engine.irradiance_size;
     options.sh_bands = 3;

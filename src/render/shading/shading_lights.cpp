@@ -1,8 +1,7 @@
 // Punctual lights on a surface as engines draw them: the material's own BRDF towards each light, without shadows.
 
-#include "render/shading/shading_models.h"
-
 #include "render/punctual.h"
+#include "render/shading/shading_models.h"
 
 namespace domelight {
 namespace {

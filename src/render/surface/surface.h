@@ -2,9 +2,9 @@
 
 #include "domelight/base/frame.h"
 
-#include "render/surface/bsdf.h"
 #include "render/layered_bsdf.h"
 #include "render/ray_scene.h"
+#include "render/surface/bsdf.h"
 
 namespace domelight {
 

@@ -1,8 +1,8 @@
 #include "domelight/sampling/distribution/alias.h"
 
+#include "sampling/distribution/alias_simd.h"
 #include "sampling/distribution/quanta.h"
 #include "sampling/distribution/weight_rows.h"
-#include "sampling/distribution/alias_simd.h"
 
 #include <bit>
 #include <cassert>

@@ -1,9 +1,9 @@
 #include "domelight/sampling/distribution/bilinear.h"
 
 #include "sampling/distribution/bilinear_place.h"
+#include "sampling/distribution/bilinear_simd.h"
 #include "sampling/distribution/quanta.h"
 #include "sampling/distribution/weight_rows.h"
-#include "sampling/distribution/bilinear_simd.h"
 
 #include <bit>
 #include <cassert>

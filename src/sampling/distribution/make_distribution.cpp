@@ -1,7 +1,7 @@
-#include "domelight/sampling/distribution/distribution.h"
 #include "domelight/sampling/distribution/alias.h"
 #include "domelight/sampling/distribution/bilinear.h"
 #include "domelight/sampling/distribution/binary.h"
+#include "domelight/sampling/distribution/distribution.h"
 #include "domelight/sampling/distribution/guided.h"
 #include "domelight/sampling/distribution/hierarchical.h"
 #include "domelight/sampling/distribution/plain.h"

@@ -36,9 +36,8 @@ Result<void> for_each_weight_row(const Weights& weights, int threads,
     const int width = weights.width, height = weights.height;
     if (width < 1 || height < 1) return Error{"there are no texels to draw from", "", ""};
     if (width > k_most || height > k_most)
-        return Error{
-            text(width, " x ", height, " texels are too many to draw from: at most ", k_most, " on a side"), "",
-            "resample the environment to a smaller size"};
+        return Error{text(width, " x ", height, " texels are too many to draw from: at most ", k_most, " on a side"),
+                     "", "resample the environment to a smaller size"};
 
     std::vector<int> bad(height, -1);
     std::vector<float> bad_weight(height, 0.0f);
@@ -57,8 +56,9 @@ Result<void> for_each_weight_row(const Weights& weights, int threads,
     });
     for (int y = 0; y < height; ++y)
         if (bad[y] >= 0)
-            return Error{text("the weight of the texel in column ", bad[y], ", row ", y, " is ", weight_fault(bad_weight[y])),
-                         "", "weights must be finite and not negative; repair the environment before drawing from it"};
+            return Error{
+                text("the weight of the texel in column ", bad[y], ", row ", y, " is ", weight_fault(bad_weight[y])),
+                "", "weights must be finite and not negative; repair the environment before drawing from it"};
     return {};
 }
 

@@ -1,9 +1,9 @@
 #include "scene/gltf/gltf_data.h"
 
 #include "io/file/printable.h"
+#include "io/image_reader.h"
 #include "scene/gltf/gltf_meshopt.h"
 #include "scene/gltf/gltf_uri.h"
-#include "io/image_reader.h"
 
 #include <fmt/format.h>
 
@@ -113,8 +113,8 @@ Result<GltfData> GltfData::open(const GltfDocument& document, std::span<const st
 Result<std::span<const std::uint8_t>> GltfData::range(int buffer, std::uint64_t offset, std::uint64_t length) const {
     const std::span<const std::uint8_t> bytes = buffers_[std::size_t(buffer)];
     if (offset > bytes.size() || length > bytes.size() - offset)
-        return Error{fmt::format("bytes {} to {} of buffer {} do not exist: it has {}", offset, offset + length,
-                                 buffer, bytes.size()),
+        return Error{fmt::format("bytes {} to {} of buffer {} do not exist: it has {}", offset, offset + length, buffer,
+                                 bytes.size()),
                      "", ""};
     return bytes.subspan(offset, length);
 }

@@ -1,11 +1,11 @@
 #include "scene/gltf/gltf_document.h"
 
 #include "io/file/json.h"
+#include "io/file/json_fields.h"
 #include "io/file/printable.h"
+#include "io/image_reader.h"
 #include "scene/gltf/gltf_materials.h"
 #include "scene/sound_places.h"
-#include "io/image_reader.h"
-#include "io/file/json_fields.h"
 
 #include <fmt/format.h>
 
@@ -43,8 +43,7 @@ int components_of(const std::string& type) {
 /// Reads the document part by part. Faults of members are kept in `error_`.
 class DocumentParser {
   public:
-    DocumentParser(const Json& json, const SceneOptions& options)
-        : root_(json, "", error_), options_(options) {}
+    DocumentParser(const Json& json, const SceneOptions& options) : root_(json, "", error_), options_(options) {}
     Result<GltfDocument> parse();
 
   private:
@@ -253,8 +252,7 @@ void DocumentParser::read_lights() {
         const std::vector<float> c = fields.numbers("color", 3);
         const Vec3f colour =
             c.empty() ? Vec3f{1, 1, 1} : Vec3f{std::max(c[0], 0.0f), std::max(c[1], 0.0f), std::max(c[2], 0.0f)};
-        light.intensity =
-            colour * (fields.number("intensity", 1, 0, 1e15f) / stated(fields).value_or(lux_per_unit));
+        light.intensity = colour * (fields.number("intensity", 1, 0, 1e15f) / stated(fields).value_or(lux_per_unit));
         if (const float range = fields.number("range", 0); range > 0) light.range = range;
         const std::string type = fields.require("type").text("type");
         if (type == "directional") {

@@ -2,10 +2,10 @@
 // glTF's EXT_lights_image_based: a prefiltered cube as pictures, one for each face of each level, and nine spherical
 // harmonics coefficients of the irradiance.
 
-#include "domelight/image/image.h"
 #include "domelight/base/result.h"
-#include "domelight/texture/texture.h"
 #include "domelight/base/vec.h"
+#include "domelight/image/image.h"
+#include "domelight/texture/texture.h"
 
 #include "io/file/file_reader.h"
 

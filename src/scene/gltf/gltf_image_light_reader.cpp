@@ -1,12 +1,12 @@
 // Reads glTF's EXT_lights_image_based.
 #include "io/file/json.h"
-#include "texture/texel/rgba8_ranges.h"
-#include "scene/gltf/gltf_chunks.h"
-#include "scene/gltf/gltf_data.h"
-#include "scene/gltf/gltf_image_light.h"
 #include "io/file/json_fields.h"
 #include "io/picture/screen_curve.h"
 #include "io/picture/texture_image.h"
+#include "scene/gltf/gltf_chunks.h"
+#include "scene/gltf/gltf_data.h"
+#include "scene/gltf/gltf_image_light.h"
+#include "texture/texel/rgba8_ranges.h"
 
 #include <fmt/format.h>
 
@@ -32,8 +32,7 @@ struct Definition {
 };
 
 /// An array of arrays of numbers; anything else is noted in `fields` and gives none.
-std::vector<std::vector<double>> numbers_of(JsonFields& fields, const Json& light, const char* key,
-                                            std::size_t inner) {
+std::vector<std::vector<double>> numbers_of(JsonFields& fields, const Json& light, const char* key, std::size_t inner) {
     std::vector<std::vector<double>> rows;
     fields.require(key);
     const Json* at = light.find(key);
@@ -42,8 +41,8 @@ std::vector<std::vector<double>> numbers_of(JsonFields& fields, const Json& ligh
         return {};
     }
     for (const Json& row : at->elements()) {
-        const bool fits = row.is_array() && row.size() == inner &&
-                          std::ranges::all_of(row.elements(), &Json::is_number);
+        const bool fits =
+            row.is_array() && row.size() == inner && std::ranges::all_of(row.elements(), &Json::is_number);
         if (!fits) {
             fields.fail(key, fmt::format("its elements are not {} numbers each", inner));
             return {};

@@ -2,8 +2,8 @@
 #include "domelight/io/file/atomic_file.h"
 
 #include "io/file/json.h"
-#include "scene/gltf/gltf_image_light.h"
 #include "io/picture/png_memory.h"
+#include "scene/gltf/gltf_image_light.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "scene/gltf/gltf_document.h"
 #include "io/file/json_fields.h"
+#include "scene/gltf/gltf_document.h"
 
 #include <vector>
 

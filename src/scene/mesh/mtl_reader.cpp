@@ -1,8 +1,8 @@
 #include "scene/mesh/mtl_reader.h"
 
 #include "io/file/printable.h"
-#include "io/image_reader.h"
 #include "io/file/text_fields.h"
+#include "io/image_reader.h"
 
 #include <fmt/format.h>
 

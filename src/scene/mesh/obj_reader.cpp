@@ -1,12 +1,12 @@
 #include "domelight/base/parallel.h"
 
 #include "io/file/printable.h"
+#include "io/file/text_fields.h"
 #include "io/image_reader.h"
 #include "scene/mesh/mesh_repair.h"
 #include "scene/mesh/mtl_reader.h"
 #include "scene/mesh/polygon.h"
 #include "scene/scene_readers.h"
-#include "io/file/text_fields.h"
 
 #include <fmt/format.h>
 

@@ -2,10 +2,10 @@
 
 #include "texture/block/astc_codec.h"
 #include "texture/block/bc6h.h"
-#include "texture/texel/half.h"
-#include "texture/block/uastc_hdr.h"
 #include "texture/block/bc6h_encode_simd.h"
+#include "texture/block/uastc_hdr.h"
 #include "texture/texel/encode_row_simd.h"
+#include "texture/texel/half.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,8 +1,8 @@
 #include "texture/block/uastc_hdr.h"
 
 #include "texture/block/astc_ise.h"
-#include "texture/texel/half.h"
 #include "texture/block/uastc_hdr_fit.h"
+#include "texture/texel/half.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // Reads Babylon's .env.
-#include "texture/container/env.h"
 #include "io/file/json_fields.h"
 #include "io/picture/texture_image.h"
+#include "texture/container/env.h"
 #include "texture/container/texture_reading.h"
 
 #include <fmt/format.h>

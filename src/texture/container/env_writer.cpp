@@ -17,8 +17,7 @@ namespace domelight {
 namespace {
 
 Result<void> check_cube(const Texture& cube) {
-    if (cube.encoding != Encoding::rgbd)
-        return Error{"a .env file holds rgbd, not " + name_of(cube.encoding), "", ""};
+    if (cube.encoding != Encoding::rgbd) return Error{"a .env file holds rgbd, not " + name_of(cube.encoding), "", ""};
     if (cube.faces != 6 || cube.width != cube.height || !std::has_single_bit(unsigned(cube.width)) ||
         cube.width > k_max_env_width)
         return Error{

@@ -2,12 +2,12 @@
 
 #include "domelight/io/file/atomic_file.h"
 
-#include "texture/texel/rgba8_ranges.h"
 #include "filtering/resample/resize_latlong.h"
 #include "io/file/file_reader.h"
 #include "io/file/output_file.h"
 #include "io/picture/png_memory.h"
 #include "io/picture/texture_image.h"
+#include "texture/texel/rgba8_ranges.h"
 
 #include <fmt/format.h>
 

@@ -6,8 +6,8 @@
 //   (0, 256) 256 x 128          roughness of level 1; each next half as large, at y += h
 //   (128, 384) 64 x 32          E / pi
 
-#include "domelight/image/image.h"
 #include "domelight/base/result.h"
+#include "domelight/image/image.h"
 #include "domelight/texture/texture.h"
 
 #include "io/file/byte_source.h"

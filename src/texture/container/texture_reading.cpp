@@ -45,8 +45,9 @@ Result<void> set_shape(TextureInfo& info, std::uint64_t width, std::uint64_t hei
 
 Result<Texture> texture_for(const TextureInfo& info, const std::optional<StoredTexels>& texels) {
     if (!texels)
-        return Error{"cannot decode " + info.format, "",
-                     "readable: half and float RGBA, RGB, RG and R, RGB9E5, R11G11B10, BC6H (unsigned), ASTC HDR 4x4 and 6x6"};
+        return Error{
+            "cannot decode " + info.format, "",
+            "readable: half and float RGBA, RGB, RG and R, RGB9E5, R11G11B10, BC6H (unsigned), ASTC HDR 4x4 and 6x6"};
     if (info.depth > 1) return Error{"is a three-dimensional texture, which is not supported", "", ""};
     if (info.layers > 1)
         return Error{"is an array of " + std::to_string(info.layers) + " textures, which is not supported", "", ""};

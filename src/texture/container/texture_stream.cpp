@@ -1,11 +1,11 @@
 #include "texture/container/texture_stream.h"
 
-#include "domelight/io/file/atomic_file.h"
 #include "domelight/base/parallel.h"
+#include "domelight/io/file/atomic_file.h"
 
-#include "texture/chain_encoder.h"
-#include "io/file/sha256.h"
 #include "io/file/output_file.h"
+#include "io/file/sha256.h"
+#include "texture/chain_encoder.h"
 
 #include <algorithm>
 #include <atomic>

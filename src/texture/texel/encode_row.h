@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/texture/texture.h"
 #include "domelight/base/vec.h"
+#include "domelight/texture/texture.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,5 @@
 #include "domelight/sampling/distribution/alias.h"
+
 #include "domelight/sampling/distribution/guided.h"
 
 #include "sampling/distribution/distribution_samples.h"

@@ -1,9 +1,9 @@
 #pragma once
 // Weights that are difficult for samplers, and points to draw with.
 
-#include "domelight/sampling/distribution/distribution.h"
-#include "domelight/projection/projection.h"
 #include "domelight/environment/sky/sky.h"
+#include "domelight/projection/projection.h"
+#include "domelight/sampling/distribution/distribution.h"
 
 #include <cmath>
 #include <random>

@@ -1,7 +1,8 @@
 // Requirements of every method of sampling a distribution, tested on all of them.
+#include "domelight/sampling/distribution/distribution.h"
+
 #include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"
-#include "domelight/sampling/distribution/distribution.h"
 
 #include "sampling/distribution/bilinear_place.h"
 #include "sampling/distribution/chi_square.h"

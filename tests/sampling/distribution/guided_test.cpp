@@ -1,9 +1,10 @@
 #include "domelight/sampling/distribution/guided.h"
+
 #include "domelight/sampling/distribution/plain.h"
 
+#include "base/instruction_set.h"
 #include "sampling/distribution/chi_square.h"
 #include "sampling/distribution/distribution_samples.h"
-#include "base/instruction_set.h"
 #include "test.h"
 
 #include <cstring>

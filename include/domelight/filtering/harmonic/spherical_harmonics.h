@@ -1,8 +1,8 @@
 #pragma once
 
 #include "domelight/base/names.h"
-#include "domelight/image/image.h"
 #include "domelight/base/vec.h"
+#include "domelight/image/image.h"
 
 #include <span>
 #include <vector>

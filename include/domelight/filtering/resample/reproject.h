@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/image/image.h"
 #include "domelight/base/progress.h"
+#include "domelight/image/image.h"
 #include "domelight/projection/projections.h"
 
 namespace domelight {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "domelight/environment/environment.h"
 #include "domelight/base/progress.h"
+#include "domelight/environment/environment.h"
 #include "domelight/filtering/resample/reproject.h"
 
 namespace domelight {

@@ -6,9 +6,9 @@
 //     auto [u, v, pdf_uv] = light->sample(point);
 
 #include "domelight/base/names.h"
-#include "domelight/image/image.h"
 #include "domelight/base/result.h"
 #include "domelight/base/unit_point.h"
+#include "domelight/image/image.h"
 
 #include <cstddef>
 #include <cstdint>
