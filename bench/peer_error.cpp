@@ -107,7 +107,7 @@ ErrorMeasure measure(const Texels& t, const std::vector<Vec3d>& truth) {
         const Vec3d e = t.values[i] - truth[i];
         squares += t.weights[i] * dot(e, e);
         total += t.weights[i] * dot(truth[i], truth[i]);
-        mean = mean + truth[i] * t.weights[i];
+        mean += truth[i] * t.weights[i];
         weight += t.weights[i];
     }
     mean = mean / weight;

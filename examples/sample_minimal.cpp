@@ -21,7 +21,7 @@ Result<Vec3f> light_of(const char* photograph) {
     for (int i = 0; i < count; ++i) {
         const LightSample light = sampler->sample(unit_point(Sequence::sobol, 1, i, count));
         const float NdotL = std::max(light.direction.y, 0.f);  // the surface faces +Y
-        sum = sum + light.radiance * (NdotL / light.pdf_solid_angle);
+        sum += light.radiance * (NdotL / light.pdf_solid_angle);
     }
     return sum / float(k_pi * count);  // a white Lambert surface: f = 1 / pi
 }

@@ -37,7 +37,7 @@ Vec3f light_from_above(const EnvironmentSampler& sampler) {
     Vec3f sum;
     for (int i = 0; i < count; ++i) {
         const LightSample light = sampler.sample(unit_point(Sequence::sobol, 1, i, count));
-        sum = sum + light.radiance * (std::max(light.direction.y, 0.f) / light.pdf_solid_angle);
+        sum += light.radiance * (std::max(light.direction.y, 0.f) / light.pdf_solid_angle);
     }
     return sum / float(k_pi * count);  // f = 1 / pi
 }

@@ -27,7 +27,7 @@
 //
 //        auto sampler = EnvironmentSampler::build(*environment);
 //        LightSample light = sampler->sample(unit_point(Sequence::sobol, seed, index, count));
-//        sum = sum + brdf(light.direction) * light.radiance * (NdotL / light.pdf_solid_angle);
+//        sum += brdf(light.direction) * light.radiance * (NdotL / light.pdf_solid_angle);
 //
 // 5. Compare with the truth, which is path-traced.
 //

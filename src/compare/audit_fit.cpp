@@ -144,7 +144,7 @@ Vec3f mean_of_square(const Cubemap& cube, std::span<const double> angles, int fa
             const Vec3d value{p[0], p[1], p[2]};
             if (!std::isfinite(value.x + value.y + value.z)) continue;
             const double w = angles[std::size_t(y) * std::size_t(cube.size()) + std::size_t(x)];
-            sum = sum + value * w;
+            sum += value * w;
             weight += w;
         }
     return Vec3f(weight > 0 ? sum / weight : Vec3d{NAN, NAN, NAN});

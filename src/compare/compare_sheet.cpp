@@ -75,7 +75,7 @@ void draw_picture(ImageView<std::uint8_t> image, int left, int top, const Fit& f
         for (int y = b.y0; y < b.y1; ++y)
             for (int x = b.x0; x < b.x1; ++x) {
                 const float* p = picture.at(x, y);
-                sum = sum + Vec3f{p[0], p[1], p[2]};
+                sum += Vec3f{p[0], p[1], p[2]};
             }
         const auto c = display.rgb8(sum / float((b.x1 - b.x0) * (b.y1 - b.y0)));
         return {c[0], c[1], c[2]};

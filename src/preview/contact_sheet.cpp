@@ -72,7 +72,7 @@ Ball make_ball(const PreviewMap& map, int size, bool chrome, int samples, int th
                     const float dx = (float(k % samples) + 0.5f) * step, dy = (float(k / samples) + 0.5f) * step;
                     Vec3f n{(float(i) + dx - centre) / radius, (centre - float(row) - dy) / radius, 0};
                     const float r2 = n.x * n.x + n.y * n.y;
-                    if (r2 > 0.9999f) n = n * (0.99995f / std::sqrt(r2));
+                    if (r2 > 0.9999f) n *= (0.99995f / std::sqrt(r2));
                     n.z = std::sqrt(std::max(0.0f, 1 - n.x * n.x - n.y * n.y));
                     // Towards the viewer is +Z: r = 2 (n.z) n - z.
                     const Vec3f d = chrome ? Vec3f{2 * n.z * n.x, 2 * n.z * n.y, 2 * n.z * n.z - 1} : n;

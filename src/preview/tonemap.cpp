@@ -25,7 +25,7 @@ Vec3f neutral(Vec3f v) {
     if (peak < start) return v;
     constexpr float d = 1 - start;
     const float new_peak = 1 - d * d / (peak + d - start);
-    v = v * (new_peak / peak);
+    v *= (new_peak / peak);
     const float g = 1 - 1 / (desaturation * (peak - new_peak) + 1);
     return v * (1 - g) + Vec3f{new_peak, new_peak, new_peak} * g;
 }

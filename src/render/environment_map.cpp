@@ -25,7 +25,7 @@ ImageF resampled(const EnvironmentSampler& source, int size, int threads, Direct
         for (int x = 0; x < size; ++x) {
             Vec3d sum;
             for (int k = 0; k < points * points; ++k)
-                sum = sum + Vec3d(source.radiance(Vec3f(direction_of(UV{(x + (k % points + 0.5) / points) / size,
+                sum += Vec3d(source.radiance(Vec3f(direction_of(UV{(x + (k % points + 0.5) / points) / size,
                                                                         (y + (k / points + 0.5) / points) / size}))));
             const Vec3f mean(sum / (points * points));
             std::copy_n(&mean.x, 3, out.at(x, y));

@@ -91,14 +91,14 @@ Bsdf::Value LayeredBsdf::evaluate_cosine(const Vec3f& V, const Vec3f& L) const {
     if (L.z > 0) {
         value = evaluate_base(V, L);
         const float scale = L.z * under();
-        value.diffuse = value.diffuse * scale;
-        value.specular = value.specular * scale;
-        if (sheen_share > 0) value.specular = value.specular + sheen_colour * (sheen.evaluate(V, L) * L.z * under_coat);
+        value.diffuse *= scale;
+        value.specular *= scale;
+        if (sheen_share > 0) value.specular += sheen_colour * (sheen.evaluate(V, L) * L.z * under_coat);
     }
     if (coat > 0) {
         const Vec3f Vc = coat_frame.to_local(V), Lc = coat_frame.to_local(L);
         const float f = GgxBrdf{coat_alpha, {k_coat_f0, k_coat_f0, k_coat_f0}}.evaluate(Vc, Lc).x * Lc.z * coat;
-        value.specular = value.specular + Vec3f{f, f, f};
+        value.specular += Vec3f{f, f, f};
     }
     return value;
 }

@@ -52,20 +52,20 @@ struct Path {
     UnitPoint point(int pair) const { return sobol_owen(derive_key(key, std::uint64_t(pair)), index); }
     /// Adds light that arrives after `bounce` bounces to the layers of the picture.
     void add(const Vec3f& light, int bounce) {
-        radiance = radiance + light;
+        radiance += light;
         const bool first = bounce <= passages;
         (first ? direct : indirect) = (first ? direct : indirect) + light;
         const Vec3f below = product(light, diffuse_share);
-        diffuse = diffuse + below;
-        specular = specular + (light - below);
+        diffuse += below;
+        specular += (light - below);
     }
     /// The same for light by lobe of the surface that it reaches; the lobes matter only at the first surface.
     void add(const Vec3f& d, const Vec3f& s, int bounce) {
         if (bounce > 0) return add(d + s, bounce);
         radiance = radiance + d + s;
         direct = direct + d + s;
-        diffuse = diffuse + d;
-        specular = specular + s;
+        diffuse += d;
+        specular += s;
     }
 };
 

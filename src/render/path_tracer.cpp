@@ -222,13 +222,13 @@ class Tracer final : public TileTracer {
             p.object = p.hit.instance + 1;
         }
         if (const Vec3f e = product(p.throughput, s.emission); largest(e) > 0) {
-            p.radiance = p.radiance + e;
+            p.radiance += e;
             const bool first = bounce - p.passages <= 1;
             (first ? p.direct : p.indirect) = (first ? p.direct : p.indirect) + e;
             if (bounce > 0) {
                 const Vec3f below = product(e, p.diffuse_share);
-                p.diffuse = p.diffuse + below;
-                p.specular = p.specular + (e - below);
+                p.diffuse += below;
+                p.specular += (e - below);
             }
         }
         return !s.unlit;
@@ -389,14 +389,14 @@ class Tracer final : public TileTracer {
     static void store(const Path& p, PixelSums& s) {
         const Vec3d r(p.radiance);
         if (!s.accepts(r)) return;
-        s.radiance = s.radiance + r;
-        s.squares = s.squares + Vec3d{r.x * r.x, r.y * r.y, r.z * r.z};
-        s.direct = s.direct + p.direct;
-        s.indirect = s.indirect + p.indirect;
-        s.diffuse = s.diffuse + p.diffuse;
-        s.specular = s.specular + p.specular;
-        s.albedo = s.albedo + p.albedo;
-        s.normal = s.normal + p.normal;
+        s.radiance += r;
+        s.squares += Vec3d{r.x * r.x, r.y * r.y, r.z * r.z};
+        s.direct += p.direct;
+        s.indirect += p.indirect;
+        s.diffuse += p.diffuse;
+        s.specular += p.specular;
+        s.albedo += p.albedo;
+        s.normal += p.normal;
         if (p.covered) {
             s.depth += p.depth;
             s.covered += 1;

@@ -59,11 +59,11 @@ class ShadowTracer {
         const float distance = (height_ - ray.origin.y) / ray.direction.y;
         // Seen from below, there is no ground.
         if (!(distance > 0) || !(ray.direction.y < 0) || !std::isfinite(distance)) {
-            sums.beyond = sums.beyond + behind;
+            sums.beyond += behind;
             sums.non_finite += !finite;
             return;
         }
-        sums.ground = sums.ground + behind;
+        sums.ground += behind;
         sums.ground_part += rest;
         const Vec3f p = ray.origin + ray.direction * distance;
         const bool lit = light_ground({p.x, height_, p.z}, point(k_light_pair), point(k_cosine_pair), rest, sums);
@@ -83,8 +83,8 @@ class ShadowTracer {
                 return;
             }
             if (!(luminance(all) > 0)) return;
-            sums.without = sums.without + all;
-            sums.with = sums.with + all * double(visibility(p, direction, distance));
+            sums.without += all;
+            sums.with += all * double(visibility(p, direction, distance));
         };
         constexpr float far = std::numeric_limits<float>::infinity();
         const LightSample light = sampler_.sample(light_point);

@@ -90,7 +90,7 @@ class Finder {
             const std::int64_t t = core.texels[i];
             const double power = luminance_[t] * sphere_.solid_angle(t);
             core.power += power;
-            core.sum = core.sum + sphere_.direction(t) * power;
+            core.sum += sphere_.direction(t) * power;
             sphere_.for_each_neighbour(t, [&](std::int64_t next) {
                 if (owner_[next] == number || !(luminance_[next] > level)) return;
                 if (owner_[next] != k_free || !cap.holds(sphere_.direction(next))) {

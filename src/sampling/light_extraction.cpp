@@ -35,10 +35,10 @@ Vec3d power_of(ImageView<const float> image, int threads) {
     std::vector<Vec3d> rows(image.height);
     parallel_ranges(image.height, 16, threads, [&](int begin, int end) {
         for (int y = begin; y < end; ++y)
-            for (int x = 0; x < image.width; ++x) rows[y] = rows[y] + rgb(image.at(x, y));
+            for (int x = 0; x < image.width; ++x) rows[y] += rgb(image.at(x, y));
     });
     Vec3d sum;
-    for (int y = 0; y < image.height; ++y) sum = sum + rows[y] * latlong_solid_angle(y, image.width, image.height);
+    for (int y = 0; y < image.height; ++y) sum += rows[y] * latlong_solid_angle(y, image.width, image.height);
     return sum;
 }
 
@@ -66,7 +66,7 @@ std::vector<Piece> taken_from(ImageView<const float> before, ImageView<const flo
 Vec3d middle(const std::vector<Piece>& pieces, const Vec3d& axis, double cosine) {
     Vec3d sum;
     for (const Piece& p : pieces)
-        if (dot(p.direction, axis) >= cosine) sum = sum + p.direction * p.weight;
+        if (dot(p.direction, axis) >= cosine) sum += p.direction * p.weight;
     return length(sum) > 0 ? normalize(sum) : axis;
 }
 
@@ -138,7 +138,7 @@ ExtractedLight describe(ImageView<const float> before, ImageView<const float> af
     const std::vector<Piece> pieces = taken_from(before, after, sphere, region);
     ExtractedLight light;
     for (const Piece& p : pieces) {
-        light.irradiance = light.irradiance + p.power;
+        light.irradiance += p.power;
         light.texels += p.weight > 0;
     }
     light.share = luminance(light.irradiance) / total_luminance;
@@ -249,7 +249,7 @@ Result<LightExtraction> extract_lights(ImageView<const float> image, const Light
         }
         kept = std::move(holding);
     }
-    for (const ExtractedLight& light : out.lights) report.light_power = report.light_power + light.irradiance;
+    for (const ExtractedLight& light : out.lights) report.light_power += light.irradiance;
     std::stable_sort(out.lights.begin(), out.lights.end(),
                      [](const auto& a, const auto& b) { return a.share > b.share; });
     report.remainder_power = power_of(out.remainder.view(), options.threads);

@@ -40,9 +40,9 @@ class Mean {
     void add(const Vec3d& x) {
         ++count_;
         const Vec3d before = x - mean_;
-        mean_ = mean_ + before / double(count_);
+        mean_ += before / double(count_);
         const Vec3d after = x - mean_;
-        squares_ = squares_ + Vec3d{before.x * after.x, before.y * after.y, before.z * after.z};
+        squares_ += Vec3d{before.x * after.x, before.y * after.y, before.z * after.z};
     }
     Estimate estimate(int samples) const {
         const auto error = [&](double s) { return count_ > 1 ? std::sqrt(s / (double(count_) * (count_ - 1))) : 0; };
@@ -63,7 +63,7 @@ Estimate riemann(const Local& local, const EnvironmentSampler& sampler, int samp
         for (int b = 0; b < j; ++b) {
             const double theta = (a + 0.5) * dtheta, phi = (b + 0.5) * dphi, s = std::sin(theta);
             const Vec3f L(Vec3d{s * std::cos(phi), s * std::sin(phi), std::cos(theta)});
-            sum = sum + local.integrand(L, sampler.radiance(local.to_world(L))) * (s * dtheta * dphi);
+            sum += local.integrand(L, sampler.radiance(local.to_world(L))) * (s * dtheta * dphi);
         }
     return {sum, {}, k * j};
 }
@@ -100,13 +100,13 @@ Estimate both(const Surface& surface, const Local& local, const EnvironmentSampl
         const BrdfSample b = surface.sample(local.V, unit_point(o.sequence, o.seed, i, pairs, 0));
         if (b.pdf_solid_angle > 0) {
             const LightSample light = sampler.look_up(local.to_world(b.L));
-            sum = sum + local.integrand(b.L, light.radiance) *
+            sum += local.integrand(b.L, light.radiance) *
                             (weight(b.pdf_solid_angle, light.pdf_solid_angle) / b.pdf_solid_angle);
         }
         const LightSample e = sampler.sample(unit_point(o.sequence, o.seed, i, pairs, 1));
         if (const Vec3f L = local.to_local(e.direction); L.z > 0) {
             const float pdf_brdf = surface.pdf_solid_angle(local.V, L);
-            sum = sum + local.integrand(L, e.radiance) * (weight(e.pdf_solid_angle, pdf_brdf) / e.pdf_solid_angle);
+            sum += local.integrand(L, e.radiance) * (weight(e.pdf_solid_angle, pdf_brdf) / e.pdf_solid_angle);
         }
         mean.add(sum);
     }

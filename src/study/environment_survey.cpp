@@ -39,7 +39,7 @@ Blob grow_blob(const ImageF& image, int start, double threshold, std::vector<cha
         const int i = front.back(), x = i % width, y = i / width;
         front.pop_back();
         const double omega = latlong_solid_angle(y, width, height), power = omega * texel_luminance(i);
-        blob.sum = blob.sum + latlong_direction({(x + 0.5) / width, (y + 0.5) / height}) * power;
+        blob.sum += latlong_direction({(x + 0.5) / width, (y + 0.5) / height}) * power;
         blob.power += power;
         if (texel_luminance(i) >= 0.5 * blob.peak) blob.core += omega;
         for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
@@ -89,7 +89,7 @@ std::vector<BrightLight> find_lights(const ImageF& image) {
         if (close == blobs.end()) {
             blobs.push_back(blob);
         } else {
-            close->sum = close->sum + blob.sum;
+            close->sum += blob.sum;
             close->power += blob.power;
         }
     }

@@ -34,10 +34,10 @@ Runs repeat(int runs, int threads, const std::function<Vec3d(int run)>& one) {
     std::vector<Vec3d> values(runs);
     parallel_for(runs, threads, [&](int i) { values[i] = one(i); });
     Runs out;
-    for (const Vec3d& v : values) out.mean = out.mean + v / double(runs);
+    for (const Vec3d& v : values) out.mean += v / double(runs);
     for (const Vec3d& v : values) {
         const Vec3d d = v - out.mean;
-        out.error = out.error + Vec3d{d.x * d.x, d.y * d.y, d.z * d.z} / (double(runs) * (runs - 1));
+        out.error += Vec3d{d.x * d.x, d.y * d.y, d.z * d.z} / (double(runs) * (runs - 1));
     }
     out.error = {std::sqrt(out.error.x), std::sqrt(out.error.y), std::sqrt(out.error.z)};
     return out;

@@ -27,7 +27,7 @@ Vec3d integral(const ImageF& image) {
     for (int y = 0; y < image.height(); ++y) {
         const double w = latlong_solid_angle(y, image.width(), image.height());
         for (int x = 0; x < image.width(); ++x)
-            sum = sum + Vec3d(image.at(x, y)[0], image.at(x, y)[1], image.at(x, y)[2]) * w;
+            sum += Vec3d(image.at(x, y)[0], image.at(x, y)[1], image.at(x, y)[2]) * w;
     }
     return sum;
 }

@@ -63,7 +63,7 @@ Vec3d total_light(ImageView<const float> image) {
                                               : 4 * std::sin((y + 0.5) * h) * std::pow(std::sin(0.5 * h), 2) / h;
         for (int x = 0; x < image.width; ++x) {
             const float* p = image.at(x, y);
-            sum = sum + Vec3d(p[0], p[1], p[2]) * (tent * 2 * k_pi / image.width);
+            sum += Vec3d(p[0], p[1], p[2]) * (tent * 2 * k_pi / image.width);
         }
     }
     return sum;
@@ -89,7 +89,7 @@ Vec3d cube_light(ImageView<const float> strip) {
     for (int y = 0; y < 6 * n; ++y)
         for (int x = 0; x < n; ++x) {
             const float* p = strip.at(x, y);
-            sum = sum + Vec3d(p[0], p[1], p[2]) * cube_solid_angle(x, y % n, n);
+            sum += Vec3d(p[0], p[1], p[2]) * cube_solid_angle(x, y % n, n);
         }
     return sum;
 }
@@ -99,7 +99,7 @@ Vec3d latlong_light(ImageView<const float> image) {
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
             const float* p = image.at(x, y);
-            sum = sum + Vec3d(p[0], p[1], p[2]) * latlong_solid_angle(y, image.width, image.height);
+            sum += Vec3d(p[0], p[1], p[2]) * latlong_solid_angle(y, image.width, image.height);
         }
     return sum;
 }
@@ -132,7 +132,7 @@ Vec3d sampled_cube_texel(ImageView<const float> image, int face, int x, int y, i
         for (int i = 0; i < steps; ++i) {
             const Vec3d d = cube_direction(face, {(x + (i + 0.5) / steps) / size, (y + (j + 0.5) / steps) / size});
             const double w = std::pow(dot(d, d), -1.5);
-            sum = sum + bilinear(image, latlong_uv(m * d)) * w;
+            sum += bilinear(image, latlong_uv(m * d)) * w;
             weight += w;
         }
     return sum / weight;
@@ -145,7 +145,7 @@ Vec3d sampled_latlong_texel(ImageView<const float> image, int x, int y, int heig
         for (int i = 0; i < steps; ++i) {
             const UV uv{(x + (i + 0.5) / steps) / (2 * height), (y + (j + 0.5) / steps) / height};
             const double w = std::sin(k_pi * uv.v);
-            sum = sum + bilinear(image, latlong_uv(m * latlong_direction(uv))) * w;
+            sum += bilinear(image, latlong_uv(m * latlong_direction(uv))) * w;
             weight += w;
         }
     return sum / weight;
@@ -272,7 +272,7 @@ Vec3d total_light(const Cubemap& source) {
                 for (double v : {0.2113248654051871, 0.7886751345948129})
                     for (double u : {0.2113248654051871, 0.7886751345948129}) {
                         const Vec3d d = cube_direction(f, {(x + u) / cells, (y + v) / cells});
-                        sum = sum + integrator.at(d) * std::pow(dot(d, d), -1.5);
+                        sum += integrator.at(d) * std::pow(dot(d, d), -1.5);
                     }
     return sum * (1.0 / (double(cells) * cells));
 }
@@ -326,7 +326,7 @@ TEST_CASE("area_resample_cube: texels are averages, the mean is kept, a constant
                             const Vec3d d = cube_direction(
                                 y / to, {(x + (i + 0.5) / steps) / to, (y % to + (j + 0.5) / steps) / to});
                             const double w = std::pow(dot(d, d), -1.5);
-                            truth = truth + g.at(m * d) * w;
+                            truth += g.at(m * d) * w;
                             weight += w;
                         }
                     const float* p = out.strip().at(x, y);

@@ -54,7 +54,7 @@ struct Taken {
             for (int i = 0; i < nodes.count(); ++i) {
                 const Vec3d p = normalize(nodes.place(i));
                 const double angle = 2 * std::asin(std::min(1.0, 0.5 * length(p - n)));
-                sum = sum + Vec3d{nodes.r[i], nodes.g[i], nodes.b[i]} * kernel.density(angle);
+                sum += Vec3d{nodes.r[i], nodes.g[i], nodes.b[i]} * kernel.density(angle);
             }
         }
         return sum;

@@ -71,7 +71,7 @@ TEST_CASE("prefilter: a cube is filtered as the integral over its own reconstruc
     REQUIRE(again);
 
     Vec3d mean;
-    for (const Vec3d& l : truth.light) mean = mean + l / (4 * k_pi);
+    for (const Vec3d& l : truth.light) mean += l / (4 * k_pi);
     CHECK(std::abs(result->mean.x / mean.x - 1) < 1e-6);
     for (std::size_t l = 0; l <= options.specular.size(); ++l) {
         const bool irradiance = l == options.specular.size();

@@ -176,7 +176,7 @@ TEST_CASE("prefilter: SH coefficients are the integrals over the reconstruction,
         for (int i = 0; i < nodes.count(); ++i) {
             sh_basis(world_to_source.transposed() * normalize(nodes.place(i)), bands, basis);
             for (int k = 0; k < bands * bands; ++k)
-                truth[k] = truth[k] + Vec3d{nodes.r[i], nodes.g[i], nodes.b[i]} * basis[k];
+                truth[k] += Vec3d{nodes.r[i], nodes.g[i], nodes.b[i]} * basis[k];
         }
         // Wide lobes alone, and with a narrow one, for which the suns are removed.
         for (const double narrowest : {0.2, 0.05}) {

@@ -113,7 +113,7 @@ TEST_CASE("convolve_exactly: agrees with multiplying spherical harmonics by the 
         const std::vector<double> k = kernel.coefficients(k_bands - 1);
         std::vector<Vec3d> b = a;
         for (int l = 0; l < k_bands; ++l)
-            for (int i = l * l; i < (l + 1) * (l + 1); ++i) b[i] = b[i] * k[l];
+            for (int i = l * l; i < (l + 1) * (l + 1); ++i) b[i] *= k[l];
         const std::vector<Vec3d> axes = directions(), values = convolve_exactly(image, kernel, axes);
         for (std::size_t i = 0; i < axes.size(); ++i)
             // The tolerance is what bands from 40 on would add: l^-2 of the source times l^-2.5 of the lobe (l^-1.5 for

@@ -49,7 +49,7 @@ Vec3d convolve(const EnvironmentSampler& sampler, const Vec3d& N, int fine, cons
             const Vec3d L = latlong_direction({(x + 0.5) / w, (y + 0.5) / h});
             const double c = dot(L, N);
             if (c <= 0) continue;
-            sum = sum + Vec3d(sampler.radiance(Vec3f(L))) * (lobe(c) * area);
+            sum += Vec3d(sampler.radiance(Vec3f(L))) * (lobe(c) * area);
         }
     }
     return sum;
@@ -103,8 +103,8 @@ TEST_CASE("render: a distant metal's reflection at normal incidence is the envir
                 for (int x = 0; x < 8; ++x) {
                     REQUIRE(*r.opacity.at(x, y) == 1);
                     const float *p = r.radiance.at(x, y), *v = r.variance.at(x, y);
-                    mean = mean + Vec3d{p[0], p[1], p[2]} / 64.0;
-                    variance = variance + Vec3d{v[0], v[1], v[2]} / (64.0 * 64.0);
+                    mean += Vec3d{p[0], p[1], p[2]} / 64.0;
+                    variance += Vec3d{v[0], v[1], v[2]} / (64.0 * 64.0);
                 }
             INFO("roughness " << roughness << ", normal " << n.x << " " << n.y << " " << n.z);
             for (const auto& [ours, truth, v] : {std::tuple{mean.x, exact.x, variance.x},

@@ -86,13 +86,13 @@ void check_sound(const ImageF& image, const LightExtraction& found) {
         for (int x = 0; x < image.width(); ++x) {
             const float *a = image.at(x, y), *b = found.remainder.at(x, y);
             const double omega = latlong_solid_angle(y, image.width(), image.height());
-            before = before + Vec3d{a[0], a[1], a[2]} * omega;
-            after = after + Vec3d{b[0], b[1], b[2]} * omega;
+            before += Vec3d{a[0], a[1], a[2]} * omega;
+            after += Vec3d{b[0], b[1], b[2]} * omega;
             for (int c = 0; c < 3; ++c) fine = fine && b[c] >= 0 && std::isfinite(b[c]);
         }
     CHECK_MESSAGE(fine, "the remainder is finite and not negative");
     for (const ExtractedLight& l : found.lights) {
-        lights = lights + l.irradiance;
+        lights += l.irradiance;
         CHECK(length(l.direction) == doctest::Approx(1).epsilon(1e-12));
         CHECK(std::max({l.colour.x, l.colour.y, l.colour.z}) == doctest::Approx(1));
         CHECK(std::min({l.irradiance.x, l.irradiance.y, l.irradiance.z}) >= 0);
@@ -136,7 +136,7 @@ double irradiance_error(const ImageF& image, const LightExtraction& found) {
         const int w = 48, x = int(i) % w, y = int(i) / w;
         const Vec3d n = latlong_direction({(x + 0.5) / w, (y + 0.5) / 24});
         Vec3d sum = after[i];
-        for (const ExtractedLight& l : found.lights) sum = sum + l.irradiance * std::max(0.0, dot(n, l.direction));
+        for (const ExtractedLight& l : found.lights) sum += l.irradiance * std::max(0.0, dot(n, l.direction));
         const Vec3d off = sum - before[i];
         error = std::max({error, std::abs(off.x), std::abs(off.y), std::abs(off.z)});
         mean += (before[i].x + before[i].y + before[i].z) / 3 / double(before.size());

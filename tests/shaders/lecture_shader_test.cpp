@@ -224,7 +224,7 @@ TEST_CASE("shaders: sampleEnvmap draws what the sampler's walk draws, and its me
             const Vec3d d = turn.transposed() * latlong_direction({(x + 0.5) / 256, (y + 0.5) / 128});
             const float* p = image.at(x / 8, y / 8);
             const double share = std::max(0.0, dot(d, Vec3d(n))) * latlong_solid_angle(y, 256, 128) / k_pi;
-            irradiance_over_pi = irradiance_over_pi + Vec3d{p[0], p[1], p[2]} * share;
+            irradiance_over_pi += Vec3d{p[0], p[1], p[2]} * share;
         }
     CHECK(near(from_shader(s::diffuseBySamples(to_shader(n), 4096)), Vec3f(irradiance_over_pi), 0.01f));
 }

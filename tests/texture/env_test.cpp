@@ -202,13 +202,13 @@ TEST_CASE("babylon_polynomial: what Babylon makes of it is E / pi of the light, 
         for (int y = 0; y < rows; ++y)
             for (int x = 0; x < 2 * rows; ++x) {
                 const Vec3d d = latlong_direction({(x + 0.5) / (2 * rows), (y + 0.5) / rows});
-                truth = truth + sh_evaluate(radiance, d) *
+                truth += sh_evaluate(radiance, d) *
                                     (std::max(0.0, dot(n, d)) * latlong_solid_angle(y, 2 * rows, rows) / pi);
             }
         double y[9];
         sh_basis({-n.x, n.y, n.z}, 3, y);
         Vec3d shown;
-        for (int i = 0; i < 9; ++i) shown = shown + h[i] * y[i];
+        for (int i = 0; i < 9; ++i) shown += h[i] * y[i];
         CHECK(length(shown - truth) < 1e-3 * length(truth));
     }
 }

@@ -40,7 +40,7 @@ Vec3d sample(const Image<std::uint8_t>& atlas, UV at) {
         for (int i = 0; i < 2; ++i) {
             const std::uint8_t* p = atlas.at(std::clamp(x0 + i, 0, 511), std::clamp(y0 + j, 0, 511));
             const Vec3f v = rgb_from_rgbp({p[0], p[1], p[2], p[3]});
-            sum = sum + Vec3d(v) * ((i ? px - x0 : 1 - (px - x0)) * (j ? py - y0 : 1 - (py - y0)));
+            sum += Vec3d(v) * ((i ? px - x0 : 1 - (px - x0)) * (j ? py - y0 : 1 - (py - y0)));
         }
     return sum;
 }

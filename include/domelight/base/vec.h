@@ -24,6 +24,9 @@ struct Vec3 {
     constexpr Vec3 operator-() const { return {-x, -y, -z}; }
     constexpr Vec3 operator*(T s) const { return {x * s, y * s, z * s}; }
     constexpr Vec3 operator/(T s) const { return {x / s, y / s, z / s}; }
+    constexpr Vec3& operator+=(const Vec3& b) { return *this = *this + b; }
+    constexpr Vec3& operator-=(const Vec3& b) { return *this = *this - b; }
+    constexpr Vec3& operator*=(T s) { return *this = *this * s; }
     constexpr bool operator==(const Vec3&) const = default;
 };
 

@@ -3,7 +3,7 @@
 //
 //     auto sampler = EnvironmentSampler::build(*environment);       // or of an image in memory
 //     LightSample light = sampler->sample(unit_point(Sequence::sobol, seed, index, count));
-//     sum = sum + brdf(light.direction) * light.radiance * NdotL / light.pdf_solid_angle;
+//     sum += brdf(light.direction) * light.radiance * NdotL / light.pdf_solid_angle;
 //
 // docs/math/importance.md derives the densities.
 

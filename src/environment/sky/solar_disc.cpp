@@ -110,7 +110,7 @@ Vec3d SolarDisc::strip(double elevation, double from, double to) const {
     const auto add = [&](const Node& n) {
         const double s = k_pi / 2 * (middle + width * n.at), phi = half * std::sin(s);
         const double x = std::sqrt(base + cosines * square(std::sin(phi / 2))) / std::sin(k_sun_radius / 2);
-        sum = sum + radiance(elevation, std::min(x, 1.0)) * (n.weight * width * (k_pi / 2) * std::cos(s) * half);
+        sum += radiance(elevation, std::min(x, 1.0)) * (n.weight * width * (k_pi / 2) * std::cos(s) * half);
     };
     if (width < 0.06 && std::max(std::abs(s0), std::abs(s1)) < 0.9)
         for (const Node& n : k_gauss_3) add(n);
@@ -134,7 +134,7 @@ void SolarDisc::add_to_row(int y, int width, int height, double azimuth, float* 
         for (int x = first; x <= last; ++x) {
             const double p = std::max((x - centre) * texel, -half), q = std::min((x + 1 - centre) * texel, half);
             if (q > p)
-                sums[((x % width) + width) % width] = sums[((x % width) + width) % width] + strip(e, p, q) * weight;
+                sums[((x % width) + width) % width] += strip(e, p, q) * weight;
         }
     });
     for (int x = 0; x < width; ++x) {
@@ -150,7 +150,7 @@ Vec3d SolarDisc::irradiance() const {
     if (from >= to || extinction_.empty()) return sum;
     for_each_latitude(elevation_, from, to, [&](double e, double weight) {
         const double half = half_width(e, elevation_);
-        if (half > 0) sum = sum + strip(e, -half, half) * weight;
+        if (half > 0) sum += strip(e, -half, half) * weight;
     });
     return sum;
 }

@@ -28,8 +28,8 @@ void add_quartet(BrightPoints& points, const BrightPoints& of, int from, int to)
     double total = 0;
     for (int i = from; i < to; ++i) {
         const double weight = double(of.r[i]) + of.g[i] + of.b[i];
-        sum = sum + of.place(i) * weight;
-        power = power + Vec3d{of.r[i], of.g[i], of.b[i]};
+        sum += of.place(i) * weight;
+        power += Vec3d{of.r[i], of.g[i], of.b[i]};
         total += weight;
     }
     const Vec3d centre = sum / total, axis = normalize(centre);
@@ -41,7 +41,7 @@ void add_quartet(BrightPoints& points, const BrightPoints& of, int from, int to)
         const double weight = (double(of.r[i]) + of.g[i] + of.b[i]) / total, s = dot(d, frame.tangent),
                      t = dot(d, frame.bitangent);
         ss += weight * s * s, st += weight * s * t, tt += weight * t * t;
-        shift[0] = shift[0] + d * of.r[i], shift[1] = shift[1] + d * of.g[i], shift[2] = shift[2] + d * of.b[i];
+        shift[0] += d * of.r[i], shift[1] += d * of.g[i], shift[2] += d * of.b[i];
     }
     const double angle = 0.5 * std::atan2(2 * st, ss - tt), half = std::hypot(0.5 * (ss - tt), st);
     for (int k = 0; k < 2; ++k) {
@@ -111,7 +111,7 @@ class BrightSplit::TreeBuilder {
         add_quartet(lights_.points, below, 0, below.count());
         node.count = lights_.points.count() - node.first;
         Vec3d centre;
-        for (int i = node.first; i < node.first + node.count; ++i) centre = centre + lights_.points.place(i);
+        for (int i = node.first; i < node.first + node.count; ++i) centre += lights_.points.place(i);
         centre = normalize(centre);
         node.x = float(centre.x), node.y = float(centre.y), node.z = float(centre.z);
         double radius = 0;

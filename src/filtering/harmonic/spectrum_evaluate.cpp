@@ -50,7 +50,7 @@ std::vector<Vec3d> spectrum_to_sh(const Spectrum& spectrum, int bands, const Mat
             const Vec3d value =
                 evaluate_spectrum(spectrum, world_to_source * d, bands - 1) * (rule.w[i] * 2 * k_pi / azimuths);
             sh_basis(d, bands, basis);
-            for (int k = 0; k < bands * bands; ++k) out[k] = out[k] + value * basis[k];
+            for (int k = 0; k < bands * bands; ++k) out[k] += value * basis[k];
         }
     return out;
 }

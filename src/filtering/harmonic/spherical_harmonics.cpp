@@ -60,7 +60,7 @@ void sh_window(std::span<Vec3d> coefficients, ShWindow window) {
     const double bands = bands_of(coefficients.size());
     for (std::size_t i = 0; i < coefficients.size(); ++i) {
         const double x = band_of(i) / bands;
-        coefficients[i] = coefficients[i] * (window == ShWindow::hann ? (1 + std::cos(k_pi * x)) / 2 : sinc(x));
+        coefficients[i] *= (window == ShWindow::hann ? (1 + std::cos(k_pi * x)) / 2 : sinc(x));
     }
 }
 
@@ -68,7 +68,7 @@ std::vector<Vec3d> sh_irradiance_over_pi(std::span<const Vec3d> radiance) {
     std::vector<Vec3d> out(radiance.begin(), radiance.end());
     if (out.empty()) return out;
     const std::vector<double> k = ZonalKernel::cosine().coefficients(bands_of(out.size()) - 1);
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = out[i] * k[band_of(i)];
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] *= k[band_of(i)];
     return out;
 }
 
@@ -78,7 +78,7 @@ Vec3d sh_evaluate(std::span<const Vec3d> coefficients, const Vec3d& direction) {
     std::vector<double> basis(std::size_t(bands) * bands);
     sh_basis(direction, bands, basis);
     Vec3d sum;
-    for (std::size_t i = 0; i < coefficients.size(); ++i) sum = sum + coefficients[i] * basis[i];
+    for (std::size_t i = 0; i < coefficients.size(); ++i) sum += coefficients[i] * basis[i];
     return sum;
 }
 
@@ -88,7 +88,7 @@ std::vector<Vec3d> sh_filament(std::span<const Vec3d> radiance) {
     const double constants[9] = {std::sqrt(1 / (4 * k_pi)), c1, c1, c1, c2, c2, std::sqrt(5 / (16 * k_pi)), c2, c2 / 2};
     std::vector<Vec3d> out = sh_irradiance_over_pi(radiance.first(std::min<std::size_t>(9, radiance.size())));
     out.resize(9);
-    for (int i = 0; i < 9; ++i) out[i] = out[i] * constants[i];
+    for (int i = 0; i < 9; ++i) out[i] *= constants[i];
     return out;
 }
 

@@ -176,7 +176,7 @@ class PatchIntegral {
         const int rows = split_theta ? 2 : 1, columns = split_phi ? 2 : 1;
         for (int i = 0; i < rows; ++i)
             for (int j = 0; j < columns; ++j)
-                sum = sum + integrate({j == 0 ? cell.phi0 : phi, j == columns - 1 ? cell.phi1 : phi,
+                sum += integrate({j == 0 ? cell.phi0 : phi, j == columns - 1 ? cell.phi1 : phi,
                                        i == 0 ? cell.theta0 : theta, i == rows - 1 ? cell.theta1 : theta},
                                       depth + 1);
         return sum;
@@ -204,7 +204,7 @@ class PatchIntegral {
                 weight_left += k * (1 - s[j]);
                 weight_right += k * s[j];
             }
-            sum = sum + (left * weight_left + right * weight_right) * (rule.w[i] * sin_theta);
+            sum += (left * weight_left + right * weight_right) * (rule.w[i] * sin_theta);
         }
         return sum * (dphi * dtheta / 4);
     }
@@ -240,7 +240,7 @@ class PatchIntegral {
             for (int i = 0; i < 4; ++i) {
                 const double theta = a + (b - a) * (1 + rule.x[i]) / 2, sin_theta = std::sin(theta);
                 const double k = profile_(1 - (std::cos(theta) * axis_.cos_theta + sin_theta * flat));
-                sum = sum + radiance(phi, theta) * (rule.w[i] * rule.w[j] * (b - a) * k * sin_theta);
+                sum += radiance(phi, theta) * (rule.w[i] * rule.w[j] * (b - a) * k * sin_theta);
             }
         }
         return sum * ((cell.phi1 - cell.phi0) / 4);
@@ -258,7 +258,7 @@ class PatchIntegral {
             const double a = std::clamp(-edge, cell.phi0, cell.phi1), b = std::clamp(edge, cell.phi0, cell.phi1);
             for (int j = 0; j < 4; ++j) {
                 const double phi = a + (b - a) * (1 + rule.x[j]) / 2;
-                sum = sum + radiance(phi, theta) * (rule.w[i] * rule.w[j] * (b - a) * sin_theta *
+                sum += radiance(phi, theta) * (rule.w[i] * rule.w[j] * (b - a) * sin_theta *
                                                     profile_(1 - (up + flat * std::cos(phi))));
             }
         }
@@ -366,7 +366,7 @@ Vec3d sum_far(const Profile& profile, const Axis& axis, const RowNodes& nodes, c
         const auto total_of = [&](int channel) {
             return (sums[channel][0] + sums[channel][1]) + (sums[channel][2] + sums[channel][3]);
         };
-        total = total + Vec3d(total_of(0), total_of(1), total_of(2));
+        total += Vec3d(total_of(0), total_of(1), total_of(2));
     }
     return total;
 }
@@ -404,7 +404,7 @@ Vec3d integrate_row(const ReferenceSource& source, const Profile& profile, const
         Vec3d sum;
         for (int x = begin; x < end;) {  // wraps
             const int turn = (x % width + width) % width, count = std::min(end - x, width - turn);
-            sum = sum + sum_far(profile, axis, nodes, azimuths, turn, turn + count);
+            sum += sum_far(profile, axis, nodes, azimuths, turn, turn + count);
             x += count;
         }
         return sum;
@@ -435,15 +435,15 @@ Vec3d integrate_row(const ReferenceSource& source, const Profile& profile, const
                 return PatchIntegral(profile, axis, corners, {phi - shift, end_phi - shift, theta0, theta1},
                                      source.mean());
             };
-            sum = sum + integral(0)({phi, std::min(end_phi, k_pi), theta0, theta1});
+            sum += integral(0)({phi, std::min(end_phi, k_pi), theta0, theta1});
             if (end_phi > k_pi)
-                sum = sum + integral(turn)({-k_pi, end_phi - turn, theta0, theta1});  // across the far side
+                sum += integral(turn)({-k_pi, end_phi - turn, theta0, theta1});  // across the far side
         }
     };
     near_patches(low, left_begin);
-    sum = sum + far(left_begin, left_end);
+    sum += far(left_begin, left_end);
     near_patches(left_end, right_begin);
-    sum = sum + far(right_begin, right_end);
+    sum += far(right_begin, right_end);
     near_patches(right_end, high);
     return sum;
 }
@@ -464,7 +464,7 @@ std::vector<Vec3d> convolve_exactly(ImageView<const float> latlong, const ZonalK
         for (int r = 0; r < source.patch_rows(); ++r) {
             nodes.ready = false;
             for (int d = begin; d < end; ++d)
-                result[d] = result[d] + integrate_row(source, profile, axes[d], nodes, azimuths, r);
+                result[d] += integrate_row(source, profile, axes[d], nodes, azimuths, r);
         }
     });
     return result;

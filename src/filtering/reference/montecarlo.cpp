@@ -47,7 +47,7 @@ Vec3d montecarlo_sum(const ReferenceSource& source, const ZonalKernel& kernel, c
         const Drawn l = draw(density, kernel, unit_double(point.y));
         if (l.cosine <= 0) continue;
         const double weight = kernel.lobe == Lobe::phong_plain ? 1 : l.cosine;  // NdotL
-        sum = sum + source.lookup(frame.direction(l.cosine, l.sine, 2 * k_pi * unit_double(point.x))) * weight;
+        sum += source.lookup(frame.direction(l.cosine, l.sine, 2 * k_pi * unit_double(point.x))) * weight;
         weights += weight;
     }
     // No sample is above the horizon (charlie with very few samples): the lobe is replaced by its axis.

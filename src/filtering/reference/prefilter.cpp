@@ -71,7 +71,7 @@ bool fill_mirror(Grid& grid, const ReferenceSource& source, const FilterOptions&
                 for (int a = 0; a < n; ++a)
                     for (int b = 0; b < n; ++b) {
                         const double s = (b + 0.5) / n, t = (a + 0.5) / n, weight = grid.jacobian(i, s, t);
-                        sum = sum + source.lookup(options.world_to_source * grid.direction(i, s, t)) * weight;
+                        sum += source.lookup(options.world_to_source * grid.direction(i, s, t)) * weight;
                         weights += weight;
                     }
                 grid.set(i, sum / weights);

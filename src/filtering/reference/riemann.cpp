@@ -13,7 +13,7 @@ Vec3d riemann_sum(const ReferenceSource& source, const ZonalKernel& kernel, cons
         const double theta = (j + 0.5) * (k_pi / 2) / J, half = std::sin(theta / 2);
         const double cosine = std::cos(theta), sine = std::sin(theta), weight = density(2 * half * half, cosine) * sine;
         for (int k = 0; k < K; ++k)
-            sum = sum + source.lookup(frame.direction(cosine, sine, (k + 0.5) * 2 * k_pi / K)) * weight;
+            sum += source.lookup(frame.direction(cosine, sine, (k + 0.5) * 2 * k_pi / K)) * weight;
         weights += weight * K;
     }
     if (!options.normalised) return sum * ((2 * k_pi / K) * (k_pi / 2 / J));

@@ -13,7 +13,7 @@ ReferenceSource::ReferenceSource(ImageView<const float> latlong) : image_(latlon
     // form.
     std::vector<Vec3d> row_mean(height());
     for (int y = 0; y < height(); ++y) {
-        for (int x = 0; x < width(); ++x) row_mean[y] = row_mean[y] + texel(x, y);
+        for (int x = 0; x < width(); ++x) row_mean[y] += texel(x, y);
         row_mean[y] = row_mean[y] / width();
     }
     for (int r = 0; r < patch_rows(); ++r) {
@@ -23,7 +23,7 @@ ReferenceSource::ReferenceSource(ImageView<const float> latlong) : image_(latlon
         // (theta - middle) / (b - a)
         const double moment = 2 * std::cos(middle) * (std::sin(half) - half * std::cos(half)) / (b - a);
         const Vec3d above = row_mean[std::max(r - 1, 0)], below = row_mean[std::min(r, height() - 1)];
-        mean_ = mean_ + (above * (area / 2 - moment) + below * (area / 2 + moment)) / 2.0;
+        mean_ += (above * (area / 2 - moment) + below * (area / 2 + moment)) / 2.0;
     }
 }
 
@@ -57,13 +57,13 @@ std::vector<Vec3d> ReferenceSource::spherical_harmonics(int bands, const Mat3& w
                     const Vec3d source{std::sin(theta) * std::cos(phi), std::cos(theta),
                                        std::sin(theta) * std::sin(phi)};
                     sh_basis(source_to_world * source, bands, basis);
-                    for (int k = 0; k < count; ++k) rows[r][k] = rows[r][k] + value * (weight * basis[k]);
+                    for (int k = 0; k < count; ++k) rows[r][k] += value * (weight * basis[k]);
                 }
         }
     });
     std::vector<Vec3d> sum(count);
     for (const auto& row : rows)
-        for (int k = 0; k < count; ++k) sum[k] = sum[k] + row[k];
+        for (int k = 0; k < count; ++k) sum[k] += row[k];
     return sum;
 }
 

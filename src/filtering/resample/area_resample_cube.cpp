@@ -55,7 +55,7 @@ std::vector<Arc> clip(std::span<const Arc> border, const Vec3d& normal) {
 struct CubeIntegrator::Flux {
     Vec3d light;
     double solid_angle = 0;
-    void add(double weight, const Vec3d& g) { light = light + g * weight; }
+    void add(double weight, const Vec3d& g) { light += g * weight; }
 };
 
 struct CubeIntegrator::Cell {
@@ -237,7 +237,7 @@ ImageF area_resample_cube_to_latlong(const Cubemap& source, int out_height, cons
                 for (int i = 0; i < across; ++i) {
                     const double u0 = (x + double(i) / across) / width, u1 = (x + double(i + 1) / across) / width;
                     const double v0 = (y + double(j) / down) / out_height, v1 = (y + double(j + 1) / down) / out_height;
-                    flux = flux + integrator.integrate(area::latlong_border(u0, u1, v0, v1, world_to_source));
+                    flux += integrator.integrate(area::latlong_border(u0, u1, v0, v1, world_to_source));
                 }
             area::store(out.at(x, y), flux / latlong_solid_angle(y, width, out_height), range);
         }

@@ -247,7 +247,7 @@ class PlainResampler : public AreaResampler {
                              u1 = (x + double(i + 1) / across) / out_.width();
                 const double v0 = (y + double(j) / down) / out_.height(),
                              v1 = (y + double(j + 1) / down) / out_.height();
-                sum = sum + integrator.integrate(latlong_border(u0, u1, v0, v1, world_to_source_),
+                sum += integrator.integrate(latlong_border(u0, u1, v0, v1, world_to_source_),
                                                  pole_in_latlong(u0, u1, v0, v1, world_to_source_));
             }
         return sum / latlong_solid_angle(y, out_.width(), out_.height());

@@ -40,7 +40,7 @@ class LatlongIntegrator {
     struct Flux {
         Vec3d light;
         double solid_angle = 0;
-        void add(double weight, const Vec3d& g) { light = light + g * weight; }
+        void add(double weight, const Vec3d& g) { light += g * weight; }
     };
     struct Cell {
         int column, row;

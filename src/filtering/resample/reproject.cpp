@@ -182,7 +182,7 @@ class Reprojector {
                 const double w = target_.jacobian(uv);
                 const Place p = source_.locate(target_.direction(chart, uv));
                 const Vec3d g = p.shown || !source_.black_beyond() ? source_.at(p) : Vec3d{};
-                result.mean = result.mean + g * w;
+                result.mean += g * w;
                 weight += w;
                 result.least = std::min(result.least, g.x + g.y + g.z);
                 result.most = std::max(result.most, g.x + g.y + g.z);
@@ -227,7 +227,7 @@ Vec3d radiant_power(const ProjectedImage& image, int threads) {
         rows[std::size_t(y)] = Vec3d{sum[0], sum[1], sum[2]} * share;
     });
     Vec3d sum;
-    for (const Vec3d& row : rows) sum = sum + row;
+    for (const Vec3d& row : rows) sum += row;
     return sum;
 }
 

@@ -24,10 +24,10 @@ bool TileIntegrator::prepare(const Source& source, int chart, int x0, int y0, in
             const int w = source.width(),
                       column = source.wraps() ? ((x0 + x) % w + w) % w : std::clamp(x0 + x, 0, w - 1);
             c.solid_angle = source.solid_angle(column, std::clamp(y0 + y, 0, source.height() - 1));
-            constant.light = constant.light + c.cell.mean * c.solid_angle;
+            constant.light += c.cell.mean * c.solid_angle;
             constant.solid_angle += c.solid_angle;
-            slope = slope + c.cell.down * c.solid_angle;
-            curve = curve + c.cell.down2 * c.solid_angle;
+            slope += c.cell.down * c.solid_angle;
+            curve += c.cell.down2 * c.solid_angle;
         }
     }
     return true;

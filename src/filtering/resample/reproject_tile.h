@@ -9,7 +9,7 @@ struct Flux {
     Vec3d light;
     double solid_angle = 0;
     void add(double weight, const Flux& f) {
-        light = light + f.light * weight;
+        light += f.light * weight;
         solid_angle += weight * f.solid_angle;
     }
 };

@@ -34,7 +34,7 @@ class MeasuredRows {
                                          sum[2] + sum[5] + sum[8] + sum[11]} *
                                    latlong_solid_angle(next_ + y, rows_.width(), rows_.height());
         });
-        for (const Vec3d& sum : sums) power_ = power_ + sum;
+        for (const Vec3d& sum : sums) power_ += sum;
         next_ += block.height;
         if (progress_ && !progress_("convert", double(next_) / rows_.height())) return Error{"cancelled", "", ""};
         return {};

@@ -44,16 +44,16 @@ class ShadedTracer {
         for (int layer = 0; layer < most_layers && rest > 0; ++layer) {
             const Hit hit = rays_.intersect(ray, true);
             if (hit.instance < 0) {
-                light = light + background_radiance(options_, environment_, ray.direction) * rest;
+                light += background_radiance(options_, environment_, ray.direction) * rest;
                 break;
             }
             const SurfacePoint s = surface_at(scene_, hit, ray.origin, ray.direction, false);
             if (s.opacity > 0) {
                 const ShadedLight shaded = s.unlit ? ShadedLight{} : shade(s, hit, -ray.direction);
                 const float part = rest * s.opacity;
-                diffuse = diffuse + shaded.diffuse * part;
-                specular = specular + shaded.specular * part;
-                light = light + (shaded.diffuse + shaded.specular + s.emission) * part;
+                diffuse += shaded.diffuse * part;
+                specular += shaded.specular * part;
+                light += (shaded.diffuse + shaded.specular + s.emission) * part;
                 if (!first.covered) first = {true, s.albedo, s.normal, hit.distance, float(hit.instance + 1)};
                 rest -= part;
             }
@@ -62,10 +62,10 @@ class ShadedTracer {
         const Vec3d r(light);
         if (!sums.accepts(r)) return;
         if (first.covered) add_surface(first, sums);
-        sums.radiance = sums.radiance + r;
-        sums.squares = sums.squares + Vec3d{r.x * r.x, r.y * r.y, r.z * r.z};
-        sums.diffuse = sums.diffuse + diffuse;
-        sums.specular = sums.specular + specular;
+        sums.radiance += r;
+        sums.squares += Vec3d{r.x * r.x, r.y * r.y, r.z * r.z};
+        sums.diffuse += diffuse;
+        sums.specular += specular;
         sums.direct = sums.direct + diffuse + specular;
         ++sums.count;
     }
@@ -79,8 +79,8 @@ class ShadedTracer {
     };
 
     static void add_surface(const FirstSurface& first, PixelSums& sums) {
-        sums.albedo = sums.albedo + first.albedo;
-        sums.normal = sums.normal + first.normal;
+        sums.albedo += first.albedo;
+        sums.normal += first.normal;
         sums.depth += first.depth;
         sums.covered += 1;
         if (sums.count == 0) sums.object = first.object;

@@ -54,8 +54,8 @@ ShadedLight shade_lights(ShadingModel model, const SurfacePoint& s, const Vec3f&
         if (arrival.strength <= 0 || L.z <= 0) continue;
         const Bsdf::Value f = bsdf.evaluate(V_local, L);
         const Vec3f irradiance = light.intensity * (arrival.strength * L.z);
-        sum.diffuse = sum.diffuse + product(f.diffuse, irradiance);
-        sum.specular = sum.specular + product(f.specular, irradiance);
+        sum.diffuse += product(f.diffuse, irradiance);
+        sum.specular += product(f.specular, irradiance);
     }
     return sum;
 }

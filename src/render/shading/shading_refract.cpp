@@ -11,7 +11,7 @@ ShadedLight shade_refract(const SurfacePoint& s, const Vec3f& V, float ior, cons
     const float cos2 = 1 - eta * eta * (1 - NdotV * NdotV), f0 = (ior - 1) / (ior + 1) * ((ior - 1) / (ior + 1));
     const float mix = cos2 > 0 ? f0 + (1 - f0) * schlick_weight(NdotV) : 1;
     Vec3f light = environment.radiance(reflect_about(V, s.normal)) * mix;
-    if (mix < 1) light = light + environment.radiance(s.normal * (eta * NdotV - std::sqrt(cos2)) - V * eta) * (1 - mix);
+    if (mix < 1) light += environment.radiance(s.normal * (eta * NdotV - std::sqrt(cos2)) - V * eta) * (1 - mix);
     return {{}, light};
 }
 

@@ -50,11 +50,11 @@ ShadedLight shade_metallic_roughness(const SurfacePoint& s, float NdotV, float o
                                                               : diffuse_weight_energy(b.f0, b.f90, table);
     if (o.multiple_scattering) {
         const Vec3f multiple = multiple_scattering(b.f0, b.f90, table);
-        light.specular = light.specular + product(multiple, E);
+        light.specular += product(multiple, E);
         if (o.diffuse_weight == DiffuseWeight::energy) weight = weight - multiple;
     }
     light.diffuse = product(product(b.diffuse, weight), E) * occlusion;
-    light.specular = light.specular * specular_occlusion(NdotV, occlusion, b.alpha);
+    light.specular *= specular_occlusion(NdotV, occlusion, b.alpha);
     return light;
 }
 

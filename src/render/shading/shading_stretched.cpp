@@ -17,8 +17,8 @@ LobeLight stretched_light(const Vec3f& N, const Vec3f& V, float NdotV, float rou
     for (const StretchedTap& tap : stretched_taps(NdotV, roughness)) {
         const Vec3f L =
             maps.specular(R * float(std::cos(tap.tilt)) + up * float(std::sin(tap.tilt)), float(tap.roughness));
-        light.scale = light.scale + L * float(tap.scale);
-        light.bias = light.bias + L * float(tap.bias);
+        light.scale += L * float(tap.scale);
+        light.bias += L * float(tap.bias);
     }
     return light;
 }

@@ -21,7 +21,7 @@ Rgba base_color(const Scene& scene, const Material& m, const Corners& c) {
     if (const auto& colors = c.mesh.colors; !colors.empty()) {
         Vec3f rgb;
         float a = 0;
-        for (int k = 0; k < 3; ++k) rgb = rgb + colors[c.i[k]].rgb * c.w[k], a += colors[c.i[k]].a * c.w[k];
+        for (int k = 0; k < 3; ++k) rgb += colors[c.i[k]].rgb * c.w[k], a += colors[c.i[k]].a * c.w[k];
         base.rgb = product(base.rgb, rgb);
         base.a *= a;
     }
@@ -148,7 +148,7 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& origin,
              below.metalness, below.roughness, below.dielectric_f0, below.dielectric_f90, multiple_scattering, shift},
             *layers)) {
         out.layers = layers;
-        out.emission = out.emission * layers->under();
+        out.emission *= layers->under();
     }
     return out;
 }

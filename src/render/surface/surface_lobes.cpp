@@ -61,7 +61,7 @@ void make_transmission(const LayerInputs& in, float amount, LayeredBsdf& out) {
     out.clear_f0 = in.dielectric_f0;
     out.clear_f90 = in.dielectric_f90;
     out.transmitted = in.base * ((1 - in.metalness) * amount);
-    out.base.diffuse = out.base.diffuse * (1 - amount);
+    out.base.diffuse *= (1 - amount);
     if (!out.volume) return;
     // In the mesh's own metres.
     const float scale = std::cbrt(std::abs(in.instance.to_world.determinant()));

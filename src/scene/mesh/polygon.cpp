@@ -23,7 +23,7 @@ std::vector<Point> flattened(std::span<const std::uint32_t> corners, std::span<c
     const Vec3d origin(positions[corners[0]]);
     Vec3d normal;
     for (std::size_t i = 1; i + 1 < corners.size(); ++i)
-        normal = normal + cross(Vec3d(positions[corners[i]]) - origin, Vec3d(positions[corners[i + 1]]) - origin);
+        normal += cross(Vec3d(positions[corners[i]]) - origin, Vec3d(positions[corners[i + 1]]) - origin);
     const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
     std::vector<Point> points;
     for (const std::uint32_t corner : corners) {
