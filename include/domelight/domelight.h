@@ -6,7 +6,7 @@
 //
 //        auto environment = open_environment({"studio.hdr"});        // Result<Environment>
 //        if (!environment) return environment.error();               // what is wrong, where, and what to do
-//        auto up = environment->radiance({0, 1, 0});                 // light from a direction; rows() and latlong() too
+//        auto up = environment->radiance({0, 1, 0});                 // light from one direction; latlong(): from all
 //
 // 2. Filter it: levels for roughness, irradiance, spherical harmonics. Exact, in one pass over the rows.
 //
@@ -29,7 +29,7 @@
 //        LightSample light = sampler->sample(unit_point(Sequence::sobol, seed, index, count));
 //        sum += brdf(light.direction) * light.radiance * (NdotL / light.pdf_solid_angle);
 //
-// 5. Compare with the truth, which is path-traced.
+// 5. Compare with a path-traced picture: here direct light with shadows. RenderOptions::bounces adds indirect light.
 //
 //        auto scene = load_scene("helmet.glb");
 //        auto traced = RayScene::build(*std::move(scene));

@@ -49,14 +49,14 @@ struct EnumNames<CubePicture> {
 struct BakeOptions {
     std::vector<std::string> engines{"generic"};  ///< several engines share one reading of the environment
     std::optional<Layout> layout;                 ///< by default the engine's, which is mostly cube
-    std::optional<int> size;                      ///< level 0: face size, or height of a lat-long map
+    std::optional<int> size;                      ///< level 0: face size, or height of a lat-long map; 1 .. 16384
     std::optional<int> levels;
     std::vector<double> roughness;  ///< of each level, [0, 1]; empty: the engine's curve
     std::optional<Lobe> lobe;
     std::vector<double> exponents;  ///< Phong: of each level; infinity is the environment itself
     BakeMethod method = BakeMethod::exact;
-    PointSet points;  ///< montecarlo: the sample points, the same for every texel
-    RiemannOptions riemann;
+    PointSet points;         ///< montecarlo: the sample points, 1 .. 2^24 of them, the same for every texel
+    RiemannOptions riemann;  ///< 1 .. 65536 steps of each angle
 
     std::optional<Encoding> encoding;
     EncodingQuality encoding_quality = EncodingQuality::standard;
@@ -68,13 +68,13 @@ struct BakeOptions {
     /// whose bake has no lat-long image, or has one of a fixed convention.
     std::optional<std::string> latlong_out;
     std::optional<Quantity> irradiance_quantity;  ///< irradiance or irradiance_over_pi
-    std::optional<int> irradiance_size;           ///< face size, or half the height of a lat-long map
-    int sh_bands = 3;
+    std::optional<int> irradiance_size;           ///< face size, or half the height of a lat-long map; 1 .. 4096
+    int sh_bands = 3;                             ///< 1 .. 64
     ShWindow sh_window = ShWindow::none;
     BrdfG brdf_g = BrdfG::correlated;
     std::optional<BrdfForm> brdf_form;
-    std::optional<int> brdf_size;
-    bool brdf_float = false;  ///< RG32F instead of RG16F
+    std::optional<int> brdf_size;  ///< width and height, 1 .. 4096
+    bool brdf_float = false;       ///< the BRDF table in 32-bit floats instead of 16-bit ones
 
     bool preview = true;  ///< preview.png
     bool hashes = true;   ///< SHA-256 of source and files in the manifest

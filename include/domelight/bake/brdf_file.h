@@ -1,5 +1,5 @@
 #pragma once
-// The split sum's BRDF table as a file: the half of a bake that is the same for every environment.
+// The split sum's BRDF table as a file: the part of a bake that is the same for every environment.
 
 #include "domelight/base/result.h"
 #include "domelight/engines/engine.h"

@@ -34,8 +34,8 @@ struct NamedValue {
 /// The names of the enumeration E, by a specialisation that has
 ///
 ///     kind    what E is, for errors: "a lobe"
-///     table   an array of NamedValue<E> in the order of lists. Every value of E is in it. A value may have further
-///             names, which are accepted as well; the first one is name_of()'s
+///     table   an array of NamedValue<E>, in the order in which lists show the names. Every value of E is in it. A
+///             value may have further names, which are accepted as well; the first one is name_of()'s
 template <typename E>
 struct EnumNames;
 
@@ -75,7 +75,8 @@ std::vector<std::string> names_of() {
     return names;
 }
 
-/// The error of a word that is none of `accepted`, which it lists: "x" is not `kind`.
+/// The error for a word that is not one of `accepted`: it says that the word is not `kind` ("a lobe"), and lists the
+/// accepted words.
 Error unknown_name(std::string_view word, std::string_view kind, std::span<const std::string> accepted);
 
 /// The value of this name. The error lists the accepted names.

@@ -82,8 +82,8 @@ ImageF flip(ImageView<const float> test_srgb, ImageView<const float> reference_s
 struct HdrFlip {
     ImageF error;                ///< the largest error over the exposures
     ImageF exposure;             ///< the exposure (stops) at which it occurred
-    double start = 0, stop = 0;  ///< stops
-    int count = 0;
+    double start = 0, stop = 0;  ///< the first and the last exposure, in stops
+    int count = 0;               ///< the number of exposures
 };
 /// HDR-FLIP (Andersson et al. 2021): the largest FLIP over exposures chosen from the reference, tone mapped by ACES as
 /// the authors do. The images are linear radiance.

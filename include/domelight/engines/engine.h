@@ -77,7 +77,7 @@ struct Engine {
     std::string loads;  ///< one line for lists: the engine, and what is baked for it
     std::string note;   ///< a remark for the user: what the engine does itself, for example; may be empty
 
-    int size = 512;    ///< face size of level 0; 0 (only with `environment_only`): the image is as large as the source
+    int size = 512;    ///< face size of level 0; 0 (only with `environment_only`): the image is as fine as the source
     int smallest = 8;  ///< by default levels go down to this face size
     RoughnessCurve roughness = nullptr;
     Layout layout = Layout::cube;  ///< the default layout of the maps

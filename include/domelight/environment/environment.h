@@ -46,8 +46,9 @@ class Environment {
     std::string projection;                    ///< "latlong", "cube", or the name of another one in projections.h
     int width = 0, height = 0;  ///< texels of the image as it is stored; of one face where a cube is six images
     /// Where to look in the source for the light that arrives from a world direction: the convention, the up axis and
-    /// the rotation together (orthogonal, may mirror). The source's own frame is that of latlong_direction() for rows
-    /// and of cube_direction() for a cube.
+    /// the rotation together (orthogonal, may mirror). The source's own frame is that of latlong_direction() for rows,
+    /// that of cube_direction() for a cube, and the world of ProjectedImage::projection for a picture in another
+    /// projection.
     Mat3 world_to_source;
 
     Environment();
@@ -60,8 +61,9 @@ class Environment {
     /// From a cube of radiance. `threads`: for averaging it to rows; 0: all.
     static Environment from_cube(Cubemap cube, const Mat3& world_to_source = {}, RepairReport report = {},
                                  int threads = 0);
-    /// From a picture in any projection. It is turned into a lat-long image of the same resolution when rows are asked
-    /// for; that image may need at most `max_bytes`. `threads`: for that; 0: all.
+    /// From a picture in any projection. When rows are asked for, it is turned into a lat-long image of the same
+    /// resolution, but of 16384 x 8192 texels at most; that image may need at most `max_bytes`. `threads`: for that; 0:
+    /// all.
     static Environment from_picture(ProjectedImage picture, const Mat3& world_to_source = {}, RepairReport report = {},
                                     std::int64_t max_bytes = std::int64_t(1) << 30, int threads = 0);
 

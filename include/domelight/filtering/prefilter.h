@@ -89,13 +89,16 @@ struct FilterResult {
     int band_limit = 0;  ///< highest degree that was used
 };
 
-/// The exact prefilter: every level is the environment convolved with its kernel, to about 1e-4. The source is the
-/// bilinear reconstruction of the texels (u wraps, v clamps in the half rows at the poles). docs/math/prefilter.md.
-/// Errors: those of reading the source; "cancelled".
+/// The exact prefilter: every level is the environment convolved with its kernel. The relative RMS error is at most
+/// 5e-4 for the chains that README.md lists under "How exact". The source is the bilinear reconstruction of the texels
+/// (u wraps, v clamps in the half rows at the poles). docs/math/prefilter.md. Errors: those of reading the source;
+/// "cancelled".
 Result<FilterResult> prefilter(const Environment& environment, const FilterOptions& options);
 /// The same for the rows of a lat-long image, which are read once. The light from world direction d is where the
 /// default convention has the direction FilterOptions::world_to_source * d.
 Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options);
+/// The same for a cube: the light from world direction d is where the cube has the direction
+/// FilterOptions::world_to_source * d. Errors: "cancelled".
 Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& options);
 
 }  // namespace domelight

@@ -8,7 +8,8 @@ namespace domelight {
 
 /// Bad texels that a reader found and repaired. The report is complete once all rows have been read.
 struct RepairReport {
-    /// Texels with a NaN channel: set to the mean of their finite neighbours on the row, else 0.
+    /// Texels with a NaN channel: all their channels are set to the mean of the nearest texels without a NaN to the
+    /// left and to the right on the row (around the seam of a lat-long image), or to 0 if the row has none.
     std::int64_t not_a_number = 0;
     /// Texels with a channel that is infinite or, after the exposure, above 2^100: +infinity is set to the largest
     /// finite value of the format, -infinity to 0, larger values to 2^100.

@@ -10,7 +10,7 @@ enum class Decode {
     srgb,       ///< IEC 61966-2-1
     gamma22,    ///< the power 2.2
     linear,     ///< the light itself
-    rgbm,       ///< textures (DDS) only, as are the next two: Encoding::rgbm
+    rgbm,       ///< Encoding::rgbm; this one and the next two are for DDS textures only
     rgbd,       ///< Encoding::rgbd
     rgbp,       ///< Encoding::rgbp
 };

@@ -121,7 +121,7 @@ std::span<const ProjectionInfo> projections();
 /// The projection of the text NAME, NAME/CONVENTION or NAME/key=value,... NAME is a name in projections(), or
 /// "equirectangular" (= latlong) or "pbrt" (= equal-area-octahedral). CONVENTION is a lat-long convention
 /// (docs/conventions.md), for a cube "openexr". Keys are centre, right and up (signed axes) and, for mirror-ball, fov
-/// (degrees that the ball spans in the photograph, 0 for one from far away). Errors: any other text.
+/// (degrees that the ball spans in the photograph; 0: a photograph from far away). Errors: any other text.
 Result<Projection> projection_from_name(const std::string& text);
 
 }  // namespace domelight

@@ -170,7 +170,7 @@ Result<void> catch_shadow(RenderResult& picture, const RayScene& scene, const En
 /// left out".
 std::vector<std::string> not_rendered(const Scene& scene);
 
-/// A camera that looks from `eye` at `target`, +Y up.
+/// A camera that looks from `eye` at `target`, +Y up. `fov_y`: the vertical field of view in radians.
 Camera look_at(const Vec3f& eye, const Vec3f& target, float fov_y);
 /// Adapts a camera to a picture of aspect ratio `aspect` = width / height, > 0. Everything that the camera shows at its
 /// own aspect ratio stays visible; a wider picture shows more at the sides, a narrower one more above and below. A

@@ -25,7 +25,7 @@ struct LightExtractionOptions {
     /// luminance / c.
     double least_contrast = 4;
     /// The largest diameter of a source that can be a light, in degrees, 0.001 .. 30. A source up to three texels
-    /// across always can. In an image whose texels are wider than the largest diameter, no lights are found.
+    /// across may be larger. In an image whose texels are wider than the largest diameter, no lights are found.
     double largest_diameter_deg = 6;
     /// Sources closer than this (degrees, 0 .. 30) are merged into one light: a sun behind twigs.
     double merge_deg = 1.5;

@@ -14,7 +14,7 @@ namespace domelight {
 /// sampler     draws the candidates
 /// target      the function to sample in proportion to, >= 0: usually the luminance of f L NdotL; called once for each
 ///             candidate
-/// candidates  1..64 points, one for each candidate
+/// candidates  the points, one for each candidate; at least one
 /// choice      the point whose x chooses among the candidates
 /// returns     the candidate kept. Its pdf_solid_angle is not its true density, but 1 / pdf_solid_angle is an unbiased
 ///             estimate of 1 / density (Talbot 2005, eq. 3.6): divide by it as usual, but do not use it in MIS weights,

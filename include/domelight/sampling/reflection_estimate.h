@@ -55,7 +55,7 @@ struct EstimateOptions {
     int samples = 1024;
     Sequence sequence = Sequence::random;
     std::uint64_t seed = 1;
-    int candidates = 8;  ///< product: candidates for each sample kept
+    int candidates = 8;  ///< product: candidates for each sample kept, clamped to 1 .. 64
 };
 
 struct Estimate {

@@ -35,9 +35,9 @@ struct SceneTexture {
     int texcoord = 0;  ///< which set of texture coordinates, 0 or 1
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     bool nearest = false;
-    /// KHR_texture_transform: uv' = translation * rotation * scale * uv. A positive rotation is counter-clockwise as
-    /// seen with v running down. (The GLSL in the extension's text turns the other way, but its sample model and other
-    /// readers do not.)
+    /// KHR_texture_transform: uv' = translation * rotation * scale * uv. A positive rotation (radians) is
+    /// counter-clockwise as seen with v running down. (The GLSL in the extension's text turns the other way, but its
+    /// sample model and other readers do not.)
     float offset_u = 0, offset_v = 0, rotation = 0, scale_u = 1, scale_v = 1;
     explicit operator bool() const { return image >= 0; }
 };
@@ -87,7 +87,7 @@ struct Material {
     float transmission = 0, thickness = 0;
     Vec3f attenuation_color{1, 1, 1};
     float attenuation_distance = std::numeric_limits<float>::infinity();
-    float anisotropy = 0, anisotropy_rotation = 0;
+    float anisotropy = 0, anisotropy_rotation = 0;  ///< anisotropy_rotation: radians
 
     SceneTexture base_color_texture;          ///< sRGB, A: opacity
     SceneTexture metallic_roughness_texture;  ///< G: roughness, B: metalness

@@ -26,7 +26,7 @@ struct CumulativeSearch {
 
 struct SampleExplanation {
     std::array<double, 2> point{};  ///< (xi for u, xi for v)
-    bool continuous = false;        ///< as Distribution::continuous()
+    bool continuous = false;        ///< as Distribution2D::continuous()
     CumulativeSearch row, column;
     int row_above = 0, row_below = 0;  ///< the column is drawn from a mixture of these; one row unless continuous
     double share_below = 0;            ///< weight of row_below in the mixture, [0, 1]

@@ -144,9 +144,9 @@ struct TextureInfo {
     bool eight_bits = false;  ///< 8 bits a channel: a picture for a screen, or RGBM and similar
 };
 Result<TextureInfo> read_texture_info(const std::filesystem::path& file);
-/// Reads a texture in one of our encodings, or in half or float RGB or R (a missing green is
-/// set to 0, a missing alpha to 1). Every size
-/// and offset is checked against the file before memory is allocated; a texture that needs more than 2 GiB is refused.
+/// Reads a texture in one of our encodings, in half R, or in half or float RGB. R becomes RG with a green of 0 (also
+/// r32f, which becomes rg32f), and RGB becomes RGBA with an alpha of 1. Every size and offset is checked against the
+/// file before memory is allocated; a texture that needs more than 2 GiB is refused.
 Result<Texture> read_texture(const std::filesystem::path& file);
 
 }  // namespace domelight

@@ -10,8 +10,7 @@
 namespace domelight {
 
 /// Real orthonormal spherical harmonics Y_lm of a unit direction in world space for l < bands, at index l^2 + l + m,
-/// polar axis +Z, no Condon-Shortley sign: Y_1 = sqrt(3 / 4 pi) (y, z, x), as in Ramamoorthi and Hanrahan 2001 (eqs.
-/// 3).
+/// polar axis +Z, no Condon-Shortley sign: Y_1 = sqrt(3 / 4 pi) (y, z, x), as in Ramamoorthi and Hanrahan 2001 (eq. 3).
 void sh_basis(const Vec3d& direction, int bands, std::span<double> out);
 
 /// Against the ringing of few bands: see sh_window().

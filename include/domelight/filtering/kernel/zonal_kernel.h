@@ -10,8 +10,8 @@ namespace domelight {
 enum class Lobe {
     ggx,          ///< GGX with n = v = r, weighted by n.l: K(c) ~ max(c, 0) / (alpha^2 (1 + c) + 1 - c)^2
     charlie,      ///< sheen, as the Khronos tools sample it: K(c) ~ max(c, 0) (1 - c)^(1 / (2 alpha))
-    phong_brdf,   ///< modified Phong BRDF under n = v = r: (n + 2) / 2 pi max(c, 0)^(n + 1)
-    phong_plain,  ///< plain Phong map: (n + 1) / 2 pi max(c, 0)^n
+    phong_brdf,   ///< modified Phong BRDF under n = v = r: (n + 2) / (2 pi) max(c, 0)^(n + 1)
+    phong_plain,  ///< plain Phong map: (n + 1) / (2 pi) max(c, 0)^n
 };
 template <>
 struct EnumNames<Lobe> {

@@ -15,7 +15,7 @@ struct ProjectedImage {
     int height() const { return pixels.height() / projection.charts(); }
 };
 
-/// A copy of a cube of radiance as a picture, whose world is turned into the cube's frame by `world_to_cube`.
+/// A copy of a cube of radiance as a picture. `world_to_cube` turns world directions into the cube's frame.
 ProjectedImage projected_cube(const Cubemap& cube, const Mat3& world_to_cube = {});
 
 /// Radiant power per channel that arrives from all directions: sum of radiance times the texels' solid angles

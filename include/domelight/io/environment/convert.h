@@ -11,7 +11,8 @@ struct ConvertOptions {
                          ///< mirror)
     int width = 0;       ///< of a chart of the target, in texels
     int height = 0;      ///< likewise
-    bool sharp = false;  ///< uses reproject() even where "exact" is possible: sharper by up to 4 dB, ten times as slow
+    bool sharp = false;  ///< uses reproject() even where "exact" is possible: a conversion there and back has a PSNR
+                         ///< that is 1.4 to 4.3 dB higher (docs/convert.md), but takes about 14 times as long
     int threads = 0;
     Progress progress = {};
 };

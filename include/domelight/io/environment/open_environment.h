@@ -29,7 +29,8 @@ struct EnvironmentOptions {
 
 /// Opens an environment. `files` is one image or cube texture (KTX2, KTX, DDS, .env), the six faces of a cube in any
 /// order (recognised by name), or the front and the back of a dual paraboloid.
-/// Errors: no such file, unknown or broken format, wrong shape, over `max_bytes`; each names the file.
+/// Errors that name the option: an unknown value, or one out of its range. Errors that name the file: no such file,
+/// unknown or broken format, wrong shape, over `max_bytes`.
 Result<Environment> open_environment(const std::vector<std::filesystem::path>& files,
                                      const EnvironmentOptions& options = {});
 

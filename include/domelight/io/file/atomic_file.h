@@ -13,8 +13,8 @@ namespace domelight {
 /// error. On any error the temporary file is removed, also on SIGINT and SIGTERM in a program that calls
 /// remove_temporaries_on_signals(). `write` gets the path of the temporary file. Links are followed and stay links;
 /// where one leads to a file that does not exist yet, that file is created. A device or a pipe is written to directly,
-/// and so is a temporary file of a bake. The data is not flushed to the disk (no fsync), because that would take longer
-/// than a bake: a power cut within the next few seconds can lose the file.
+/// and so is a file that is itself temporary, as those of an unfinished bake are. The data is not flushed to the disk
+/// (no fsync), because that would take longer than a bake: a power cut within the next few seconds can lose the file.
 /// Errors: `file` is a folder; links that lead in a circle; no folder to create the file in; those of `write`. Each
 /// names `file`.
 Result<void> write_file_atomically(const std::filesystem::path& file,

@@ -53,9 +53,9 @@ struct BilinearRows {
 /// which the guide tables bracket. Choosing one of the rows at random would be exact too, but neither monotone nor
 /// invertible.
 ///
-/// Monotone in both directions (u from 1/2 / W on, around the seam). invert(sample(p)) == p exactly, except where a row
-/// outweighs its neighbour by 10^4 or more: there (u, v) in double are not precise enough, and the result is off by a
-/// few quanta of 2^-32. 8 bytes a texel.
+/// Monotone in both directions (u starts at the first texel centre, 1 / (2 W), and continues across the seam).
+/// invert(sample(p)) == p exactly, except where a row outweighs its neighbour by 10^4 or more: there (u, v) in double
+/// are not precise enough, and the result is off by a few quanta of 2^-32. 8 bytes a texel.
 class BilinearDistribution final : public Distribution2D {
   public:
     /// Errors: as make_distribution.

@@ -20,8 +20,9 @@ struct BabylonEnv {
     double lod_scale = 0.8;  ///< level = lod_scale log2(width alpha)
 };
 
-/// The polynomial that Babylon expects, from a world's radiance coefficients (nine or more). When Babylon turns it back
-/// into harmonics it undoes one convolution and one change of sign, so both are included here.
+/// The polynomial that Babylon expects, in its left-handed world, from the radiance coefficients (nine or more) in
+/// Domelight's world: this function mirrors x. When Babylon turns the polynomial into harmonics, it divides by the
+/// factors of one convolution with the clamped cosine, so one more convolution is included here.
 QuadraticPolynomial babylon_polynomial(std::span<const Vec3d> radiance);
 
 /// Writes version 2. `cube` must have square faces, a power of two wide, and every level down to 1. Errors: any other
