@@ -65,7 +65,8 @@ void declare(Arguments& a, BakeWords& w) {
         "below says what each engine loads (generic)");
     a.choice("--layout", w.options.layout, "cube maps, or lat-long maps with levels (the engine's)");
     a.integer("--size", "N", w.options.size,
-              "size of level 0 in texels: of a cube's face, or the height of the lat-long map (the engine's; " +
+              "size of level 0 in texels, 1 to 16384: of a cube's face, or the height of the lat-long map (the "
+              "engine's; " +
                   engines_of_the_source_size() + ": as fine as the source)");
     a.integer("--levels", "N", w.options.levels,
               "number of levels, each half as large as the one before (the engine's)");
@@ -78,7 +79,8 @@ void declare(Arguments& a, BakeWords& w) {
     a.choice("--method", w.options.method, "exact, or one of the plain, slow methods (exact)");
     add_point_options(a, w.points);
     a.text("--riemann-steps", "KxJ", w.riemann_steps,
-           "riemann: K steps of the azimuth phi, 0 to 2 pi, by J steps of the polar angle theta, 0 to pi/2 (256x64)");
+           "riemann: K steps of the azimuth phi, 0 to 2 pi, by J steps of the polar angle theta, 0 to pi/2; 1 to 65536 "
+           "each (256x64)");
     a.choice("--riemann-sum", w.options.riemann.normalised,
              std::vector<NamedValue<bool>>{{true, "normalised"}, {false, "plain"}},
              "riemann: normalised divides the sum by the sum of its weights; plain does not, so that with J = 4 a "
@@ -88,12 +90,13 @@ void declare(Arguments& a, BakeWords& w) {
         std::vector<NamedValue<Quantity>>{{Quantity::irradiance, "e"}, {Quantity::irradiance_over_pi, "over-pi"}},
         "values of the irradiance map: E, or E / pi, which a shader multiplies by the albedo alone (the engine's)");
     a.integer("--irradiance-size", "N", w.options.irradiance_size,
-              "face size of the irradiance cube, or half the height of a lat-long irradiance map (the engine's)");
+              "face size of the irradiance cube, or half the height of a lat-long irradiance map, 1 to 4096 (the "
+              "engine's)");
     a.integer("--sh-bands", "N", w.sh_bands, "bands of spherical harmonics, 1 to 64 (3)");
     a.choice("--sh-window", w.options.sh_window, "window against ringing of the harmonics (none)");
     a.choice("--brdf-g", w.options.brdf_g, "masking function of the BRDF table (correlated)");
     a.choice("--brdf-form", w.options.brdf_form, "channels of the BRDF table (the engine's)");
-    a.integer("--brdf-size", "N", w.options.brdf_size, "width and height of the BRDF table (128)");
+    a.integer("--brdf-size", "N", w.options.brdf_size, "width and height of the BRDF table, 1 to 4096 (128)");
     a.group("How to store it");
     a.choice(
         "--encoding", w.options.encoding, colour_encodings(),

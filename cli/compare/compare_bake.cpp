@@ -289,12 +289,14 @@ void add_bake_options(Arguments& a, BakeWords& w) {
     a.choice("--for", w.engine, names,
              "the engine whose roughness curve the bake should have; not needed for a Domelight file, which states it");
     a.choice("--lobe", w.lobe, "the lobe that the levels were filtered with (what the file states, otherwise ggx)");
-    a.number("--within", "ERROR", w.within,
-             "the largest error that a level may have, above 0 and up to 1: 0.01 is 1 %. If a level's is larger, the "
-             "exit status is 1. It is the error at the roughness that the file or --for states, at scale 1; where "
-             "none is stated, that of the best fit. Without this option the status is 0 for any bake of the "
-             "environment");
-    a.integer("--texels", "N", w.texels, "texels compared in each level, a quarter of them the brightest (6144)");
+    a.number(
+        "--within", "ERROR", w.within,
+        "the largest error that a level may have, above 0 and up to 1: 0.01 is 1 %. If the error of a level is "
+        "larger, the exit status is 1. What counts is the error at the roughness that the file or --for states, "
+        "at scale 1; where none is stated, that of the best fit. Without this option the status is 0 for any bake of "
+        "the environment");
+    a.integer("--texels", "N", w.texels,
+              "texels compared in each level, 96 to 10000000, a quarter of them the brightest (6144)");
     add_environment_options(a, w.environment);
 }
 

@@ -18,7 +18,7 @@ int run_compare(const std::vector<std::string>& words) {
         "compare",
         "Compares picture A with the reference B: in numbers, as a heat map, side by side. With --bake, compares a "
         "specular cube baked by any tool with the exact filter of its source; the exit status is then 0 for a bake of "
-        "that environment and 1 for any other.",
+        "that environment whose errors --within allows, and 1 for any other.",
         {"domelight compare studio.hdr evening.hdr",
          "domelight compare studio.hdr studio.hdr --fail-above relative=0.01 --json",
          "domelight compare studio.hdr evening.hdr --heat heat.png --sheet sheet.png",

@@ -330,11 +330,12 @@ void add_picture_options(Arguments& a, PictureWords& w) {
         "each object are also printed (the channel \"object\" of B, otherwise that of A)");
     a.choice(
         "--variance", w.variance, {"pixel", "sample"},
-        "the meaning of the layer \"variance\": that of the pixel's value, or that of a sample, to be divided by the "
-        "channel \"samples\" (pixel)");
+        "whose variance the layer \"variance\" holds: that of the pixel's value, or that of one sample, which is then "
+        "divided by the channel \"samples\" (pixel)");
     a.flag("--skip-bad", w.skip_bad, "ignore NaN and infinite pixels, which are otherwise an error");
     a.number("--pixels-per-degree", "P", w.pixels_per_degree,
-             "viewing distance for FLIP, as pixels per degree (67.02: 0.7 m from a 0.7 m wide display of 3840 pixels)");
+             "viewing distance for FLIP, as pixels per degree, 1 to 1000 (67.02: 0.7 m from a 0.7 m wide display of "
+             "3840 pixels)");
     a.flag("--no-flip", w.no_flip, "leave out FLIP and HDR-FLIP, which take most of the time");
     a.group("Two pictures: what is written");
     a.text("--heat", "FILE", w.heat, "a heat map with its scale, .png or .jpg");
@@ -345,13 +346,14 @@ void add_picture_options(Arguments& a, PictureWords& w) {
              "the values)");
     a.text("--sheet", "FILE", w.sheet,
            "A, B, their signed difference and the map of --heat-of auto side by side, .png or .jpg");
-    a.text(
-        "--view-exposure", "EV", w.view_exposure,
-        "exposure in stops of both pictures in the sheet and for FLIP; auto brings B's log-average luminance to 0.18 "
-        "(auto)");
+    a.text("--view-exposure", "EV", w.view_exposure,
+           "exposure in stops of both pictures in the sheet and for FLIP, -60 to 60; auto brings B's log-average "
+           "luminance to 0.18, and is 0 for two screen pictures (auto)");
     a.texts("--fail-above", "METRIC=VALUE", w.fail_above,
             "exit with status 1 if a metric is above the value: " + join(comparison_figures(), ", ") +
-                "; mean is |mean A / mean B - 1|; above-2, chi2 and total-z need a layer \"variance\"");
+                "; mean is |mean A / mean B - 1|; with z the difference over its standard error, above-2 is the share "
+                "of |z| > 2 (0 to 1), chi2 the mean of z^2 and total-z |z| of the sums: these three need a layer "
+                "\"variance\"");
     a.texts("--fail-below", "METRIC=VALUE", w.fail_below, "the same if psnr or ssim is below the value");
 }
 

@@ -77,8 +77,8 @@ void add_environment_options(Arguments& arguments, EnvironmentOptions& options) 
         "the projection of the image: " +
             projection_list(
                 {{"latlong", " (also latlong/usd ...)"}, {"cube", ", cube-cross, cube-strip, cube-faces"}}) +
-            "; append /centre=+Z,right=+X,up=+Y, with the axes that the image shows there, where these are not the "
-            "default ones (auto: latlong or a cube, by the image's shape and attributes)");
+            "; if the image does not show the default axes, append those at its centre, right and top, for example "
+            "/centre=+Z,right=+X,up=+Y (auto: latlong or a cube, by the image's shape and attributes)");
     arguments.text(
         "--latlong", "NAME", options.latlong,
         "lat-long convention: " + join(latlong_convention_names(), ", ") + k_other_conventions +
@@ -91,7 +91,7 @@ void add_environment_options(Arguments& arguments, EnvironmentOptions& options) 
     arguments.number("--rotate-y-deg", "DEGREES", options.rotate_y_deg,
                      "turn the light about +Y: +X moves towards +Z (0)");
     arguments.text("--up", "AXIS", options.up, "the axis at the top of the image: +Y, +Z, ... (+Y)");
-    arguments.number("--exposure", "STOPS", options.exposure, "multiply radiance by 2^STOPS (0)");
+    arguments.number("--exposure", "STOPS", options.exposure, "multiply radiance by 2^STOPS, -64 to 64 (0)");
 }
 
 bool are_cube_faces(const std::vector<std::string>& files) {

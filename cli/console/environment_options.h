@@ -19,7 +19,8 @@ inline constexpr const char* k_built_in_sky =
 
 /// The other lat-long conventions, after latlong_convention_names(), for help texts.
 inline constexpr const char* k_other_conventions =
-    ", or centre=+X,right=+Z[,up=+Y]; mod is the shader form s = 1 - mod(phi / 2 pi, 1)";
+    ", or centre=+X,right=+Z[,up=+Y]; mod is centre=-X,right=-Z, the shader form s = 1 - mod(phi / 2 pi, 1) of a world "
+    "with +Z up, where phi = atan2(y, x)";
 
 /// The options of every command that takes an environment.
 void add_environment_options(Arguments& arguments, EnvironmentOptions& options);

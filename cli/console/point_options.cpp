@@ -7,7 +7,7 @@
 namespace domelight::cli {
 
 void add_point_options(Arguments& a, PointWords& w) {
-    a.integer("--samples", "N", w.samples, "montecarlo: samples for each texel (1024)");
+    a.integer("--samples", "N", w.samples, "montecarlo: samples for each texel, 1 to 2^24 (1024)");
     a.choice("--sequence", w.sequence,
              "montecarlo: the sequence that the sample points are taken from; every texel uses the same points "
              "(hammersley)");

@@ -52,7 +52,8 @@ std::string latlong_list() {
 void declare(Arguments& a, ConvertWords& w) {
     a.positional("IN", w.files,
                  "an environment (or the six faces of a cube, a folder of them, front and back of a dual paraboloid), "
-                 "or any picture, to write it as a .png or .jpg. Without -o, the last name is the output, a new file");
+                 "or any picture, to write it as a .png, .jpg, .exr or .hdr. Without -o, the last name is the output, "
+                 "which must not exist yet");
     a.text("-o,--output", "OUT", w.output.file,
            "the output: .hdr, .exr, .ktx2, .ktx, .dds, or .png or .jpg for viewing");
     a.group("What to make");
@@ -60,28 +61,28 @@ void declare(Arguments& a, ConvertWords& w) {
            projection_list() + "; with its convention: " + latlong_list() +
                ", cube/openexr, or NAME/centre=+X,right=+Z,up=+Y (cube in a texture, else latlong)");
     a.integer("--size", "N", w.size,
-              "height in pixels: of the picture, of a cube's face, or of one half of a dual paraboloid (as fine as the "
-              "source)");
+              "height in pixels, 1 to 32768: of the picture, of a cube's face, or of one half of a dual paraboloid (as "
+              "fine as the source)");
     a.flag("--sharp", w.sharp,
            "from lat-long to cube or lat-long: keep more of the finest detail; takes ten times as long");
-    a.text(
-        "--layout", "NAME", w.output.layout,
-        "a cube: " + join(cube_layout_names(), ", ") +
-            ", or faces: name_px.hdr ...; a dual paraboloid: side-by-side, or files: name_front.hdr and name_back.hdr");
+    a.text("--layout", "NAME", w.output.layout,
+           "a cube: " + join(cube_layout_names(), ", ") +
+               ", or faces: name_px.hdr ... (cross); a dual paraboloid: side-by-side, or files: name_front.hdr and "
+               "name_back.hdr (side-by-side)");
     a.text("--encoding", "NAME", w.output.encoding,
            ".exr: auto, half, float (auto: half, or float where half would clip); textures: rgba16f, rgba32f, rgb9e5, "
            "r11g11b10f, bc6h; in .ktx and .ktx2 also astc4x4-hdr, astc6x6-hdr; in .ktx2 also uastc-hdr, rgbm, rgbd, "
            "rgbp (rgba16f)");
     a.texts("--rotate", "X,Y,Z,DEGREES", w.rotations,
             "turn the light about an axis, clockwise as seen from the axis's tip: 0,1,0,90 is --rotate-y-deg 90; "
-            "several are applied one after the other");
+            "several are applied one after the other, after --up and --rotate-y-deg and before --mirror");
     a.text("--mirror", "AXIS", w.mirror, "mirror the light along the x, y or z axis");
     a.group("Pictures for a screen");
     add_display_options(a, w.display, "for a source of 8 bits", ", or where --exposure is given");
     a.flag("--picture", w.picture,
            "treat IN as a picture, not as an environment: every pixel stays where it is. Without this option that is "
-           "done for a .png or .jpg, and for an IN that has no environment's shape, unless an option such as --to "
-           "needs an environment");
+           "done if OUT is a .png or .jpg and IN is not a cube texture, and if OUT is an .exr or .hdr and the shape or "
+           "the layers of IN are not an environment's; but not if an option such as --to needs an environment");
     a.text("--layer", "NAME", w.layer,
            "the layer or channel of an OpenEXR picture (the unnamed layer, else the first with colour)");
     add_environment_options(a, w.environment);
@@ -299,7 +300,8 @@ int run_convert(const std::vector<std::string>& words) {
         "texels are averaged by solid angle, and the radiant power before and after is printed. Without IN, the source "
         "is " +
             std::string(k_built_in_sky) +
-            ". Any other picture (a render, a layer of one) becomes a .png or .jpg with a tone map.",
+            ". Any other picture (a render, a layer of one) becomes a .png or .jpg with a tone map, or an .exr or .hdr "
+            "without one.",
         {"domelight convert studio.hdr -o studio_cube.hdr --to cube --layout faces --size 32",
          "domelight convert studio.hdr -o studio_usd.exr --to latlong/usd --exposure 1",
          "domelight convert studio.hdr -o ball.hdr --to mirror-ball/fov=20 --size 64",

@@ -43,17 +43,18 @@ void declare(Arguments& a, LightsWords& w) {
         "ENV", w.environment_files,
         fmt::format("an environment; without one, {}; six faces (px nx py ny pz nz) are one cube", k_built_in_sky));
     a.group("What counts as a light");
-    a.integer("--max-lights", "N", w.max_lights, "the largest number of lights; weaker ones stay in the remainder (8)");
+    a.integer("--max-lights", "N", w.max_lights,
+              "the largest number of lights, 0 to 1024; weaker ones stay in the remainder (8)");
     a.number("--least-share", "SHARE", w.options.least_share,
              "the least share of all luminance that a light must "
              "have, 0 to 1 (0.01)");
     a.number("--least-contrast", "RATIO", w.options.least_contrast,
-             "the peak luminance of a light must be at least this many times the luminance around it, 1.5 or more (4)");
-    a.number(
-        "--largest-diameter-deg", "DEGREES", w.options.largest_diameter_deg,
-        "the largest diameter of a source that may become a light, up to 30; a source of at most three texels across "
-        "always may. Where one texel is wider than this, no light is found (6)");
-    a.number("--merge-deg", "DEGREES", w.options.merge_deg, "sources closer than this are merged into one light (1.5)");
+             "the peak luminance of a light must be at least this many times the luminance around it, 1.5 to 1e6 (4)");
+    a.number("--largest-diameter-deg", "DEGREES", w.options.largest_diameter_deg,
+             "the largest diameter of a source that may become a light, 0.001 to 30; a source of at most three texels "
+             "across may be larger. If one texel is wider than this, no light is found (6)");
+    a.number("--merge-deg", "DEGREES", w.options.merge_deg,
+             "sources closer than this, 0 to 30, are merged into one light (1.5)");
     a.group("What to write");
     a.text("-o,--output", "DIR", w.output,
            "folder for lights.json, lights.gltf, remainder.hdr or .exr, and preview.png");

@@ -38,7 +38,7 @@ void declare(Arguments& a, RenderWords& w) {
     a.numbers("--camera-position", "x,y,z", w.camera_position,
               "the eye (the scene's camera, or one that shows all of it)");
     a.numbers("--camera-target", "x,y,z", w.camera_target, "the point that the camera looks at (0,0,0)");
-    a.number("--fov-deg", "DEGREES", w.fov_deg, "vertical field of view with --camera-position (35)");
+    a.number("--fov-deg", "DEGREES", w.fov_deg, "vertical field of view with --camera-position, 0.1 to 170 (35)");
     a.choice("--background", w.background, "what is seen where there is no surface (environment)");
     a.text("--background-color,--background-colour", "#rrggbb|R,G,B", w.background_color,
            "the colour of the background, sRGB or linear (#ffffff)");
@@ -48,9 +48,10 @@ void declare(Arguments& a, RenderWords& w) {
     a.number("--ev", "STOPS", w.ev,
              "exposure of a .png or .jpg (from the log-average luminance of what the surfaces show)");
     a.group("Turntable");
-    a.integer("--frames", "N", w.frames, "numbered pictures of one turn, and with .png or .jpg also a .webp animation");
+    a.integer("--frames", "N", w.frames,
+              "2 to 9999 numbered pictures of one turn, and with .png or .jpg also a .webp animation");
     a.choice("--turn", w.turn, {"camera", "environment"}, "what turns (camera)");
-    a.number("--fps", "N", w.fps, "frames a second of the animation (30)");
+    a.number("--fps", "N", w.fps, "frames a second of the animation, 1 to 1000 (30)");
     a.flag("--resume", w.resume, "keep the frames that exist, render the others");
     a.group("The light");
     a.texts("--env", "ENV", w.environment_files, fmt::format("the environment ({})", k_built_in_sky));
@@ -64,21 +65,24 @@ void declare(Arguments& a, RenderWords& w) {
     add_environment_options(a, w.environment);
     a.group("How it is computed");
     a.choice("--shading", w.shading, shadings(),
-             "reference = path tracing; the others draw like a real-time engine from baked maps (reference)");
+             "reference: path tracing; the others draw like a real-time engine: split-sum, stretched and phong from "
+             "baked maps, mirror and refract from the environment itself or a texture of it (reference)");
     a.choice("--strategy", w.strategy, "reference: how light directions are sampled (mis)");
-    a.integer("--spp", "N", w.spp, "samples of each pixel (64)");
+    a.integer("--spp", "N", w.spp, "samples of each pixel, 1 to 2^20 (64)");
     a.number("--noise", "X", w.noise,
-             "reference: take more samples until the standard error of L/(1+L) of each pixel is below this");
+             "reference: take more samples, up to 65536, where the standard error of L/(1+L) of a pixel is above this, "
+             "0 to 1; 0 takes no more (0)");
     a.number("--time", "SECONDS", w.time, "reference: as many samples as fit into this time");
-    a.integer("--bounces", "N", w.bounces, "reference: bounces of indirect light; 0 is direct light with shadows (4)");
+    a.integer("--bounces", "N", w.bounces,
+              "reference: bounces of indirect light, 0 to 1000; 0 is direct light with shadows (4)");
     a.choice("--occlusion", w.occlusion, std::vector<NamedValue<bool>>{{true, "on"}, {false, "off"}},
              "off: no shadows, no indirect light and no occlusion maps, to compare with a shader that has none (on)");
     a.flag("--multiple-scattering", w.multiple_scattering,
            "compensate the energy that single scattering loses on "
            "rough surfaces");
     a.text("--maps", "DIR", w.maps,
-           "split-sum, stretched, phong: the folder of a bake by `domelight bake` (baked in "
-           "memory)");
+           "split-sum, stretched, phong: the folder of a bake by `domelight bake` for the generic engine, with the "
+           "lobe that the shading needs: ggx, or for phong a Phong lobe (baked in memory)");
     a.choice("--irradiance", w.sh_irradiance, std::vector<NamedValue<bool>>{{false, "cube"}, {true, "sh"}},
              "split-sum, stretched, phong: the irradiance cube, or nine harmonics (cube)");
     a.choice(
@@ -86,8 +90,8 @@ void declare(Arguments& a, RenderWords& w) {
         "mirror, refract: the texture through which the environment is looked up; environment: none, it is looked up "
         "directly (environment)");
     a.integer("--lookup-size", "N", w.lookup_size,
-              "size of that texture in texels: of a cube's face, of a sphere map, of the square of one paraboloid, or "
-              "the height of a lat-long map (512)");
+              "size of that texture in texels, 1 to 8192: of a cube's face, of a sphere map, of the square of one "
+              "paraboloid, or the height of a lat-long map (512)");
     a.choice("--brdf", w.brdf, {"scene", "phong"},
              "phong: modified Phong lobes of matching width instead of GGX, the reference for --shading phong (scene)");
     a.flag("--bent-lookup", w.bent_lookup, "split-sum: move the lookup towards the normal on rough surfaces");

@@ -110,8 +110,10 @@ void declare_sample_options(Arguments& a, SampleWords& w) {
            "file for the samples, .csv or .json; without it, and if nothing else is asked for, CSV on stdout");
     a.choice(
         "--method", w.sampler.method,
-        "sampling method; bilinear and bilinear-plain: the density is interpolated between texels; the others: it is "
-        "constant in each texel (bilinear)");
+        "sampling method; linear, binary: linear or binary search of cumulative sums; walk: a shader's loop that "
+        "subtracts weights; guided: guide tables; alias: alias tables; hierarchical: warping down a pyramid. The "
+        "density of these six is constant in each texel; that of bilinear and of bilinear-plain (the same by linear "
+        "search) is interpolated between texels (bilinear)");
     a.choice(
         "--weight", w.sampler.weight,
         "the weight of a texel: luminance times sin theta, or grayscale: 0.2989 R + 0.5866 G + 0.1145 B without sin "
@@ -151,11 +153,12 @@ void declare_sample_options(Arguments& a, SampleWords& w) {
     a.numbers("--view", "X,Y,Z", w.view, "direction towards the viewer (the normal)");
     a.choice("--brdf", w.brdf, {"lambert", "phong", "ggx", "charlie"}, "the surface (lambert)");
     a.number("--roughness", "R", w.roughness, "roughness of ggx and charlie, 0 to 1 (0.3)");
-    a.number("--exponent", "N", w.exponent, "phong: the exponent n, 0 or more (32)");
+    a.number("--exponent", "N", w.exponent, "phong: the exponent n, 0 to 1e5 (32)");
     a.numbers("--metal-f0", "F0", w.metal_f0, "ggx: reflectance at normal incidence, one number or R,G,B (1)");
     a.group("How it works");
     a.numbers("--explain", "U,V", w.explain,
-              "show how this point of the unit square becomes a direction: row, column, density");
+              "show how this point of the unit square, each coordinate in [0, 1), becomes a direction: row, column, "
+              "density; not with --method alias or hierarchical, nor with --uniform-share");
     a.text("--explain-picture", "FILE", w.explain_picture, "the explanation of --explain as a picture, .png or .jpg");
     add_environment_options(a, w.environment);
     add_common_options(a, w.common);

@@ -31,7 +31,7 @@ struct SkyWords {
 void declare(Arguments& a, SkyWords& w) {
     a.group("The picture");
     a.text("-o,--output", "FILE", w.output, "the output: .hdr, .exr, or .png or .jpg for viewing");
-    a.integer("--height", "N", w.height, "rows of the lat-long image, which is twice as wide (512)");
+    a.integer("--height", "N", w.height, "rows of the lat-long image, 1 to 32768; it is twice as wide (512)");
     a.choice("--exr", w.encoding, {"auto", "half", "float"},
              "type of the channels of an .exr; half clips the sun at 65504, so auto is float if the sun is up (auto)");
     add_display_options(a, w.display, "with --axes");
