@@ -31,6 +31,11 @@ struct ValueError : CLI::Error {
 
 }  // namespace
 
+Result<void> within(const char* option, double value, double low, double high) {
+    if (value >= low && value <= high) return {};
+    return Error{fmt::format("{:.12g} is not from {:.12g} to {:.12g}", value, low, high), option, ""};
+}
+
 Result<double> parse_number(const std::string& text) {
     return parse_whole<double>(text, "a number");
 }

@@ -87,6 +87,8 @@ Result<double> parse_number(const std::string& text);
 Result<int> parse_integer(const std::string& text);
 /// Any 64-bit number.
 Result<std::uint64_t> parse_seed(const std::string& text);
+/// An error at `option` unless the value is from `low` to `high`.
+Result<void> within(const char* option, double value, double low, double high);
 std::vector<std::string> split(const std::string& text, char separator);
 std::string join(const std::vector<std::string>& words, const std::string& separator);
 

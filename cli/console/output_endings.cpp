@@ -1,5 +1,6 @@
 #include "cli/console/output_endings.h"
 
+#include "domelight/engines/engine.h"
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <vector>
 
 namespace domelight::cli {
@@ -31,12 +33,15 @@ Result<void> check_ending(const char* option, const std::string& file, std::span
 }
 
 Result<void> check_folder(const char* option, const std::string& folder) {
-    static const std::vector<std::string> k_files{".hdr", ".exr", ".ktx2", ".ktx",  ".dds",  ".env",
-                                                  ".png", ".jpg", ".jpeg", ".json", ".gltf", ".glb"};
+    static const std::set<std::string> k_files = [] {
+        std::set<std::string> endings{".json", ".glb"};
+        for (const std::string& ending : light_and_screen_endings()) endings.insert(ending);
+        for (const auto& row : EnumNames<Container>::table) endings.insert(container_extension(row.value));
+        return endings;
+    }();
     std::error_code ignored;
     if (std::filesystem::is_directory(folder, ignored)) return {};
-    const std::string extension = lower_case_extension(folder);
-    if (std::find(k_files.begin(), k_files.end(), extension) == k_files.end()) return {};
+    if (!k_files.contains(lower_case_extension(folder))) return {};
     return Error{
         fmt::format("\"{}\" is the name of a file, and several files are written into a folder", folder), option,
         fmt::format("Name a folder: {} {}.", option, std::filesystem::path(folder).replace_extension().string())};

@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 namespace domelight::cli {
 namespace {
@@ -280,8 +279,7 @@ void print_levels(const Json& map) {
 
 int info_bake(const fs::path& folder, const InfoWords& w) {
     const fs::path file = folder / "manifest.json";
-    std::ifstream stream(file, std::ios::binary);
-    const auto parsed = Json::parse(std::string(std::istreambuf_iterator<char>(stream), {}));
+    const auto parsed = Json::read(file);
     const Json manifest = parsed ? *parsed : Json();
     if (!manifest.is_object() || !manifest.contains("source") || !manifest.contains("options"))
         return print_error({"is not a manifest that a bake wrote", file.string(), ""});

@@ -251,9 +251,8 @@ int run(const LightsWords& w) {
     auto found = extract_lights(picture->image.view(), w.options, picture->world_to_source);
     if (!found) return print_error(found.error().at(name));
     std::string hash;
-    if (!w.environment_files.empty()) {
-        const auto files = environment_files(w.environment_files);
-        auto computed = sha256_files(files);
+    if (!environment->files.empty()) {
+        auto computed = sha256_files(environment->files);
         if (!computed) return print_error(computed.error());
         hash = *computed;
     }

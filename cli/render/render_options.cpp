@@ -15,11 +15,6 @@
 namespace domelight::cli {
 namespace {
 
-Result<void> within(const char* option, double value, double low, double high) {
-    if (value >= low && value <= high) return {};
-    return Error{fmt::format("{:.12g} is not from {:.12g} to {:.12g}", value, low, high), option, ""};
-}
-
 Result<void> check_numbers(const RenderWords& w) {
     for (const auto& [option, value] : {std::pair{"--width", w.width}, {"--height", w.height}})
         if (auto ok = within(option, value.value_or(512), 1, 16384); !ok) return ok;

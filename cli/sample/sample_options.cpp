@@ -16,11 +16,6 @@ namespace {
 
 const std::string k_sample_endings[] = {".csv", ".json"};
 
-Result<void> within(const char* option, double value, double low, double high) {
-    if (value >= low && value <= high) return {};
-    return Error{fmt::format("{:.12g} is not from {:.12g} to {:.12g}", value, low, high), option, ""};
-}
-
 Result<Vec3d> direction(const char* option, const std::vector<double>& v) {
     if (v.size() != 3) return Error{fmt::format("has {} numbers instead of three", v.size()), option, "As in 0,1,0."};
     const Vec3d d{v[0], v[1], v[2]};

@@ -6,6 +6,7 @@
 #include "domelight/texture/texture.h"
 
 #include "bake/staging.h"
+#include "cli/console/environment_options.h"
 #include "io/file/json.h"
 #include "io/file/printable.h"
 
@@ -127,7 +128,7 @@ Result<void> write_samples(const SampleWords& w, const EnvironmentSampler& sampl
 
 Result<SamplingTables> write_tables(const SampleWords& w, const EnvironmentSampler& sampler) {
     const SamplingTextures textures = sampling_textures(sampler);
-    auto staging = Staging::open(w.tables, {w.inputs.begin(), w.inputs.end()});
+    auto staging = Staging::open(w.tables, environment_files(w.inputs));
     if (!staging) return staging.error();
     const std::map<std::string, std::string> notes{
         {"domelight.weight", name_of(w.sampler.weight)},

@@ -49,10 +49,6 @@ void declare(Arguments& a, SkyWords& w) {
 }
 
 Result<void> check(const SkyWords& w) {
-    const auto within = [](const char* option, double value, double low, double high) -> Result<void> {
-        if (value >= low && value <= high) return {};
-        return Error{fmt::format("{:.12g} is not from {:.12g} to {:.12g}", value, low, high), option, ""};
-    };
     if (w.output.empty()) return Error{"is missing", "--output", "Say where the picture goes: -o sky.hdr."};
     if (auto ok = check_ending("--output", w.output, light_and_screen_endings()); !ok) return ok;
     if (auto ok = check_display_options(w.display, w.output); !ok) return ok;

@@ -12,7 +12,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <fstream>
 
 namespace domelight {
 namespace {
@@ -257,8 +256,7 @@ std::string sh_json(const ShReport& sh) {
 
 bool manifest_matches(const std::filesystem::path& folder, const EnginePlan& plan, const BakeOptions& options,
                       const std::string& source_sha256) {
-    std::ifstream stream(folder / "manifest.json", std::ios::binary);
-    const auto parsed = Json::parse(std::string(std::istreambuf_iterator<char>(stream), {}));
+    const auto parsed = Json::read(folder / "manifest.json");
     if (!parsed) return false;
     const Json& json = *parsed;
     if (!json.is_object() || !json.contains("version") || !json.contains("source") || !json.contains("options"))

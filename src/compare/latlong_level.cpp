@@ -3,8 +3,6 @@
 #include "io/file/json.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 namespace domelight {
 namespace {
@@ -23,9 +21,7 @@ bool names_file(const Json& map, const std::string& file) {
 }
 
 std::optional<std::string> projection_of(const std::filesystem::path& manifest, const std::string& file) {
-    std::ifstream stream(manifest);
-    if (!stream) return std::nullopt;
-    const auto parsed = Json::parse(std::string(std::istreambuf_iterator<char>(stream), {}));
+    const auto parsed = Json::read(manifest);
     if (!parsed || !parsed->is_object()) return std::nullopt;
     const Json& json = *parsed;
     for (const char* role : {"specular", "sheen", "skybox", "environment", "irradiance"}) {

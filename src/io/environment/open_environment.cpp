@@ -177,17 +177,18 @@ Result<std::optional<CubeLayout>> choose_layout(const ImageFacts& facts, const s
 }
 
 /// Sets what is known about the file as a whole.
-Environment with_facts(Environment environment, const std::filesystem::path& file, const std::string& format, int width,
-                       int height) {
-    environment.file = file;
+Environment with_facts(Environment environment, std::vector<std::filesystem::path> files, const std::string& format,
+                       int width, int height) {
+    environment.file = files.front();
+    environment.files = std::move(files);
     environment.format = format;
     environment.width = width;
     environment.height = height;
     return environment;
 }
 
-Environment with_facts(Environment environment, const std::filesystem::path& file, const ImageFacts& facts) {
-    return with_facts(std::move(environment), file, facts.format, facts.width, facts.height);
+Environment with_facts(Environment environment, std::vector<std::filesystem::path> files, const ImageFacts& facts) {
+    return with_facts(std::move(environment), std::move(files), facts.format, facts.width, facts.height);
 }
 
 ReaderOptions reader_options(const EnvironmentOptions& options) {
@@ -273,7 +274,7 @@ Result<Environment> open_latlong(const std::filesystem::path& file, std::shared_
         facts.width, facts.height,
         [source](std::shared_ptr<RepairReport> report) { return source->open(std::move(report)); }, facts.warnings);
     environment.world_to_source = convention->world_to_default() * request.turn;
-    return with_facts(std::move(environment), file, facts);
+    return with_facts(std::move(environment), {file}, facts);
 }
 
 Result<void> check_cube_memory(std::int64_t size, std::int64_t max_bytes) {
@@ -347,7 +348,7 @@ Result<Environment> open_halves(const std::vector<std::filesystem::path>& files,
         if (const auto read = picture.rows->read(stacked.view().rows(c * size, size)); !read) return read.error();
         add_report(report, *picture.report);
     }
-    return with_facts(finish_other({*request.other, std::move(stacked)}, std::move(report), request), files[0], first);
+    return with_facts(finish_other({*request.other, std::move(stacked)}, std::move(report), request), files, first);
 }
 
 /// Opens a KTX2, KTX, DDS or .env file, which holds a cube as engines load it.
@@ -360,7 +361,7 @@ Result<Environment> open_texture(const std::filesystem::path& file, const std::s
         read_cube_texture(file, request.options.max_bytes, request.scale, report, request.options.decode);
     if (!cube) return cube.error();
     const int size = cube->size();
-    return with_facts(finish_cube(*std::move(cube), std::move(report), request), file, container, size, size);
+    return with_facts(finish_cube(*std::move(cube), std::move(report), request), {file}, container, size, size);
 }
 
 /// The rotation matrix of the unit quaternion x, y, z, w.
@@ -377,7 +378,7 @@ Result<Environment> open_gltf_light(const std::filesystem::path& file, const Req
     auto light = read_gltf_environment(file, request.options.max_bytes, request.scale, report);
     if (!light) return light.error();
     const int size = light->cube.size();
-    Environment environment = with_facts(finish_cube(std::move(light->cube), std::move(report), request), file,
+    Environment environment = with_facts(finish_cube(std::move(light->cube), std::move(report), request), {file},
                                          "glTF EXT_lights_image_based", size, size);
     // When the light is turned by R, what arrives from d came from Rᵀ d before.
     environment.world_to_source = turn_of(light->rotation).transposed() * environment.world_to_source;
@@ -397,7 +398,7 @@ Result<Environment> open_picture(const std::filesystem::path& file, const Reques
         const PictureRows source(file, *std::move(image), request);
         Result<ProjectedImage> picture = read_other(*source.rows, *request.other);
         if (!picture) return picture.error();
-        return with_facts(finish_other(*std::move(picture), *source.report, request), file, facts);
+        return with_facts(finish_other(*std::move(picture), *source.report, request), {file}, facts);
     }
     const auto layout = choose_layout(facts, request.options.projection);
     if (!layout) return layout.error();
@@ -409,7 +410,7 @@ Result<Environment> open_picture(const std::filesystem::path& file, const Reques
     const PictureRows source(file, *std::move(image), request);
     Result<Cubemap> cube = read_cube_picture(*source.rows, **layout);
     if (!cube) return cube.error();
-    return with_facts(finish_cube(*std::move(cube), *source.report, request), file, facts);
+    return with_facts(finish_cube(*std::move(cube), *source.report, request), {file}, facts);
 }
 
 Result<Environment> open_faces(const std::vector<std::filesystem::path>& files, const Request& request) {
@@ -443,12 +444,8 @@ Result<Environment> open_faces(const std::vector<std::filesystem::path>& files, 
         if (const auto read = picture.rows->read(cube.face(f)); !read) return read.error();
         add_report(report, *picture.report);
     }
-    return with_facts(finish_cube(std::move(cube), std::move(report), request), (*faces)[0], first);
+    return with_facts(finish_cube(std::move(cube), std::move(report), request), {faces->begin(), faces->end()}, first);
 }
-
-}  // namespace
-
-namespace {
 
 /// What a folder without the faces of a cube may be instead.
 std::string hint_for_folder(const std::filesystem::path& folder) {
@@ -460,9 +457,14 @@ std::string hint_for_folder(const std::filesystem::path& folder) {
     return "Name an image, or six files px, nx, py, ny, pz, nz.";
 }
 
-Result<Environment> open_files(const std::vector<std::filesystem::path>& files, const Request& request) {
-    if (files.size() == 6) return open_faces(files, request);
-    if (files.size() == 2 && request.other && request.other->charts() == 2) return open_halves(files, request);
+}  // namespace
+
+Result<Environment> open_environment(const std::vector<std::filesystem::path>& files,
+                                     const EnvironmentOptions& options) {
+    const Result<Request> request = check_options(options);
+    if (!request) return request.error();
+    if (files.size() == 6) return open_faces(files, *request);
+    if (files.size() == 2 && request->other && request->other->charts() == 2) return open_halves(files, *request);
     if (files.size() != 1)
         return Error{fmt::format("{} files: an environment is one image or the six faces of a cube", files.size()), "",
                      ""};
@@ -471,23 +473,10 @@ Result<Environment> open_files(const std::vector<std::filesystem::path>& files, 
         if (faces.size() != 6)
             return Error{fmt::format("is a folder with {} files named as faces of a cube, not 6", faces.size()),
                          files[0].string(), hint_for_folder(files[0])};
-        Result<Environment> environment = open_faces(faces, request);
-        if (environment) environment->files = faces;
-        return environment;
+        return open_faces(faces, *request);
     }
-    Result<Environment> environment = open_picture(files[0], request);
+    Result<Environment> environment = open_picture(files[0], *request);
     if (!environment) return environment.error().at(files[0].string());
-    return environment;
-}
-
-}  // namespace
-
-Result<Environment> open_environment(const std::vector<std::filesystem::path>& files,
-                                     const EnvironmentOptions& options) {
-    const Result<Request> request = check_options(options);
-    if (!request) return request.error();
-    Result<Environment> environment = open_files(files, *request);
-    if (environment && environment->files.empty()) environment->files = files;
     return environment;
 }
 

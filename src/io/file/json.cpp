@@ -1,6 +1,8 @@
 #include "io/file/json.h"
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
 
@@ -190,6 +192,12 @@ Result<Json> Json::parse(std::string_view text) {
     JsonTree tree;
     if (nlohmann::json::sax_parse(text.begin(), text.end(), &tree)) return tree.take();
     return Error{"broken JSON: " + tree.error(), "", ""};
+}
+
+Result<Json> Json::read(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) return Error{"cannot be read", file.string(), ""};
+    return parse(std::string(std::istreambuf_iterator<char>(stream), {}));
 }
 
 }  // namespace domelight

@@ -7,6 +7,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <initializer_list>
 #include <map>
 #include <string>
@@ -110,6 +111,8 @@ class Json {
     std::string dump(int indent = -1) const;
     /// Errors: it is not JSON (the error says where); arrays and objects nested more than 256 deep.
     static Result<Json> parse(std::string_view text);
+    /// The same of a file's text; a file that cannot be read is an error, too.
+    static Result<Json> read(const std::filesystem::path& file);
 
     friend bool operator==(const Json& a, const Json& b) { return a.value_ == b.value_; }
 

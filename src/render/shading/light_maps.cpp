@@ -53,11 +53,10 @@ float level_roughness(const Json& level, Lobe lobe) {
 }
 
 Result<Json> read_json(const std::filesystem::path& file) {
-    std::ifstream in(file);
-    if (!in)
+    if (!std::ifstream(file))
         return Error{"cannot be read", file.string(),
                      "The folder must be one that `domelight bake` wrote for the generic engine."};
-    auto json = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}));
+    auto json = Json::read(file);
     if (!json) return Error{"is not JSON", file.string(), ""};
     return json;
 }
