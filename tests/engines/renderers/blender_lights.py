@@ -13,25 +13,17 @@ import sys
 import bpy
 import mathutils
 
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from blender_scene import empty_scene, new_camera, render, show, world_texture
+
 numbers, whole, remainder, lights = sys.argv[sys.argv.index("--") + 1:][:4]
 SIZE = 24
 
-scene = bpy.context.scene
-for thing in list(bpy.data.objects):
-    bpy.data.objects.remove(thing)
-scene.render.engine = "CYCLES"
-scene.cycles.device = "CPU"
-scene.cycles.samples = 512
-scene.cycles.use_denoising = False
-scene.cycles.use_adaptive_sampling = False
+scene = empty_scene(SIZE, samples=512)
 scene.cycles.sample_clamp_direct = scene.cycles.sample_clamp_indirect = 0
-scene.render.resolution_x = scene.render.resolution_y = SIZE
-scene.render.resolution_percentage = 100
-scene.render.threads_mode, scene.render.threads = "FIXED", 2
 scene.render.film_transparent = True
-scene.render.image_settings.file_format = "OPEN_EXR"
 scene.render.image_settings.color_mode = "RGBA"
-scene.render.image_settings.color_depth = "32"
+texture = world_texture(scene)
 
 bpy.ops.mesh.primitive_uv_sphere_add(segments=128, ring_count=64)
 bpy.ops.object.shade_smooth()
@@ -45,34 +37,22 @@ diffuse.inputs["Color"].default_value = (1, 1, 1, 1)
 links.new(diffuse.outputs["BSDF"], nodes["Material Output"].inputs["Surface"])
 ball.data.materials.append(material)
 
-camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
-scene.collection.objects.link(camera)
-scene.camera = camera
+camera = new_camera(scene)
 camera.data.type, camera.data.ortho_scale = "ORTHO", 2
 # At +Z of glTF, which is -Y here.
 camera.matrix_world = mathutils.Matrix.Translation((0, -5, 0)) @ mathutils.Matrix.Rotation(math.pi / 2, 4, "X")
 
-world = scene.world = bpy.data.worlds.new("world")
-world.use_nodes = True
-texture = world.node_tree.nodes.new("ShaderNodeTexEnvironment")
-world.node_tree.links.new(texture.outputs["Color"], world.node_tree.nodes["Background"].inputs["Color"])
 
-
-def picture_under(image):
-    texture.image = bpy.data.images.load(image)
-    texture.image.colorspace_settings.name = "Linear" if bpy.app.version < (4, 0) else "Linear Rec.709"
-    scene.render.filepath = f"{numbers}.exr"
-    bpy.ops.render.render(write_still=True)
-    picture = bpy.data.images.load(scene.render.filepath, check_existing=False)
-    pixels = list(picture.pixels)
-    bpy.data.images.remove(picture)
-    return [sum(pixels[c::4]) / (SIZE * SIZE) for c in range(3)]
+def mean_under(image):
+    show(texture, image)
+    pixels, channels = render(scene, f"{numbers}.exr")
+    return tuple(sum(pixels[c::channels]) / (SIZE * SIZE) for c in range(3))
 
 
 with open(numbers, "w") as out:
-    out.write("%.7g %.7g %.7g\n" % tuple(picture_under(whole)))
+    out.write("%.7g %.7g %.7g\n" % mean_under(whole))
     bpy.ops.import_scene.gltf(filepath=lights, export_import_convert_lighting_mode="RAW")
-    out.write("%.7g %.7g %.7g\n" % tuple(picture_under(remainder)))
+    out.write("%.7g %.7g %.7g\n" % mean_under(remainder))
 
 # The module bpy can crash while Python ends, when all is written.
 sys.stdout.flush()

@@ -4,10 +4,14 @@
 """
 
 import math
+import os
 import sys
 
 import bpy
 import mathutils
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from blender_scene import empty_scene, new_camera, render, show, world_texture
 
 image, numbers, size, pictures = sys.argv[sys.argv.index("--") + 1:][:4]
 size = int(size)
@@ -20,48 +24,18 @@ def to_blender(v):
     return mathutils.Vector((v[0], -v[2], v[1]))
 
 
-scene = bpy.context.scene
-for thing in list(bpy.data.objects):
-    bpy.data.objects.remove(thing)
-scene.render.engine = "CYCLES"
-scene.cycles.device = "CPU"
-scene.cycles.samples = 64
+scene = empty_scene(size, samples=64)
 scene.cycles.pixel_filter_type = "BOX"
-scene.cycles.use_denoising = False
-scene.cycles.use_adaptive_sampling = False
-scene.render.resolution_x = scene.render.resolution_y = size
-scene.render.resolution_percentage = 100
-scene.render.threads_mode, scene.render.threads = "FIXED", 2
-scene.render.image_settings.file_format = "OPEN_EXR"
-scene.render.image_settings.color_depth = "32"
-
-world = scene.world = bpy.data.worlds.new("world")
-world.use_nodes = True
-nodes, links = world.node_tree.nodes, world.node_tree.links
-texture = nodes.new("ShaderNodeTexEnvironment")
-texture.image = bpy.data.images.load(image)
-texture.image.colorspace_settings.name = "Linear" if bpy.app.version < (4, 0) else "Linear Rec.709"
-links.new(texture.outputs["Color"], nodes["Background"].inputs["Color"])
-
-camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
-scene.collection.objects.link(camera)
-scene.camera = camera
+show(world_texture(scene), image)
+camera = new_camera(scene)
 camera.data.angle = math.pi / 2
-
-
-def render(path):
-    scene.render.filepath = path
-    bpy.ops.render.render(write_still=True)
-    picture = bpy.data.images.load(path, check_existing=False)
-    return list(picture.pixels), picture.channels
-
 
 with open(numbers, "w") as out:
     for view, axes in enumerate(VIEWS):
         forward, right, up = map(to_blender, axes)
         rotation = mathutils.Matrix((right, up, -forward)).transposed()
         camera.matrix_world = rotation.to_4x4()
-        pixels, channels = render(f"{numbers}-{view}.exr")
+        pixels, channels = render(scene, f"{numbers}-{view}.exr")
         for y in reversed(range(size)):  # Blender's first row is at the bottom
             for x in range(size):
                 at = (y * size + x) * channels
