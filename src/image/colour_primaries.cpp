@@ -37,17 +37,30 @@ std::optional<Mat3> rgb_to_xyz(const ColourPrimaries& p) {
     return columns * diagonal(*solve * xyz_of(p.white));
 }
 
+bool are_xyz(const ColourPrimaries& p) {
+    const auto is = [](const ColourPrimaries::Xy& c, double x, double y) {
+        return std::abs(c.x - x) < 1e-3 && std::abs(c.y - y) < 1e-3;
+    };
+    return is(p.red, 1, 0) && is(p.green, 0, 1) && is(p.blue, 0, 0) && is(p.white, 1 / 3.0, 1 / 3.0);
+}
+
 std::optional<Mat3> rgb_to_rec709(const ColourPrimaries& primaries) {
+    if (are_xyz(primaries)) return xyz_to_rec709();
     const std::optional<Mat3> to_xyz = rgb_to_xyz(primaries);
-    if (!to_xyz) return std::nullopt;
+    const std::optional<Mat3> to_rec709 = xyz_to_rec709(primaries.white);
+    if (!to_xyz || !to_rec709) return std::nullopt;
+    return *to_rec709 * *to_xyz;
+}
+
+std::optional<Mat3> xyz_to_rec709(const ColourPrimaries::Xy& white) {
+    if (!(white.y > 1e-6)) return std::nullopt;
     const ColourPrimaries rec709;
-    Mat3 adapt;
-    if (std::abs(primaries.white.x - rec709.white.x) > 1e-4 || std::abs(primaries.white.y - rec709.white.y) > 1e-4) {
-        const Vec3d from = k_bradford * xyz_of(primaries.white), to = k_bradford * xyz_of(rec709.white);
-        if (!(from.x > 1e-6 && from.y > 1e-6 && from.z > 1e-6)) return std::nullopt;
-        adapt = *inverse(k_bradford) * diagonal({to.x / from.x, to.y / from.y, to.z / from.z}) * k_bradford;
-    }
-    return xyz_to_rec709() * adapt * *to_xyz;
+    if (std::abs(white.x - rec709.white.x) <= 1e-4 && std::abs(white.y - rec709.white.y) <= 1e-4)
+        return xyz_to_rec709();
+    const Vec3d from = k_bradford * xyz_of(white), to = k_bradford * xyz_of(rec709.white);
+    if (!(from.x > 1e-6 && from.y > 1e-6 && from.z > 1e-6)) return std::nullopt;
+    const Mat3 adapt = *inverse(k_bradford) * diagonal({to.x / from.x, to.y / from.y, to.z / from.z}) * k_bradford;
+    return xyz_to_rec709() * adapt;
 }
 
 Mat3 xyz_to_rec709() {

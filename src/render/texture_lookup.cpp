@@ -1,5 +1,7 @@
 #include "render/texture_lookup.h"
 
+#include "image/srgb_curve.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +15,7 @@ struct Decoded {
         for (int i = 0; i < 256; ++i) {
             const double v = i / 255.0;
             linear[i] = float(v);
-            srgb[i] = float(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+            srgb[i] = float(srgb_to_linear(v));
         }
     }
 };

@@ -322,6 +322,18 @@ TEST_CASE("exr reader: chromaticities become Rec. 709") {
     for (const float v : image->pixels()) CHECK(std::abs(v - 1) < 1e-5);
     CHECK(environment->report().warnings.size() == 1);
 
+    // XYZ itself must say that equal energy is white. Its grey is D65 all the same.
+    Imf::Header xyz(2, 1);
+    Imf::addChromaticities(xyz, {{1, 0}, {0, 1}, {0, 0}, {1 / 3.0f, 1 / 3.0f}});
+    write_scanlines(folder / "e.exr", xyz, Channels(Imf::FLOAT, k_rgb, 2, 1, [](int, int, int c) {
+                        return c == 0 ? 0.47523f : c == 1 ? 0.5f : 0.54453f;
+                    }));
+    auto grey = open_environment({folder / "e.exr"});
+    REQUIRE(grey);
+    const auto half = read_latlong(**grey->rows());
+    REQUIRE(half);
+    for (const float v : half->pixels()) CHECK(std::abs(v - 0.5) < 1e-4);
+
     Imf::Header plain(2, 1);
     Imf::addChromaticities(plain, {});
     write_scanlines(folder / "709.exr", plain, Channels(Imf::FLOAT, k_rgb, 2, 1));

@@ -148,6 +148,70 @@ TEST_CASE("hdr reader: PRIMARIES and xyze become Rec. 709") {
     CHECK((*zeros)->facts().warnings.empty());
 }
 
+TEST_CASE("hdr reader: XYZ as primaries of RGB are CIE XYZ, whose grey is D65") {
+    const auto reader = open_bytes(
+        joined(hdr_header("-Y 1 +X 1", "PRIMARIES=1 0 0 1 0 0 0.3333 0.3333\n"), {1, 2, 3, 129}));
+    REQUIRE(reader);
+    REQUIRE((*reader)->facts().to_rec709);
+    const Vec3d grey = *(*reader)->facts().to_rec709 * Vec3d{0.95046, 1, 1.08906};
+    CHECK(length(grey - Vec3d(1, 1, 1)) < 1e-4);
+}
+
+TEST_CASE("hdr reader: Radiance's own XYZE is photometric, with equal energy as grey") {
+    // ra_xyze leaves 1 / 179 in EXPOSURE, so that the texels have the scale of the RGBE picture. 179 lm/W were put in.
+    const auto file = joined(hdr_header("-Y 1 +X 1", "ra_xyze in.hdr\nEXPOSURE=5.586592e-03\nFORMAT=32-bit_rle_xyze\n"),
+                             {128, 128, 128, 129});
+    const auto reader = open_bytes(file);
+    REQUIRE(reader);
+    const auto image = read_all(**reader);
+    REQUIRE(image);
+    for (int c = 0; c < 3; ++c) CHECK(std::abs(image->at(0, 0)[c] - 1) < 1e-6);
+    const Vec3d grey = *(*reader)->facts().to_rec709 * Vec3d{1, 1, 1};
+    CHECK(length(grey - Vec3d(1, 1, 1)) < 1e-9);
+}
+
+TEST_CASE("hdr reader: the same light as Radiance's RGBE and XYZE") {
+    DOMELIGHT_DATA_FILE(rgbe, "reports/rad_rgbe.hdr");
+    DOMELIGHT_DATA_FILE(xyze, "reports/rad_xyze.hdr");
+    const auto mean = [](const std::filesystem::path& file) {
+        const auto environment = open_environment({file}, {.projection = "angular"});
+        REQUIRE(environment);
+        Vec3d sum;
+        const ProjectedImage& picture = *environment->picture();
+        for (int y = 0; y < picture.height(); ++y)
+            for (int x = 0; x < picture.width(); ++x) {
+                const float* p = picture.pixels.at(x, y);
+                sum += Vec3d(p[0], p[1], p[2]);
+            }
+        return sum;
+    };
+    const Vec3d a = mean(rgbe), b = mean(xyze);
+    // Eight bits of mantissa, which the matrix mixes: each texel is off by up to 1 %, and the mean by 0.1 %.
+    for (const double ratio : {b.x / a.x, b.y / a.y, b.z / a.z}) CHECK(std::abs(ratio - 1) < 2e-3);
+}
+
+TEST_CASE("hdr reader: GAMMA is undone, by sRGB's curve where it is ImageMagick's 1 / 2.2") {
+    const auto read = [](const std::string& gamma, int threads) {
+        return read_bytes(joined(hdr_header("-Y 1 +X 2", "GAMMA=" + gamma + "\nEXPOSURE=2\n"),
+                                 {171, 128, 10, 128, 128, 0, 255, 130}),
+                          {.threads = threads});
+    };
+    for (const int threads : {1, 2}) {
+        const auto srgb = read("0.45455", threads), power = read("0.5", threads), linear = read("1", threads);
+        REQUIRE((srgb && power && linear));
+        CHECK(std::abs(srgb->at(0, 0)[0] - 0.40374 / 2) < 1e-5);  // 171 / 256
+        CHECK(std::abs(srgb->at(0, 0)[1] - 0.214041 / 2) < 1e-5);
+        CHECK(std::abs(srgb->at(0, 0)[2] - 10 / 256.0 / 12.92 / 2) < 1e-6);
+        CHECK(std::abs(power->at(1, 0)[0] - 4 / 2) < 1e-6);
+        CHECK(power->at(1, 0)[1] == 0);
+        CHECK(std::abs(linear->at(1, 0)[0] - 2 / 2) < 1e-6);
+    }
+    const auto odd = open_bytes(joined(hdr_header("-Y 1 +X 1", "GAMMA=2.2\n"), {128, 128, 128, 129}));
+    REQUIRE(odd);
+    CHECK((*odd)->facts().warnings.size() == 1);
+    CHECK(*read_all(**odd)->at(0, 0) == 1);
+}
+
 TEST_CASE("hdr reader: damaged files give one clear error") {
     const auto fails_with = [](const Bytes& file, const std::string& part) {
         const auto image = read_bytes(file);

@@ -182,12 +182,14 @@ void ExrReader::take_facts(const Imf::Header& header) {
     if (!Imf::hasChromaticities(header)) return;
     const Imf::Chromaticities& c = Imf::chromaticities(header);
     const auto xy = [](const Imath::V2f& v) { return ColourPrimaries::Xy{v.x, v.y}; };
-    const auto matrix = rgb_to_rec709({xy(c.red), xy(c.green), xy(c.blue), xy(c.white)});
+    const ColourPrimaries primaries{xy(c.red), xy(c.green), xy(c.blue), xy(c.white)};
+    const auto matrix = rgb_to_rec709(primaries);
     if (!matrix) {
         facts_.warnings.push_back("the chromaticities do not describe a colour space: ignored");
     } else if (!is_nearly_identity(*matrix)) {
         facts_.to_rec709 = matrix;
-        facts_.warnings.push_back("the file's chromaticities were converted to linear Rec. 709");
+        facts_.warnings.push_back(are_xyz(primaries) ? "CIE XYZ was converted to linear Rec. 709"
+                                                     : "the file's chromaticities were converted to linear Rec. 709");
     }
 }
 

@@ -71,8 +71,19 @@ void apply_primaries(HdrHeader& header, const std::vector<double>& n) {
     header.primaries = ColourPrimaries{{n[0], n[1]}, {n[2], n[3]}, {n[4], n[5]}, {n[6], n[7]}};
 }
 
+void apply_gamma(HdrHeader& header, const std::vector<double>& numbers) {
+    const bool usable = numbers.size() == 1 && numbers[0] >= 0.1 && numbers[0] <= 1;
+    if (usable) {
+        header.gamma = numbers[0];
+    } else {
+        header.warnings.push_back("the GAMMA line does not hold a number from 0.1 to 1: ignored");
+    }
+}
+
 Result<void> apply_variable(HdrHeader& header, std::string_view line) {
     const std::size_t equals = line.find('=');
+    // Radiance's tools leave their command lines in the header.
+    header.by_radiance |= line.starts_with("ra_xyze ");
     if (equals == std::string_view::npos) return {};
     const std::string_view name = line.substr(0, equals), value = line.substr(equals + 1);
     if (name == "FORMAT") {
@@ -89,6 +100,10 @@ Result<void> apply_variable(HdrHeader& header, std::string_view line) {
         apply_factors(header, name, numbers_in(value), 3);
     } else if (name == "PRIMARIES") {
         apply_primaries(header, numbers_in(value));
+    } else if (name == "GAMMA") {
+        apply_gamma(header, numbers_in(value));
+    } else if (name == "SOFTWARE") {
+        header.by_radiance |= trimmed(value).starts_with("RADIANCE");
     }
     return {};
 }

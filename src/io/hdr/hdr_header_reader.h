@@ -17,6 +17,9 @@ namespace domelight {
 /// The contents of the text before a Radiance picture's texels.
 struct HdrHeader {
     bool xyze = false;  ///< texels are CIE XYZ, not RGB
+    /// A program of Radiance wrote the picture. Its XYZ are photometric (Y in cd/m²), with equal energy as grey.
+    bool by_radiance = false;
+    double gamma = 1;  ///< GAMMA, as ImageMagick writes it: texels are light to this power
     std::array<double, 3> applied{
         1, 1, 1};  ///< product of all EXPOSURE and COLORCORR lines: the factor on the radiance of each channel
     std::optional<ColourPrimaries> primaries;  ///< PRIMARIES, for RGB

@@ -3,6 +3,7 @@
 #include "domelight/base/parallel.h"
 
 #include "image/repair.h"
+#include "image/srgb_curve.h"
 #include "io/hdr/hdr_scanline_reader.h"
 #include "texture/texel/rgbe_decode.h"
 
@@ -23,6 +24,26 @@ constexpr int k_rows_a_task = 8;
 void mirror_row(float* rgb, int width) {
     for (int a = 0, b = width - 1; a < b; ++a, --b)
         for (int c = 0; c < 3; ++c) std::swap(rgb[3 * a + c], rgb[3 * b + c]);
+}
+
+/// Radiance's luminous efficacy of white light (lm/W): the Y of its XYZE pictures is in cd/m², and its RGBE in
+/// W/(m² sr). "RADIANCE Reference, Picture File Format"; WHTEFFICACY in its color.h.
+constexpr double k_radiance_efficacy = 179;
+
+/// ImageMagick writes this GAMMA for pixels of its sRGB, whose curve is not quite that power.
+constexpr double k_gamma_of_srgb = 1 / 2.2;
+
+/// The light of RGBE's every mantissa and exponent, 256 mantissas for each exponent, where the header has a GAMMA.
+std::vector<float> light_by_gamma(double gamma) {
+    const bool srgb = std::abs(gamma - k_gamma_of_srgb) < 1e-3;
+    std::vector<float> curve(256 * 256);
+    for (int exponent = 2; exponent < 256; ++exponent)
+        for (int mantissa = 0; mantissa < 256; ++mantissa) {
+            const double v = std::ldexp(double(mantissa), exponent - 136);
+            curve[std::size_t(256 * exponent + mantissa)] =
+                float(std::min(srgb ? srgb_to_linear(v) : std::pow(v, 1 / gamma), double(k_largest_radiance)));
+        }
+    return curve;
 }
 
 }  // namespace
@@ -59,30 +80,55 @@ Result<std::unique_ptr<ImageReader>> HdrReader::open(std::shared_ptr<const FileB
     facts.height = header->height;
     facts.largest = k_largest_radiance;
     facts.warnings = header->warnings;
-    double largest_scale = 1;
-    for (int c = 0; c < 3; ++c) {
-        reader->scale_[c] = float(1 / header->applied[c]);
-        largest_scale = std::max(largest_scale, 1 / header->applied[c]);
-    }
-    // 255 * 2^(e - 136) * scale < 2^100
-    reader->brightest_exponent_ = std::max(0, 228 - int(std::ceil(std::log2(largest_scale))));
-    if (header->applied != std::array<double, 3>{1, 1, 1})
-        facts.warnings.push_back(fmt::format("EXPOSURE and COLORCORR of the header were divided out: {:g} {:g} {:g}",
-                                             header->applied[0], header->applied[1], header->applied[2]));
-    if (header->xyze) {
-        facts.to_rec709 = xyz_to_rec709();
-        facts.warnings.push_back("CIE XYZ was converted to linear Rec. 709");
-    } else if (header->primaries) {
-        const std::optional<Mat3> matrix = rgb_to_rec709(*header->primaries);
-        if (!matrix) {
-            facts.warnings.push_back("the PRIMARIES line does not describe a colour space: ignored");
-        } else if (!is_nearly_identity(*matrix)) {
-            facts.to_rec709 = matrix;
-            facts.warnings.push_back("the header's PRIMARIES were converted to linear Rec. 709");
-        }
-    }
+    reader->set_scale();
+    reader->set_primaries();
     reader->offsets_.push_back(header->data_offset);
     return std::unique_ptr<ImageReader>(std::move(reader));
+}
+
+/// The factor of each channel, and the curve before it.
+void HdrReader::set_scale() {
+    const std::array<double, 3>& applied = header_.applied;
+    const bool photometric = header_.xyze && header_.by_radiance;
+    double largest_scale = 1;
+    for (int c = 0; c < 3; ++c) {
+        const double scale = 1 / applied[c] / (photometric ? k_radiance_efficacy : 1);
+        scale_[c] = float(scale);
+        largest_scale = std::max(largest_scale, scale);
+    }
+    // 255 * 2^(e - 136) * scale < 2^100
+    brightest_exponent_ = std::max(0, 228 - int(std::ceil(std::log2(largest_scale))));
+    if (applied != std::array<double, 3>{1, 1, 1})
+        facts_.warnings.push_back(fmt::format("EXPOSURE and COLORCORR of the header were divided out: {:g} {:g} {:g}",
+                                              applied[0], applied[1], applied[2]));
+    if (photometric)
+        facts_.warnings.push_back(
+            fmt::format("Radiance's XYZE is in cd/m²: it was divided by {:g} lm/W", k_radiance_efficacy));
+    if (std::abs(header_.gamma - 1) < 1e-6) return;
+    curve_ = light_by_gamma(header_.gamma);
+    brightest_exponent_ = 0;
+    facts_.warnings.push_back(fmt::format("GAMMA={:g} of the header was undone{}", header_.gamma,
+                                          std::abs(header_.gamma - k_gamma_of_srgb) < 1e-3 ? ", as sRGB" : ""));
+}
+
+/// The matrix from the file's colours to linear Rec. 709.
+void HdrReader::set_primaries() {
+    if (header_.xyze) {
+        constexpr ColourPrimaries::Xy equal_energy{1 / 3.0, 1 / 3.0};
+        facts_.to_rec709 = header_.by_radiance ? *xyz_to_rec709(equal_energy) : xyz_to_rec709();
+        facts_.warnings.push_back(header_.by_radiance
+                                      ? "CIE XYZ was converted to linear Rec. 709, with Radiance's grey (equal energy)"
+                                      : "CIE XYZ was converted to linear Rec. 709");
+        return;
+    }
+    if (!header_.primaries) return;
+    const std::optional<Mat3> matrix = rgb_to_rec709(*header_.primaries);
+    if (!matrix) {
+        facts_.warnings.push_back("the PRIMARIES line does not describe a colour space: ignored");
+    } else if (!is_nearly_identity(*matrix)) {
+        facts_.to_rec709 = matrix;
+        facts_.warnings.push_back("the header's PRIMARIES were converted to linear Rec. 709");
+    }
 }
 
 Error HdrReader::scanline_error(int scanline, const char* what) const {
@@ -103,7 +149,14 @@ Result<void> HdrReader::index_scanlines(int count) {
 
 /// One row of RGB from planes of RGBE. Returns true if every value is within the range that needs no repair.
 bool HdrReader::convert_row(const std::uint8_t* planes, std::size_t plane_stride, float* out) const {
-    rgbe_to_float(planes, plane_stride, header_.width, scale_, out);
+    if (curve_.empty()) {
+        rgbe_to_float(planes, plane_stride, header_.width, scale_, out);
+    } else {
+        for (std::size_t x = 0; x < std::size_t(header_.width); ++x)
+            for (std::size_t c = 0; c < 3; ++c)
+                out[3 * x + c] =
+                    curve_[256 * std::size_t(planes[3 * plane_stride + x]) + planes[c * plane_stride + x]] * scale_[c];
+    }
     if (header_.flip_x && !header_.columns) mirror_row(out, header_.width);
     std::uint8_t brightest = 0;
     for (int x = 0; x < header_.width; ++x) brightest = std::max(brightest, planes[3 * plane_stride + x]);

@@ -24,6 +24,8 @@ class HdrReader : public ImageReader {
     Result<bool> read_in_order(ImageView<float> rows);
     Result<bool> read_by_index(ImageView<float> rows);
     Result<bool> read_columns(ImageView<float> rows);
+    void set_scale();
+    void set_primaries();
     bool convert_row(const std::uint8_t* planes, std::size_t plane_stride, float* out) const;
     Error scanline_error(int scanline, const char* what) const;
 
@@ -33,6 +35,7 @@ class HdrReader : public ImageReader {
     int next_row_ = 0;
     std::size_t released_ = 0;  ///< bytes before it have been given back to the system
     std::array<float, 3> scale_{1, 1, 1};
+    std::vector<float> curve_;  ///< where the header has a GAMMA: the light of each mantissa, for each exponent
     int brightest_exponent_ = 0;         // exponents up to this one give values within k_largest_radiance
     std::vector<std::size_t> offsets_;   // where the scanlines found so far start, and where the last of them ends
     std::vector<std::uint8_t> columns_;  // four planes of the whole image, where scanlines are columns

@@ -1,17 +1,10 @@
 #include "io/picture/screen_curve.h"
 
+#include "image/srgb_curve.h"
+
 #include <cmath>
 
 namespace domelight {
-
-namespace {
-
-/// IEC 61966-2-1, section 5.2.
-double srgb_to_linear(double v) {
-    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
-
-}  // namespace
 
 std::vector<float> screen_curve(Decode decode, int levels) {
     std::vector<float> curve(levels);

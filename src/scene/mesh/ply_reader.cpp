@@ -1,3 +1,4 @@
+#include "image/srgb_curve.h"
 #include "io/file/byte_budget.h"
 #include "io/file/printable.h"
 #include "io/file/text_fields.h"
@@ -121,7 +122,7 @@ Error too_early() {
 
 /// IEC 61966-2-1: colours of scans are made for a screen.
 float linear_of_srgb(double c) {
-    return float(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+    return float(srgb_to_linear(c));
 }
 
 class PlyReader {
