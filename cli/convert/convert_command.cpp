@@ -11,6 +11,7 @@
 #include "cli/console/console.h"
 #include "cli/console/display_options.h"
 #include "cli/console/environment_options.h"
+#include "cli/console/output_endings.h"
 #include "cli/console/print.h"
 #include "cli/console/suggestion.h"
 #include "cli/convert/convert_output.h"
@@ -222,8 +223,7 @@ Result<void> check(ConvertWords& w) {
     if (w.size && (*w.size < 1 || *w.size > 32768))
         return Error{fmt::format("{} is not from 1 to 32768", *w.size), "--size", ""};
     if (w.to.empty()) {
-        const std::string& f = w.output.file;
-        w.to = f.ends_with(".ktx2") || f.ends_with(".ktx") || f.ends_with(".dds") ? "cube" : "latlong";
+        w.to = has_texture_ending(w.output.file) ? "cube" : "latlong";
     }
     return {};
 }

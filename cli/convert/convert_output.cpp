@@ -18,14 +18,10 @@
 namespace domelight::cli {
 namespace {
 
-bool is_texture(const std::string& extension) {
-    return extension == ".ktx2" || extension == ".ktx" || extension == ".dds";
-}
-
-std::vector<std::string> layouts_of(const Projection& projection, const std::string& extension) {
+std::vector<std::string> layouts_of(const Projection& projection, const std::string& file) {
     if (projection.charts() == 2) return {"side-by-side", "files"};
     if (projection.charts() == 1) return {"picture"};
-    if (is_texture(extension)) return {"cube"};
+    if (has_texture_ending(file)) return {"cube"};
     if (projection.grid() == SampleGrid::both_on_edges) return {"envmap"};
     std::vector<std::string> all = cube_layout_names();
     all.push_back("faces");
@@ -113,7 +109,7 @@ Result<void> check_output(ConvertOutput& output, const Projection& projection) {
         return Error{fmt::format("\"{}\" does not go with {}", value, of), option,
                      "Accepted: " + join(accepted, ", ") + "."};
     };
-    if (auto ok = check(output.layout, "--layout", layouts_of(projection, extension),
+    if (auto ok = check(output.layout, "--layout", layouts_of(projection, output.file),
                         fmt::format("{} in {}", projection.name(), extension));
         !ok)
         return ok;
@@ -131,7 +127,7 @@ Result<WrittenPicture> write_projected(const ProjectedImage& image, const Conver
         output.encoding = written.widened ? "float" : "half";
     }
     written.encoding_name = output.encoding;
-    if (is_texture(extension)) {
+    if (has_texture_ending(asked.file)) {
         const FilteredMap level = as_level(image);
         std::vector<EncodingReport> reports;
         const Texture texture =

@@ -8,6 +8,7 @@
 #include "cli/console/console.h"
 #include "cli/console/environment_options.h"
 #include "cli/console/field_options.h"
+#include "cli/console/output_endings.h"
 #include "cli/console/print.h"
 #include "compare/picture_survey.h"
 #include "io/file/json.h"
@@ -314,11 +315,6 @@ int info_bake(const fs::path& folder, const InfoWords& w) {
     return whole ? exit_done : print_error({"not all files are as they were written", folder.string(), "Bake again."});
 }
 
-bool is_texture(const fs::path& file) {
-    const std::string extension = lower_case_extension(file);
-    return extension == ".ktx2" || extension == ".ktx" || extension == ".dds";
-}
-
 }  // namespace
 
 int run_info(const std::vector<std::string>& words) {
@@ -348,7 +344,7 @@ int run_info(const std::vector<std::string>& words) {
         std::error_code failure;
         if (fs::exists(input / "manifest.json", failure)) return info_bake(input, w);
         if (input.filename() == "manifest.json" && fs::exists(input, failure)) return info_bake(input.parent_path(), w);
-        if (is_texture(input)) return info_texture(input.string(), w);
+        if (has_texture_ending(input.string())) return info_texture(input.string(), w);
         if (is_picture(w, arguments)) return info_picture(w);
     } else if (w.picture || !w.layer.empty()) {
         return print_error({fmt::format("goes with one picture, not with {} files", w.inputs.size()),

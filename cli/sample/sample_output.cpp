@@ -2,6 +2,7 @@
 
 #include "domelight/base/version.h"
 #include "domelight/io/file/atomic_file.h"
+#include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 #include "domelight/texture/texture.h"
 
@@ -105,7 +106,7 @@ Result<void> write_samples(const SampleWords& w, const EnvironmentSampler& sampl
             return Error{"results cannot be written", "stdout", ""};
         return {};
     }
-    const bool json = w.output.ends_with(".json");
+    const bool json = lower_case_extension(w.output) == ".json";
     return write_file_atomically(w.output, [&](const std::filesystem::path& path) -> Result<void> {
         std::FILE* file = std::fopen(path.c_str(), "wb");
         bool fine = file != nullptr;

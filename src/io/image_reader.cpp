@@ -22,7 +22,7 @@ Result<std::unique_ptr<ImageReader>> open_image_reader(std::shared_ptr<const Fil
                                                        const ReaderOptions& options) {
     if (options.decode >= Decode::rgbm)
         return Error{"a picture is not decoded as " + name_of(options.decode), field_place("decode"),
-                     "That is for textures of eight bits a channel (DDS)."};
+                     "That is for textures of eight bits a channel (KTX2, KTX, DDS)."};
     using namespace std::string_view_literals;
     const auto all = bytes->bytes();
     const auto starts_with = [&](std::string_view magic) {

@@ -1072,6 +1072,25 @@ def test_convert_reports_power_and_files(folder):
     assert run("convert", "studio.hdr", "-o", "x.hdr", "--to", "octahedral", "--quiet", folder=folder).stdout == ""
 
 
+def test_endings_mean_the_same_in_any_case(folder):
+    """An output's format, and what is made of it, follow from its ending whether that is written in small letters or capitals."""
+    for ending in [".ktx2", ".ktx", ".dds", ".hdr", ".exr", ".png", ".jpg"]:
+        small = converted(folder, "studio.hdr", "-o", f"out{ending}", "--size", "16")
+        large = converted(folder, "studio.hdr", "-o", f"OUT{ending.upper()}", "--size", "16")
+        assert small["projection"] == large["projection"], (ending, small["projection"], large["projection"])
+        assert (folder / f"out{ending}").read_bytes() == (folder / f"OUT{ending.upper()}").read_bytes(), ending
+        described = [json.loads(run("info", name, "--json", folder=folder).stdout)["kind"] for name in [f"out{ending}", f"OUT{ending.upper()}"]]
+        assert described[0] == described[1], (ending, described)
+    for ending in [".ktx2", ".exr", ".png"]:
+        run("brdf", "-o", f"brdf{ending}", "--size", "16", folder=folder)
+        run("brdf", "-o", f"BRDF{ending.upper()}", "--size", "16", folder=folder)
+        assert (folder / f"brdf{ending}").read_bytes() == (folder / f"BRDF{ending.upper()}").read_bytes(), ending
+    for ending in [".json", ".csv"]:
+        run("sample", "studio.hdr", "-n", "4", "-o", f"s{ending}", folder=folder)
+        run("sample", "studio.hdr", "-n", "4", "-o", f"S{ending.upper()}", folder=folder)
+        assert (folder / f"s{ending}").read_bytes() == (folder / f"S{ending.upper()}").read_bytes(), ending
+
+
 def test_convert_every_projection_there_and_back(folder):
     before = None
     for name in ["latlong/usd", "latlong/materialx", "latlong/mitsuba", "latlong/openexr", "sphere-map", "mirror-ball/fov=30", "angular",

@@ -5,6 +5,7 @@
 #include "texture/container/texture_reading.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -80,6 +81,32 @@ TEST_CASE("ktx1: a file of the other endianness and padded RGB16F rows") {
     CHECK(image.at(0, 0)[0] == 1.0f);
     CHECK(image.at(1, 0)[0] == 1.1875f);
     CHECK(image.at(2, 0)[2] == 1.5f);
+}
+
+TEST_CASE("ktx1: rows of three bytes a texel are padded, and blocks are not") {
+    const auto file = [](std::initializer_list<std::uint32_t> words, std::vector<std::uint8_t> texels) {
+        std::vector<std::uint8_t> bytes{0xab, 'K', 'T', 'X', ' ', '1', '1', 0xbb, '\r', '\n', 0x1a, '\n'};
+        for (std::uint32_t v : words)
+            for (int shift : {0, 8, 16, 24}) bytes.push_back(std::uint8_t(v >> shift));
+        bytes.insert(bytes.end(), texels.begin(), texels.end());
+        return bytes;
+    };
+    const auto texel = [](const std::vector<std::uint8_t>& bytes, int x, int y) {
+        MemorySource source(bytes);
+        const auto texture = ktx1_texture(source, Decode::rgbm);  // which returns the bytes unchanged
+        REQUIRE_MESSAGE(texture, texture.error().format());
+        const std::uint8_t* p = texture->levels[0].data() + 4 * (texture->width * y + x);
+        return std::array<int, 4>{p[0], p[1], p[2], p[3]};
+    };
+    // BGR8 of 3 x 2: 9 bytes a row, padded to 12.
+    std::vector<std::uint8_t> rows(24);
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = std::uint8_t(i);
+    const auto bgr = file({0x04030201, 0x1401, 1, 0x80e0, 0x8051, 0x1907, 3, 2, 0, 0, 1, 1, 0, 24}, rows);
+    CHECK(texel(bgr, 1, 1) == std::array<int, 4>{17, 16, 15, 255});
+    // BC1 of 6 x 4, two blocks: ends red and blue, rows of indices 0 1 2 3.
+    const std::vector<std::uint8_t> blocks{0, 0, 0, 0, 0, 0, 0, 0, 0x00, 0xf8, 0x1f, 0x00, 0xe4, 0xe4, 0xe4, 0xe4};
+    const auto bc1 = file({0x04030201, 0, 1, 0, 0x83f1, 0x1908, 6, 4, 0, 0, 1, 1, 0, 16}, blocks);
+    CHECK(texel(bc1, 5, 3) == std::array<int, 4>{0, 0, 255, 255});
 }
 
 TEST_CASE("ktx1: truncations and changed headers give one error") {

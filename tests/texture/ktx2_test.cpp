@@ -5,7 +5,10 @@
 #include "texture/container/texture_reading.h"
 #include "texture/container/vulkan_formats.h"
 
+#include <zlib.h>
+
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 using namespace domelight;
@@ -239,6 +242,103 @@ TEST_CASE("ktx2: the conformance suite's invalid files give a result or one erro
     }
     CHECK(files > 500);
     MESSAGE("ktx2_cts: " << files << " files, " << refused << " refused");
+}
+
+namespace {
+
+/// The same one-level file with its texels compressed by zlib.
+std::vector<std::uint8_t> with_zlib(std::vector<std::uint8_t> bytes) {
+    const std::size_t at = u64(bytes, 80), size = u64(bytes, 88);
+    uLongf packed_size = compressBound(size);
+    std::vector<std::uint8_t> packed(packed_size);
+    REQUIRE(compress(packed.data(), &packed_size, bytes.data() + at, size) == Z_OK);
+    packed.resize(packed_size);
+    bytes.resize(at);
+    bytes.insert(bytes.end(), packed.begin(), packed.end());
+    set_u32(bytes, 44, 3);
+    set_u32(bytes, 88, std::uint32_t(packed.size()));
+    return bytes;
+}
+
+double srgb_to_linear(double v) {
+    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+
+}  // namespace
+
+TEST_CASE("ktx2: zlib supercompression is undone, and refused where it holds another size") {
+    const TemporaryFolder folder;
+    const Texture texture = sample_texture(Encoding::rgba16f, 10, 6, 1);
+    REQUIRE(write_ktx2(folder / "a.ktx2", texture));
+    const auto packed = with_zlib(file_bytes(folder / "a.ktx2"));
+    MemorySource source(packed);
+    const auto back = ktx2_texture(source);
+    REQUIRE_MESSAGE(back, back.error().format());
+    CHECK(same_texels(*back, texture));
+    CHECK(ktx2_info(source)->decodable);
+    auto damaged = packed;
+    damaged[u64(packed, 80) + 20] ^= 0x55;
+    MemorySource broken(damaged);
+    CHECK_FALSE(ktx2_texture(broken));
+    auto larger = packed;
+    set_u32(larger, 20, 11);  // the width
+    set_u32(larger, 24, 11);
+    set_u32(larger, 96, 11 * 11 * 6 * 8);
+    MemorySource wrong(larger);
+    const auto refused = ktx2_texture(wrong);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().what.find("another number of bytes") != std::string::npos);
+}
+
+TEST_CASE("ktx: eight bits a channel are decoded by the curve that the format states, or as one says") {
+    const TemporaryFolder folder;
+    const Texture texture = sample_texture(Encoding::rgbm, 6, 6, 2);
+    REQUIRE(write_ktx2(folder / "a.ktx2", texture));
+    REQUIRE(write_ktx1(folder / "a.ktx", texture));
+    const double red = texture.levels[1][4 * 2] / 255.0;  // texel (2, 0) of level 1
+    struct Case {
+        const char* file;
+        std::size_t format_at;
+        std::uint32_t srgb, unorm;
+    };
+    for (const Case& c : {Case{"a.ktx2", 12, 43, 37}, Case{"a.ktx", 28, 0x8c43, 0x8058}}) {
+        CAPTURE(c.file);
+        auto bytes = file_bytes(folder / c.file);
+        // Without the key the texels are those of a picture.
+        const std::string key = "domelight.encoding";
+        *std::search(bytes.begin(), bytes.end(), key.begin(), key.end()) = 'x';
+        for (const bool srgb : {true, false}) {
+            set_u32(bytes, c.format_at, srgb ? c.srgb : c.unorm);
+            write_bytes(folder / "b", bytes);
+            CHECK(read_texture_info(folder / "b")->eight_bits);
+            CHECK(read_texture_info(folder / "b")->decodable);
+            const auto screen = read_texture(folder / "b");
+            REQUIRE_MESSAGE(screen, screen.error().format());
+            CHECK(decode_texture(*screen, 1, 0).at(2, 0)[0] ==
+                  doctest::Approx(srgb ? srgb_to_linear(red) : red).epsilon(1e-3));
+            const auto kept = read_texture(folder / "b", Decode::rgbm);
+            REQUIRE(kept);
+            CHECK(same_texels(*kept, texture));
+        }
+    }
+}
+
+TEST_CASE("ktx: the cubes of other tools that are packed with zlib or hold eight bits a channel") {
+    DOMELIGHT_DATA_FILE(zlib, "reports/k2_zlib.ktx2");
+    DOMELIGHT_DATA_FILE(screen, "reports/k2_rgba8srgb.ktx2");
+    const auto light = read_texture(zlib);
+    REQUIRE_MESSAGE(light, light.error().format());
+    // Red is 1.5 + x, blue 1.5 + z, of the direction at each texel; here at the face +X.
+    const ImageF face = decode_texture(*light, 0, 0);
+    CHECK(face.at(8, 8)[0] == doctest::Approx(2.5).epsilon(0.01));
+    CHECK(face.at(8, 8)[2] == doctest::Approx(1.5).epsilon(0.05));
+    const auto picture = read_texture(screen);
+    REQUIRE_MESSAGE(picture, picture.error().format());
+    const auto bytes = file_bytes(screen);
+    const std::size_t first = u64(bytes, 80);
+    for (std::size_t c = 0; c < 3; ++c)
+        CHECK(decode_texture(*picture, 0, 0).at(0, 0)[c] ==
+              doctest::Approx(srgb_to_linear(bytes[first + c] / 255.0)).epsilon(1e-3));
 }
 
 TEST_CASE("ktx2: a foreign cube of block-compressed texels is described, not decoded") {

@@ -6,11 +6,11 @@ namespace domelight {
 
 /// What the numbers of a picture of eight bits a channel mean.
 enum class Decode {
-    automatic,  ///< sRGB, with a warning
+    automatic,  ///< sRGB, with a warning; what the format states in KTX2 and KTX
     srgb,       ///< IEC 61966-2-1
     gamma22,    ///< the power 2.2
     linear,     ///< the light itself
-    rgbm,       ///< Encoding::rgbm; this one and the next two are for DDS textures only
+    rgbm,       ///< Encoding::rgbm; this one and the next two are for textures only
     rgbd,       ///< Encoding::rgbd
     rgbp,       ///< Encoding::rgbp
 };

@@ -24,13 +24,23 @@ std::string texture_container(std::span<const std::uint8_t> bytes) {
     return "";
 }
 
+namespace {
+
+/// What was taken for the curve of eight bits a channel, where nobody said it.
+std::string assumed_curve(const TextureInfo& info) {
+    if (info.container == "DDS") return "; the curve is taken to be sRGB";
+    const bool srgb = info.format.find("SRGB") != std::string::npos;
+    return fmt::format("; the curve is {}, as the format {} states", srgb ? "sRGB" : "linear", info.format);
+}
+
+}  // namespace
+
 Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_t max_bytes, float scale,
                                   RepairReport& report, Decode decode) {
     const Result<TextureInfo> info = read_texture_info(file);
     if (!info) return info.error().at(file.string());
     if (info->faces != 6 || info->width != info->height || info->layers > 1)
         return Error{"texture is not a cube", file.string(), "An environment must be a cube or a lat-long image."};
-    if (!info->decodable) return Error{"texels of format " + info->format + " cannot be decoded", file.string(), ""};
     // The decoded faces are in memory together with the encoded texture.
     const std::int64_t size = info->width;
     if (size < 1 || size > 65536 || 2 * 6 * size * size * 12 > max_bytes)
@@ -58,7 +68,9 @@ Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_
     }
     report.warnings.push_back("the faces are taken to be in OpenGL's orientation; some tools write them mirrored");
     if (info->eight_bits && texture->encoding == Encoding::rgba16f)
-        report.warnings.push_back("eight bits a channel are not HDR unless they are RGBM or its like: `decode` rgbm");
+        report.warnings.push_back(std::string("eight bits a channel are not HDR unless they are RGBM or its like "
+                                              "(`decode` rgbm)") +
+                                  (decode != Decode::automatic ? "" : assumed_curve(*info)));
     return cube;
 }
 

@@ -150,4 +150,40 @@ std::optional<StoredTexels> gl_format_texels(std::uint32_t internal_format, std:
     }
 }
 
+std::optional<StatedScreenTexels> gl_format_screen_texels(std::uint32_t internal_format, std::uint32_t format,
+                                                          std::uint32_t type) {
+    using Kind = ScreenTexels::Kind;
+    struct Blocks {
+        std::uint32_t linear, srgb;
+        Kind kind;
+    };
+    static constexpr Blocks k_blocks[] = {
+        {0x83f0, 0x8c4c, Kind::bc1},  // RGB_S3TC_DXT1
+        {0x83f1, 0x8c4d, Kind::bc1},  // RGBA_S3TC_DXT1
+        {0x83f2, 0x8c4e, Kind::bc2},  // RGBA_S3TC_DXT3
+        {0x83f3, 0x8c4f, Kind::bc3},  // RGBA_S3TC_DXT5
+    };
+    for (const Blocks& row : k_blocks)
+        if (type == 0 && (internal_format == row.linear || internal_format == row.srgb))
+            return StatedScreenTexels{{row.kind, 0, {}}, internal_format == row.srgb};
+
+    struct Order {
+        std::uint32_t format;
+        ScreenTexels texels;
+    };
+    static constexpr Order k_orders[] = {
+        {0x1907, {Kind::bytes, 3, {0, 1, 2, -1}}},  // GL_RGB
+        {0x80e0, {Kind::bytes, 3, {2, 1, 0, -1}}},  // GL_BGR
+        {0x1908, {}},                               // GL_RGBA
+        {0x80e1, {Kind::bytes, 4, {2, 1, 0, 3}}},   // GL_BGRA
+    };
+    const bool srgb = internal_format == 0x8c41 || internal_format == 0x8c43;  // SRGB8, SRGB8_ALPHA8
+    const bool linear = internal_format == k_gl_rgba8 || internal_format == 0x8051 || internal_format == 0x1907 ||
+                        internal_format == 0x1908;  // RGB8, RGB, RGBA
+    if (type != k_gl_unsigned_byte || !(srgb || linear)) return std::nullopt;
+    for (const Order& row : k_orders)
+        if (format == row.format) return StatedScreenTexels{row.texels, srgb};
+    return std::nullopt;
+}
+
 }  // namespace domelight

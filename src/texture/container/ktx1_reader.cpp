@@ -74,7 +74,7 @@ Result<void> check_levels(ByteSource& source, const Ktx1& file) {
     return {};
 }
 
-Result<Ktx1> parse(ByteSource& source) {
+Result<Ktx1> parse(ByteSource& source, Decode decode = Decode::automatic) {
     const auto head = source.take(0, k_ktx1_header_bytes, "header");
     if (!head) return head.error();
     Ktx1 file;
@@ -98,6 +98,11 @@ Result<Ktx1> parse(ByteSource& source) {
             file.texels = StoredTexels{*encoding};
             file.info.format += ", " + name_of(*encoding);
         }
+    const auto screen = gl_format_screen_texels(internal_format, word(3), word(1));
+    if (screen && !file.texels) {
+        file.texels = stored_screen_texels(*screen, decode);
+        file.info.eight_bits = true;
+    }
     file.data_offset = k_ktx1_header_bytes + word(12);
     done = check_levels(source, file);
     if (!done) return done.error();
@@ -108,24 +113,28 @@ Result<Ktx1> parse(ByteSource& source) {
 /// The size of the numbers whose bytes must be swapped: the packed formats are one 32-bit number, whatever type size
 /// the header states; blocks are bytes.
 std::size_t swap_unit(const StoredTexels& texels) {
+    if (texels.screen) return 1;
     if (texels.channels > 0) return std::size_t(texels.channel_bytes);
     if (encoding_block(texels.encoding) > 1 || is_scaled_bytes(texels.encoding)) return 1;
     return texels.encoding == Encoding::rgba16f || texels.encoding == Encoding::rg16f ? 2 : 4;
 }
 
-/// One face of a level: rows of texels or blocks padded to 4 bytes become tight ones.
-void append_face(const Ktx1& file, int columns, int rows, Bytes& stored, Bytes& out) {
+std::uint64_t padded(std::uint64_t row_bytes) {
+    return (row_bytes + 3) / 4 * 4;
+}
+
+/// One face of level `l`: rows of texels or blocks padded to 4 bytes become tight ones, in our byte order.
+void append_face(const Ktx1& file, const Texture& texture, int l, Bytes& stored, Bytes& out) {
     if (file.swapped) {
         const std::size_t unit = swap_unit(*file.texels);
         for (std::size_t i = 0; i + unit <= stored.size(); i += unit)
             std::reverse(stored.begin() + std::ptrdiff_t(i), stored.begin() + std::ptrdiff_t(i + unit));
     }
-    const std::size_t tight = std::size_t(columns) * std::size_t(file.texels->bytes()), padded = (tight + 3) / 4 * 4;
-    const std::size_t wide = std::size_t(columns) * std::size_t(encoding_bytes(file.texels->encoding));
-    for (int y = 0; y < rows; ++y) {
-        out.resize(out.size() + wide);
-        widen_texels(*file.texels, stored.data() + padded * std::size_t(y), std::size_t(columns),
-                     out.data() + out.size() - wide);
+    const auto tight = std::size_t(stored_row_bytes(texture, *file.texels, l));
+    const auto rows = std::size_t(stored_rows(texture, *file.texels, l));
+    for (std::size_t y = 0; y < rows; ++y) {
+        const auto row = stored.begin() + std::ptrdiff_t(std::size_t(padded(tight)) * y);
+        out.insert(out.end(), row, row + std::ptrdiff_t(tight));
     }
 }
 
@@ -137,34 +146,34 @@ Result<TextureInfo> ktx1_info(ByteSource& source) {
     return std::move(file->info);
 }
 
-Result<Texture> ktx1_texture(ByteSource& source) {
-    const auto file = parse(source);
+Result<Texture> ktx1_texture(ByteSource& source, Decode decode) {
+    const auto file = parse(source, decode);
     if (!file) return file.error();
     auto texture = texture_for(file->info, file->texels);
     if (!texture) return texture;
     std::uint64_t at = file->data_offset;
     for (int l = 0; l < file->info.levels; ++l) {
-        const int columns = texture->level_columns(l), rows = texture->level_rows(l);
         const auto size = source.take(at, 4, "level's size");
         if (!size) return size.error();
         std::uint64_t face_bytes = Words{*size, file->swapped}.at(0);
         // Some writers count all faces of a cube that is an array of one.
         if (file->info.layers == 1 && file->info.faces == 6) face_bytes /= 6;
-        const std::uint64_t row = (std::uint64_t(columns) * std::uint64_t(file->texels->bytes()) + 3) / 4 * 4;
-        if (face_bytes != row * std::uint64_t(rows)) {
+        const std::uint64_t needed =
+            padded(stored_row_bytes(*texture, *file->texels, l)) * stored_rows(*texture, *file->texels, l);
+        if (face_bytes != needed) {
             return Error{"level " + std::to_string(l) + " has " + std::to_string(face_bytes) +
-                             " bytes a face, but its size needs " + std::to_string(row * std::uint64_t(rows)),
+                             " bytes a face, but its size needs " + std::to_string(needed),
                          "", "the file is damaged"};
         }
         at += 4;
         Bytes level;
-        level.reserve(texture->face_bytes(l) * std::size_t(texture->faces));
+        level.reserve(std::size_t(stored_level_bytes(*texture, *file->texels, l)));
         for (int face = 0; face < texture->faces; ++face, at += face_bytes) {
             auto stored = source.take(at, face_bytes, "level");
             if (!stored) return stored.error();
-            append_face(*file, columns, rows, *stored, level);
+            append_face(*file, *texture, l, *stored, level);
         }
-        texture->levels.push_back(std::move(level));
+        texture->levels.push_back(widen_level(*texture, *file->texels, l, std::move(level)));
     }
     return texture;
 }

@@ -4,6 +4,7 @@
 #include "texture/container/texture_reading.h"
 #include "texture/container/vulkan_formats.h"
 
+#include <zlib.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -25,19 +26,26 @@ struct Ktx2 {
     std::vector<Level> levels;
 };
 
+/// Numbers of the supercompression schemes that can be undone, besides 0 for none.
+constexpr std::uint32_t k_zstd = 2, k_zlib = 3;
+
 std::string scheme_name(std::uint32_t scheme) {
     switch (scheme) {
         case 0:
             return "none";
         case 1:
             return "BasisLZ";
-        case 2:
+        case k_zstd:
             return "zstd";
-        case 3:
+        case k_zlib:
             return "zlib";
         default:
             return "scheme " + std::to_string(scheme);
     }
+}
+
+bool is_readable(std::uint32_t scheme) {
+    return scheme == 0 || scheme == k_zstd || scheme == k_zlib;
 }
 
 /// The colour models that files without a Vulkan format use (Khronos Data Format Specification, section 5.6).
@@ -54,8 +62,14 @@ std::string model_name(unsigned model) {
     }
 }
 
-/// Checks the data format descriptor's own sizes; returns the colour model of its first, basic, block.
-Result<unsigned> read_descriptor(ByteSource& source, std::uint64_t offset, std::uint64_t bytes) {
+/// What the first, basic, block of a data format descriptor states.
+struct Descriptor {
+    unsigned model = 0;
+    bool srgb = false;  ///< the transfer function (section 5.8: 2)
+};
+
+/// Checks the data format descriptor's own sizes.
+Result<Descriptor> read_descriptor(ByteSource& source, std::uint64_t offset, std::uint64_t bytes) {
     if (bytes < 4 + 24 || bytes > 65536)
         return Error{"has a data format descriptor of " + std::to_string(bytes) + " bytes", "", "the file is damaged"};
     const auto data = source.take(offset, bytes, "data format descriptor");
@@ -63,7 +77,7 @@ Result<unsigned> read_descriptor(ByteSource& source, std::uint64_t offset, std::
     const unsigned block = u32_at(*data, 8) >> 16;
     if (u32_at(*data, 0) != bytes || block < 24 || block > bytes - 4 || (block - 24) % 16)
         return Error{"has a data format descriptor that contradicts its own size", "", "the file is damaged"};
-    return unsigned((*data)[12]);
+    return Descriptor{(*data)[12], (*data)[14] == 2};
 }
 
 Result<void> read_key_values(ByteSource& source, std::uint64_t offset, std::uint64_t bytes,
@@ -100,7 +114,14 @@ Result<void> check_level_size(const Ktx2& file, const Texture& texture, int l) {
                  "", "the file is damaged"};
 }
 
-Result<Ktx2> parse(ByteSource& source) {
+/// The layout of texels of eight bits a channel, whose curve either the format or the descriptor states as sRGB.
+std::optional<StatedScreenTexels> screen_texels(std::uint32_t format, const Descriptor& descriptor) {
+    auto stated = vulkan_format_screen_texels(format);
+    if (stated) stated->srgb = stated->srgb || descriptor.srgb;
+    return stated;
+}
+
+Result<Ktx2> parse(ByteSource& source, Decode decode = Decode::automatic) {
     const auto head = source.take(0, k_ktx2_header_bytes, "header");
     if (!head) return head.error();
     const auto word = [&](int i) { return u32_at(*head, 12 + 4 * std::size_t(i)); };
@@ -114,9 +135,9 @@ Result<Ktx2> parse(ByteSource& source) {
 
     const auto descriptor = read_descriptor(source, word(9), word(10));
     if (!descriptor) return descriptor.error();
-    file.info.format = format ? vulkan_format_name(format) : model_name(*descriptor);
+    file.info.format = format ? vulkan_format_name(format) : model_name(descriptor->model);
     file.texels = vulkan_format_texels(format);
-    if (format == k_vulkan_astc4x4_hdr && *descriptor == k_model_uastc_hdr)
+    if (format == k_vulkan_astc4x4_hdr && descriptor->model == k_model_uastc_hdr)
         file.texels = StoredTexels{Encoding::uastc_hdr};
     if (word(12) > 0) {
         done = read_key_values(source, word(11), word(12), file.info.metadata);
@@ -127,6 +148,11 @@ Result<Ktx2> parse(ByteSource& source) {
             file.texels = StoredTexels{*encoding};
             file.info.format += ", " + name_of(*encoding);
         }
+    if (const auto screen = screen_texels(format, *descriptor); screen && !file.texels) {
+        file.texels = stored_screen_texels(*screen, decode);
+        file.info.eight_bits = true;
+        if (screen->srgb && !vulkan_format_screen_texels(format)->srgb) file.info.format += ", SRGB by its descriptor";
+    }
     if (!source.contains(u64_at(*head, 64), u64_at(*head, 72)))
         return Error{"ends before its supercompression global data", "", "the file is truncated or damaged"};
 
@@ -146,17 +172,30 @@ Result<Ktx2> parse(ByteSource& source) {
         file.levels.push_back(level);
     }
     const auto texture = texture_for(file.info, file.texels);
-    file.info.decodable = (file.scheme == 0 || file.scheme == 2) && texture;
+    file.info.decodable = is_readable(file.scheme) && texture;
     for (int l = 0; file.info.decodable && l < file.info.levels; ++l)
         file.info.decodable = bool(check_level_size(file, *texture, l));
     return file;
 }
 
-/// Zstandard cannot compress more than 128 KiB into a block of 4 bytes, so a header that states more is wrong, and no
-/// memory is allocated for it.
-constexpr std::uint64_t k_zstd_max_ratio = 32768;
+/// Zstandard cannot compress more than 128 KiB into a block of 4 bytes, and deflate no more than 1032 bytes into one, so
+/// a header that states more is wrong, and no memory is allocated for it.
+constexpr std::uint64_t k_zstd_max_ratio = 32768, k_zlib_max_ratio = 1032;
 
-Result<Bytes> inflate(std::span<const std::uint8_t> packed, std::uint64_t bytes) {
+Result<Bytes> undo_zlib(std::span<const std::uint8_t> packed, std::uint64_t bytes) {
+    if (bytes / k_zlib_max_ratio > packed.size())
+        return Error{"is packed into fewer bytes than its size can need", "", "the file is damaged"};
+    Bytes out(static_cast<std::size_t>(bytes));
+    uLongf written = out.size();
+    uLong used = packed.size();
+    const int code = uncompress2(out.data(), &written, packed.data(), &used);
+    if (code == Z_DATA_ERROR) return Error{"is not zlib data", "", "the file is damaged"};
+    if (code != Z_OK || written != bytes)
+        return Error{"holds another number of bytes than its size needs", "", "the file is damaged"};
+    return out;
+}
+
+Result<Bytes> undo_zstd(std::span<const std::uint8_t> packed, std::uint64_t bytes) {
     const unsigned long long stated = ZSTD_getFrameContentSize(packed.data(), packed.size());
     if (stated == ZSTD_CONTENTSIZE_ERROR) return Error{"is not zstd data", "", "the file is damaged"};
     if (stated != ZSTD_CONTENTSIZE_UNKNOWN && stated != bytes)
@@ -178,13 +217,13 @@ Result<TextureInfo> ktx2_info(ByteSource& source) {
     return std::move(file->info);
 }
 
-Result<Texture> ktx2_texture(ByteSource& source) {
-    const auto file = parse(source);
+Result<Texture> ktx2_texture(ByteSource& source, Decode decode) {
+    const auto file = parse(source, decode);
     if (!file) return file.error();
     auto texture = texture_for(file->info, file->texels);
     if (!texture) return texture;
-    if (file->scheme != 0 && file->scheme != 2)
-        return Error{"cannot undo supercompression " + file->info.supercompression, "", "readable: none, zstd"};
+    if (!is_readable(file->scheme))
+        return Error{"cannot undo supercompression " + file->info.supercompression, "", "readable: none, zstd, zlib"};
     for (int l = 0; l < file->info.levels; ++l) {
         const Level& level = file->levels[std::size_t(l)];
         const std::uint64_t bytes = stored_level_bytes(*texture, *file->texels, l);
@@ -194,11 +233,11 @@ Result<Texture> ktx2_texture(ByteSource& source) {
         if (const auto sized = check_level_size(*file, *texture, l); !sized) return sized.error();
         auto stored = source.take(level.offset, level.bytes, "level");
         if (!stored) return stored.error();
-        if (file->scheme == 2) {
-            stored = inflate(*stored, bytes);
+        if (file->scheme != 0) {
+            stored = file->scheme == k_zstd ? undo_zstd(*stored, bytes) : undo_zlib(*stored, bytes);
             if (!stored) return at_level(stored.error());
         }
-        texture->levels.push_back(widen_level(*file->texels, *std::move(stored)));
+        texture->levels.push_back(widen_level(*texture, *file->texels, l, *std::move(stored)));
     }
     return texture;
 }

@@ -14,6 +14,10 @@ namespace {
 
 using Rgba = std::array<std::uint8_t, 4>;
 
+int block_bytes(const ScreenTexels& texels) {
+    return texels.kind == ScreenTexels::Kind::bc1 ? 8 : 16;
+}
+
 /// Calls `use(x, y, texel)` for every texel of an image.
 template <typename Use>
 void for_texels(const ScreenTexels& texels, const std::uint8_t* stored, int width, int height, Use use) {
@@ -26,10 +30,9 @@ void for_texels(const ScreenTexels& texels, const std::uint8_t* stored, int widt
             }
         return;
     }
-    const bool bc1 = texels.kind == ScreenTexels::Kind::bc1;
     for (int top = 0; top < height; top += 4)
-        for (int left = 0; left < width; left += 4, stored += bc1 ? 8 : 16) {
-            const Rgba8Block block = bc1                                      ? decode_bc1(stored)
+        for (int left = 0; left < width; left += 4, stored += block_bytes(texels)) {
+            const Rgba8Block block = texels.kind == ScreenTexels::Kind::bc1   ? decode_bc1(stored)
                                      : texels.kind == ScreenTexels::Kind::bc2 ? decode_bc2(stored)
                                                                               : decode_bc3(stored);
             for (int y = top; y < std::min(top + 4, height); ++y)
@@ -39,6 +42,16 @@ void for_texels(const ScreenTexels& texels, const std::uint8_t* stored, int widt
 }
 
 }  // namespace
+
+std::uint64_t screen_row_bytes(const ScreenTexels& texels, int width) {
+    const auto texels_wide = std::uint64_t(width);
+    if (texels.kind == ScreenTexels::Kind::bytes) return texels_wide * std::uint64_t(texels.bytes);
+    return (texels_wide + 3) / 4 * std::uint64_t(block_bytes(texels));
+}
+
+std::uint64_t screen_rows(const ScreenTexels& texels, int height) {
+    return texels.kind == ScreenTexels::Kind::bytes ? std::uint64_t(height) : (std::uint64_t(height) + 3) / 4;
+}
 
 Encoding screen_encoding(Decode decode) {
     return decode == Decode::rgbm   ? Encoding::rgbm

@@ -18,6 +18,17 @@ struct ScreenTexels {
     std::array<int, 4> channel = {0, 1, 2, 3};  ///< which byte is red, green, blue and alpha; -1: there is none
 };
 
+/// Texels of eight bits a channel whose format states their curve.
+struct StatedScreenTexels {
+    ScreenTexels texels;
+    bool srgb = false;  ///< the sRGB curve; false: the numbers are proportional to light
+};
+
+/// Bytes of a row of texels, or of blocks, in an image `width` texels wide, without padding.
+std::uint64_t screen_row_bytes(const ScreenTexels& texels, int width);
+/// Rows of texels, or of blocks, in an image `height` texels high.
+std::uint64_t screen_rows(const ScreenTexels& texels, int height);
+
 /// What their texels become: half floats; rgbm, rgbd and rgbp are kept as they are.
 Encoding screen_encoding(Decode decode);
 

@@ -47,7 +47,8 @@ Result<Texture> texture_for(const TextureInfo& info, const std::optional<StoredT
     if (!texels)
         return Error{
             "cannot decode " + info.format, "",
-            "readable: half and float RGBA, RGB, RG and R, RGB9E5, R11G11B10, BC6H (unsigned), ASTC HDR 4x4 and 6x6"};
+            "readable: half and float RGBA, RGB, RG and R, RGB9E5, R11G11B10, BC6H (unsigned), ASTC HDR 4x4 and 6x6, "
+            "and eight bits a channel as RGBA, RGB, BC1, BC2 and BC3"};
     if (info.depth > 1) return Error{"is a three-dimensional texture, which is not supported", "", ""};
     if (info.layers > 1)
         return Error{"is an array of " + std::to_string(info.layers) + " textures, which is not supported", "", ""};
@@ -67,9 +68,25 @@ Result<Texture> texture_for(const TextureInfo& info, const std::optional<StoredT
     return texture;
 }
 
+StoredTexels stored_screen_texels(const StatedScreenTexels& stated, Decode decode) {
+    if (decode == Decode::automatic) decode = stated.srgb ? Decode::srgb : Decode::linear;
+    StoredTexels texels{screen_encoding(decode)};
+    texels.screen = stated.texels;
+    texels.decode = decode;
+    return texels;
+}
+
+std::uint64_t stored_row_bytes(const Texture& texture, const StoredTexels& texels, int l) {
+    if (texels.screen) return screen_row_bytes(*texels.screen, texture.level_width(l));
+    return std::uint64_t(texture.level_columns(l)) * std::uint64_t(texels.bytes());
+}
+
+std::uint64_t stored_rows(const Texture& texture, const StoredTexels& texels, int l) {
+    return texels.screen ? screen_rows(*texels.screen, texture.level_height(l)) : std::uint64_t(texture.level_rows(l));
+}
+
 std::uint64_t stored_level_bytes(const Texture& texture, const StoredTexels& texels, int l) {
-    return std::uint64_t(texture.level_columns(l)) * std::uint64_t(texture.level_rows(l)) *
-           std::uint64_t(texture.faces) * std::uint64_t(texels.bytes());
+    return stored_row_bytes(texture, texels, l) * stored_rows(texture, texels, l) * std::uint64_t(texture.faces);
 }
 
 void widen_texels(const StoredTexels& texels, const std::uint8_t* in, std::size_t count, std::uint8_t* out) {
@@ -88,7 +105,16 @@ void widen_texels(const StoredTexels& texels, const std::uint8_t* in, std::size_
     }
 }
 
-Bytes widen_level(const StoredTexels& texels, Bytes stored) {
+Bytes widen_level(const Texture& texture, const StoredTexels& texels, int l, Bytes stored) {
+    if (texels.screen) {
+        Bytes level(texture.face_bytes(l) * std::size_t(texture.faces));
+        const std::size_t face_bytes = stored.size() / std::size_t(texture.faces);
+        for (std::size_t face = 0; face < std::size_t(texture.faces); ++face)
+            decode_screen_texels(*texels.screen, texels.decode, stored.data() + face * face_bytes,
+                                 texture.level_width(l), texture.level_height(l),
+                                 level.data() + face * texture.face_bytes(l));
+        return level;
+    }
     if (texels.channels == 0) return stored;
     const std::size_t count = stored.size() / std::size_t(texels.bytes());
     Bytes wide(count * std::size_t(encoding_bytes(texels.encoding)));
@@ -174,9 +200,9 @@ Result<Texture> read_texture(const std::filesystem::path& file, Decode decode) {
         if (!format) return format.error();
         switch (*format) {
             case Format::ktx2:
-                return ktx2_texture(source);
+                return ktx2_texture(source, decode);
             case Format::ktx1:
-                return ktx1_texture(source);
+                return ktx1_texture(source, decode);
             case Format::dds:
                 return dds_texture(source, decode);
             case Format::env:

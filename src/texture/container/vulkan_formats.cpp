@@ -153,4 +153,26 @@ std::optional<StoredTexels> vulkan_format_texels(std::uint32_t format) {
     }
 }
 
+std::optional<StatedScreenTexels> vulkan_format_screen_texels(std::uint32_t format) {
+    using Kind = ScreenTexels::Kind;
+    struct Row {
+        std::uint32_t unorm, srgb;
+        ScreenTexels texels;
+    };
+    static constexpr Row k_rows[] = {
+        {23, 29, {Kind::bytes, 3, {0, 1, 2, -1}}},  // R8G8B8
+        {30, 36, {Kind::bytes, 3, {2, 1, 0, -1}}},  // B8G8R8
+        {37, 43, {}},                               // R8G8B8A8
+        {44, 50, {Kind::bytes, 4, {2, 1, 0, 3}}},   // B8G8R8A8
+        {51, 57, {}},                               // A8B8G8R8_PACK32: little-endian, so red is the first byte
+        {131, 132, {Kind::bc1, 0, {}}},             // BC1_RGB
+        {133, 134, {Kind::bc1, 0, {}}},             // BC1_RGBA
+        {135, 136, {Kind::bc2, 0, {}}},             // BC2
+        {137, 138, {Kind::bc3, 0, {}}},             // BC3
+    };
+    for (const Row& row : k_rows)
+        if (format == row.unorm || format == row.srgb) return StatedScreenTexels{row.texels, format == row.srgb};
+    return std::nullopt;
+}
+
 }  // namespace domelight

@@ -14,4 +14,7 @@ std::string vulkan_format_name(std::uint32_t format);
 /// The encoding in which read_texture stores a Vulkan format, if it can.
 std::optional<StoredTexels> vulkan_format_texels(std::uint32_t format);
 
+/// The layout of a Vulkan format of eight bits a channel, if it has a colour that can be read.
+std::optional<StatedScreenTexels> vulkan_format_screen_texels(std::uint32_t format);
+
 }  // namespace domelight

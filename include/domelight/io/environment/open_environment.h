@@ -18,7 +18,7 @@ struct EnvironmentOptions {
     /// Lat-long convention: default, usd, mitsuba, openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]", or pbrt
     /// (the equal-area octahedral square). Empty: the convention that the file states, otherwise default.
     std::string latlong = "";
-    Decode decode = Decode::automatic;  ///< of PNG, JPEG, and DDS of eight bits a channel
+    Decode decode = Decode::automatic;  ///< of PNG, JPEG, and textures of eight bits a channel
     double rotate_y_deg = 0;            ///< turns the light about +Y: +X moves towards +Z
     /// The axis, in the coordinate system of the file's author, at the top of the image: +Y, +Z, ...
     std::string up = "+Y";
