@@ -54,6 +54,7 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(astcenc 4.2 REQUIRED)
 find_package(meshoptimizer REQUIRED)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(lcms REQUIRED IMPORTED_TARGET lcms2)
 pkg_check_modules(draco REQUIRED IMPORTED_TARGET draco)
 pkg_check_modules(webp REQUIRED IMPORTED_TARGET libwebp libwebpmux)
 
@@ -64,7 +65,7 @@ target_precompile_headers(domelight_common_headers PRIVATE ${domelight_common_he
 
 domelight_component(io ROOMS texture io scene engines USES core
                     LINKS fmt::fmt OpenEXR::OpenEXR Imath::Imath PNG::PNG JPEG::JPEG OpenSSL::Crypto nlohmann_json::nlohmann_json astcenc::astcenc
-                          meshoptimizer::meshoptimizer PkgConfig::zstd PkgConfig::draco PkgConfig::webp PkgConfig::hwy Threads::Threads)
+                          meshoptimizer::meshoptimizer PkgConfig::zstd PkgConfig::lcms PkgConfig::draco PkgConfig::webp PkgConfig::hwy Threads::Threads)
 domelight_component(preview ROOMS preview USES core LINKS fmt::fmt)
 find_package(embree 3.13 REQUIRED)
 domelight_component(render ROOMS render USES io LINKS fmt::fmt embree Threads::Threads)

@@ -6,6 +6,7 @@ build_packages=(
     libopenexr-dev      # .exr; brings zlib
     libimath-dev        # half floats
     libpng-dev libjpeg62-turbo-dev
+    liblcms2-dev        # ICC profiles of pictures
     libhwy-dev          # SIMD chosen at run time
     libzstd-dev         # KTX2 supercompression
     libdraco-dev libmeshoptimizer-dev  # compressed glTF

@@ -87,7 +87,7 @@ void add_environment_options(Arguments& arguments, EnvironmentOptions& options) 
     arguments.choice(
         "--decode", options.decode,
         "how values of 8 bits are decoded in PNG and JPEG files and in textures; rgbm, rgbd and rgbp are for textures "
-        "only (auto: srgb, or what the format of a KTX or KTX2 file states)");
+        "only (auto: as the file says, otherwise srgb)");
     arguments.number("--rotate-y-deg", "DEGREES", options.rotate_y_deg,
                      "turn the light about +Y: +X moves towards +Z (0)");
     arguments.text("--up", "AXIS", options.up, "the axis at the top of the image: +Y, +Z, ... (+Y)");

@@ -9,6 +9,9 @@
 #include "io/exr/exr_layers.h"
 #include "io/file/printable.h"
 #include "io/image_reader.h"
+#include "io/picture/exif_orientation.h"
+#include "io/picture/oriented_reader.h"
+#include "io/picture/png_colour.h"
 #include "io/picture/texture_image.h"
 
 #include <fmt/format.h>
@@ -64,7 +67,7 @@ Result<Picture> read_plain(std::shared_ptr<const FileBytes> bytes, const ReaderO
                 p[0] = float(v.x), p[1] = float(v.y), p[2] = float(v.z);
             }
     picture.format = facts.format;
-    picture.high_dynamic_range = facts.format != "PNG" && facts.format != "JPEG";
+    picture.high_dynamic_range = facts.high_dynamic_range;
     if (picture.high_dynamic_range) picture.warnings = facts.warnings;  // the other warnings are about environments
     return picture;
 }
@@ -132,14 +135,20 @@ Result<void> read_exr_opacity(ExrLayers& layers, const std::string& layer, Pictu
 Result<void> read_png_opacity(const FileBytes& bytes, Picture& picture) {
     const auto texels = decode_png_texture(bytes.bytes());
     if (!texels) return texels.error();
-    ImageF opacity(texels->width, texels->height, 1);
+    ImageF stored(texels->width, texels->height, 1), opacity(picture.rgb.width(), picture.rgb.height(), 1);
     bool opaque = true;
-    for (std::size_t i = 0; i < opacity.pixels().size(); ++i) {
+    for (std::size_t i = 0; i < stored.pixels().size(); ++i) {
         const std::uint8_t code = texels->rgba[4 * i + 3];
         opaque = opaque && code == 255;
-        opacity.pixels()[i] = float(code) / 255;
-        for (std::size_t c = 0; c < 3; ++c) picture.rgb.pixels()[3 * i + c] *= float(code) / 255;
+        stored.pixels()[i] = float(code) / 255;
     }
+    const auto exif = find_png_chunk(bytes.bytes(), "eXIf");
+    const int orientation = exif ? exif_orientation(*exif) : 1;
+    for (int y = 0; y < opacity.height(); ++y)
+        for (int x = 0; x < opacity.width(); ++x) {
+            *opacity.at(x, y) = *seen_texel(stored, orientation, x, y);
+            for (int c = 0; c < 3; ++c) picture.rgb.at(x, y)[c] *= *opacity.at(x, y);
+        }
     if (!opaque) picture.opacity = std::move(opacity);
     return {};
 }

@@ -25,7 +25,8 @@ struct ImageFacts {
 
     std::string format;  ///< "Radiance HDR", ...
     int width = 0, height = 0;
-    float largest = 0;  ///< the largest finite value of the format, which replaces infinity
+    bool high_dynamic_range = true;  ///< false: cut off at the white of a screen
+    float largest = 0;               ///< the largest finite value of the format, which replaces infinity
     Envmap envmap = Envmap::none;
     std::optional<Mat3> to_rec709 = std::nullopt;  ///< the file's primaries to linear Rec. 709, where they differ
     std::vector<std::string> warnings;
@@ -35,6 +36,8 @@ struct ReaderOptions {
     Decode decode = Decode::automatic;
     std::int64_t max_bytes = std::int64_t(1) << 30;
     int threads = 0;
+    /// Codes of a PNG or JPEG as they are stored, whatever the file says of its orientation: for textures.
+    bool as_stored = false;
 };
 
 /// An image file that is decoded from the top row down. Pixels are RGB as stored (linear, but in the file's own

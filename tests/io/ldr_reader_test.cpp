@@ -1,4 +1,4 @@
-#include "io/picture/screen_curve.h"
+#include "io/picture/screen_colour.h"
 #include "io/reader_samples.h"
 #include "test.h"
 

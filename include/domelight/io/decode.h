@@ -6,7 +6,7 @@ namespace domelight {
 
 /// What the numbers of a picture of eight bits a channel mean.
 enum class Decode {
-    automatic,  ///< sRGB, with a warning; what the format states in KTX2 and KTX
+    automatic,  ///< what the file says (profile, gamma, format); otherwise sRGB, with a warning
     srgb,       ///< IEC 61966-2-1
     gamma22,    ///< the power 2.2
     linear,     ///< the light itself

@@ -6,7 +6,9 @@
 #include <cstring>
 
 // jpeglib.h requires <cstdio> before it.
-#include "io/picture/screen_curve.h"
+#include "io/picture/icc_profile.h"
+#include "io/picture/jpeg_segments.h"
+#include "io/picture/oriented_reader.h"
 
 #include <jerror.h>
 #include <jpeglib.h>
@@ -34,6 +36,7 @@ class JpegReader : public ImageReader {
 
   private:
     bool read_header();
+    void set_colour();
     bool start_rows();
     bool read_row(unsigned char* row);
     Error failure() const {
@@ -52,7 +55,7 @@ class JpegReader : public ImageReader {
     jpeg_progress_mgr progress_{};
     std::jmp_buf return_point_;
     char message_[JMSG_LENGTH_MAX] = "";
-    std::vector<float> curve_;
+    ScreenColour colour_;
     std::vector<unsigned char> row_;
 };
 
@@ -103,6 +106,24 @@ bool JpegReader::read_row(unsigned char* row) {
     return true;
 }
 
+/// The colours that the file's ICC profile states, unless a decoding was asked for.
+void JpegReader::set_colour() {
+    colour_ = colour_of_decode(decode_, 256);
+    bool assumed = decode_ == Decode::automatic;
+    const std::vector<std::uint8_t> profile =
+        assumed ? jpeg_icc_profile(jpeg_segments(bytes_->bytes())) : std::vector<std::uint8_t>();
+    if (!profile.empty()) {
+        auto said = colour_of_icc_profile(profile, 256);
+        assumed = !said;
+        if (said) colour_ = *std::move(said);
+        if (!said) colour_.notes.push_back(said.error().what + ": ignored");
+    }
+    facts_.high_dynamic_range = colour_.hdr;
+    facts_.largest = colour_.curves[0].back();
+    facts_.to_rec709 = colour_.to_rec709;
+    facts_.warnings = screen_warnings("JPEG", colour_, assumed);
+}
+
 Result<void> JpegReader::open() {
     if (!read_header()) return failure();
     const std::int64_t width = state_.image_width, height = state_.image_height;
@@ -122,12 +143,10 @@ Result<void> JpegReader::open() {
             "", ""};
     if (!start_rows()) return failure();
     row_.resize(std::size_t(width) * 3);
-    curve_ = screen_curve(decode_, 256);
     facts_.format = "JPEG";
     facts_.width = int(width);
     facts_.height = int(height);
-    facts_.largest = 1;
-    facts_.warnings = screen_warnings("JPEG", decode_);
+    set_colour();
     // The namespace of Adobe's and Google's gain maps, in the metadata at the start.
     const auto all = bytes_->bytes().first(std::min<std::size_t>(bytes_->bytes().size(), 1 << 17));
     constexpr std::string_view gain_map = "http://ns.adobe.com/hdr-gain-map/";
@@ -140,18 +159,20 @@ Result<bool> JpegReader::read(ImageView<float> rows) {
     for (int y = 0; y < rows.height; ++y) {
         if (!read_row(row_.data())) return failure();
         float* out = rows.row(y);
-        for (std::size_t i = 0; i < row_.size(); ++i) out[i] = curve_[row_[i]];
+        for (std::size_t i = 0; i < row_.size(); ++i) out[i] = colour_.curves[i % 3][row_[i]];
+        if (colour_.profile) colour_.profile(out, rows.width);
     }
-    return true;
+    return !colour_.profile;
 }
 
 }  // namespace
 
 Result<std::unique_ptr<ImageReader>> open_jpeg_reader(std::shared_ptr<const FileBytes> bytes,
                                                       const ReaderOptions& options) {
+    const int orientation = options.as_stored ? 1 : jpeg_orientation(jpeg_segments(bytes->bytes()));
     auto reader = std::make_unique<JpegReader>(std::move(bytes), options);
     if (const auto opened = reader->open(); !opened) return opened.error();
-    return std::unique_ptr<ImageReader>(std::move(reader));
+    return oriented_reader(std::move(reader), orientation, options.max_bytes);
 }
 
 }  // namespace domelight

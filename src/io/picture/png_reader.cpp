@@ -1,4 +1,6 @@
-#include "io/picture/screen_curve.h"
+#include "io/picture/exif_orientation.h"
+#include "io/picture/oriented_reader.h"
+#include "io/picture/png_colour.h"
 
 #include <fmt/format.h>
 #include <png.h>
@@ -26,6 +28,8 @@ class PngReader : public ImageReader {
 
   private:
     bool read_header();
+    std::span<const std::uint8_t> icc_profile();
+    void set_colour();
     bool start_rows();
     bool read_bytes(unsigned char* row);
     bool read_interlaced();
@@ -45,7 +49,7 @@ class PngReader : public ImageReader {
     std::size_t at_ = 0;
     char message_[128] = "";
     int passes_ = 1, bytes_a_sample_ = 1, next_row_ = 0;
-    std::vector<float> curve_;
+    ScreenColour colour_;
     std::vector<unsigned char> buffer_;  // one row, or the whole image where it is interlaced
     std::vector<unsigned char*> row_starts_;
 };
@@ -72,6 +76,29 @@ bool PngReader::read_header() {
     png_set_chunk_cache_max(png_, 256);
     png_read_info(png_, info_);
     return true;
+}
+
+/// The profile in iCCP, decompressed; empty: none, or it is damaged.
+std::span<const std::uint8_t> PngReader::icc_profile() {
+    if (setjmp(png_jmpbuf(png_))) return {};
+    png_charp name = nullptr;
+    png_bytep profile = nullptr;
+    int compression = 0;
+    png_uint_32 length = 0;
+    if (!png_get_iCCP(png_, info_, &name, &compression, &profile, &length)) return {};
+    return {profile, length};
+}
+
+/// The colours that the file states, unless a decoding was asked for.
+void PngReader::set_colour() {
+    const int levels = bytes_a_sample_ == 2 ? 65536 : 256;
+    PngColour said = decode_ == Decode::automatic ? colour_of_png(bytes_->bytes(), icc_profile(), levels)
+                                                  : PngColour{colour_of_decode(decode_, levels)};
+    colour_ = std::move(said.colour);
+    facts_.high_dynamic_range = colour_.hdr;
+    facts_.largest = colour_.curves[0].back();
+    facts_.to_rec709 = colour_.to_rec709;
+    facts_.warnings = screen_warnings("PNG", colour_, said.assumed);
 }
 
 /// Every kind of PNG as RGB of 8 or 16 bits.
@@ -125,12 +152,10 @@ Result<void> PngReader::open() {
                      "", ""};
     buffer_.resize(row_bytes * held_rows);
     for (std::size_t y = 0; y < held_rows; ++y) row_starts_.push_back(buffer_.data() + y * row_bytes);
-    curve_ = screen_curve(decode_, bytes_a_sample_ == 2 ? 65536 : 256);
     facts_.format = "PNG";
     facts_.width = int(width);
     facts_.height = int(height);
-    facts_.largest = 1;
-    facts_.warnings = screen_warnings("PNG", decode_);
+    set_colour();
     if (had_alpha) facts_.warnings.push_back("the alpha channel is ignored");
     return {};
 }
@@ -142,18 +167,23 @@ Result<bool> PngReader::read(ImageView<float> rows) {
         if (passes_ == 1 && !read_bytes(row)) return failure();
         float* out = rows.row(y);
         for (int i = 0; i < 3 * rows.width; ++i)
-            out[i] = curve_[bytes_a_sample_ == 2 ? std::size_t(row[2 * i] << 8 | row[2 * i + 1]) : row[i]];
+            out[i] = colour_.curves[std::size_t(i % 3)]
+                                   [bytes_a_sample_ == 2 ? std::size_t(row[2 * i] << 8 | row[2 * i + 1]) : row[i]];
+        if (colour_.profile) colour_.profile(out, rows.width);
     }
-    return true;
+    return !colour_.profile;
 }
 
 }  // namespace
 
 Result<std::unique_ptr<ImageReader>> open_png_reader(std::shared_ptr<const FileBytes> bytes,
                                                      const ReaderOptions& options) {
+    const std::shared_ptr<const FileBytes> file = bytes;
     auto reader = std::make_unique<PngReader>(std::move(bytes), options);
     if (const auto opened = reader->open(); !opened) return opened.error();
-    return std::unique_ptr<ImageReader>(std::move(reader));
+    const auto exif = find_png_chunk(file->bytes(), "eXIf");
+    return oriented_reader(std::move(reader), exif && !options.as_stored ? exif_orientation(*exif) : 1,
+                           options.max_bytes);
 }
 
 }  // namespace domelight

@@ -1,6 +1,7 @@
 #include "io/picture/texture_image.h"
 
 #include "io/image_reader.h"
+#include "io/picture/jpeg_segments.h"
 
 #include <fmt/format.h>
 #include <webp/decode.h>
@@ -30,21 +31,14 @@ std::uint32_t big_endian(std::span<const std::uint8_t> bytes, std::size_t at, st
     return value;
 }
 
-/// The frame header of a JPEG (ISO 10918-1, B.2.2): segments are walked until it comes.
+/// By the frame header of a JPEG (ISO 10918-1, B.2.2).
 Result<TextureSize> jpeg_size(std::span<const std::uint8_t> bytes) {
-    const Error broken{"not a readable JPEG: no frame header", "", "The file is truncated or damaged."};
-    for (std::size_t at = 2; at + 9 < bytes.size();) {
-        if (bytes[at] != 0xff) return broken;
-        const std::uint8_t marker = bytes[at + 1];
-        if (marker == 0xff) {  // fill
-            ++at;
-            continue;
-        }
+    for (const auto& [marker, contents] : jpeg_segments(bytes)) {
         const bool frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-        if (frame) return TextureSize{int(big_endian(bytes, at + 7, 2)), int(big_endian(bytes, at + 5, 2))};
-        at += 2 + std::size_t(big_endian(bytes, at + 2, 2));
+        if (frame && contents.size() >= 5)
+            return TextureSize{int(big_endian(contents, 3, 2)), int(big_endian(contents, 1, 2))};
     }
-    return broken;
+    return Error{"not a readable JPEG: no frame header", "", "The file is truncated or damaged."};
 }
 
 Result<TextureSize> claimed_size(std::span<const std::uint8_t> bytes) {
@@ -96,7 +90,8 @@ Result<Rgba8Image> decode_jpeg_texture(std::span<const std::uint8_t> bytes) {
     const auto size = texture_image_size(bytes);
     if (!size) return size.error();
     // The reader of environments returns code / 255 as float, from which the codes can be recovered exactly.
-    auto reader = open_jpeg_reader(FileBytes::from_memory({bytes.begin(), bytes.end()}), {.decode = Decode::linear});
+    auto reader = open_jpeg_reader(FileBytes::from_memory({bytes.begin(), bytes.end()}),
+                                   {.decode = Decode::linear, .as_stored = true});
     if (!reader) return reader.error();
     Rgba8Image image;
     image.width = (*reader)->facts().width, image.height = (*reader)->facts().height;

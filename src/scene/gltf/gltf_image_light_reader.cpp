@@ -1,7 +1,7 @@
 // Reads glTF's EXT_lights_image_based.
 #include "io/file/json.h"
 #include "io/file/json_fields.h"
-#include "io/picture/screen_curve.h"
+#include "io/picture/screen_colour.h"
 #include "io/picture/texture_image.h"
 #include "scene/gltf/gltf_chunks.h"
 #include "scene/gltf/gltf_data.h"

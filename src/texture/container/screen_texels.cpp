@@ -1,6 +1,6 @@
 #include "texture/container/screen_texels.h"
 
-#include "io/picture/screen_curve.h"
+#include "io/picture/screen_colour.h"
 #include "texture/block/bc123.h"
 #include "texture/texel/half.h"
 
