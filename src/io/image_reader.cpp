@@ -1,6 +1,7 @@
 #include "io/image_reader.h"
 
 #include "base/field_place.h"
+#include "io/picture/foreign_format.h"
 
 #include <fmt/format.h>
 
@@ -33,6 +34,8 @@ Result<std::unique_ptr<ImageReader>> open_image_reader(std::shared_ptr<const Fil
     if (starts_with("\x76\x2f\x31\x01"sv)) return open_exr_reader(std::move(bytes), options);
     if (starts_with("\x89PNG\r\n\x1a\n"sv)) return open_png_reader(std::move(bytes), options);
     if (starts_with("\xff\xd8\xff"sv)) return open_jpeg_reader(std::move(bytes), options);
+    if (const auto foreign = foreign_format(all); foreign && !foreign->hint.empty())
+        return Error{foreign->name + " is not read", "", foreign->hint};
     return Error{"not an image of a known format", "",
                  "Known: Radiance .hdr, OpenEXR, PNG, JPEG; as cubes also KTX2, KTX and DDS."};
 }

@@ -18,6 +18,23 @@ std::vector<SceneTexture*> textures_of(Material& m) {
             &m.transmission_texture,     &m.thickness_texture,          &m.anisotropy_texture};
 }
 
+namespace {
+
+/// Takes the textures of an image that cannot be had from the materials, and says why.
+void leave_out(Scene& scene, std::size_t image, const Error& why) {
+    for (Material& material : scene.materials)
+        for (SceneTexture* texture : textures_of(material))
+            if (texture->image == int(image)) texture->image = -1;
+    const std::string hint = why.hint.empty() ? "" : " " + why.hint;
+    scene.warnings.push_back(why.what + ": left out, its materials have their factors alone." + hint);
+}
+
+Error at_image(const SceneImageSource& source, const Error& error) {
+    return {printable(source.name, 80) + ": " + error.what, "", error.hint};
+}
+
+}  // namespace
+
 Result<void> load_scene_images(const std::vector<SceneImageSource>& sources, Scene& scene, ByteBudget& budget,
                                int threads) {
     std::vector<bool> used(sources.size());
@@ -30,12 +47,17 @@ Result<void> load_scene_images(const std::vector<SceneImageSource>& sources, Sce
     for (std::size_t i = 0; i < sources.size(); ++i) {
         if (!used[i]) continue;
         auto file = sources[i].open();
-        if (!file) return file.error();
-        const std::string name = printable(sources[i].name, 80);
+        if (!file) {
+            leave_out(scene, i, file.error());
+            continue;
+        }
         const auto size = texture_image_size((*file)->bytes());
-        if (!size) return Error{name + ": " + size.error().what, "", size.error().hint};
-        if (const auto room = budget.take(std::uint64_t(size->width) * std::uint64_t(size->height), 4, name); !room)
-            return room.error();
+        if (!size) {
+            leave_out(scene, i, at_image(sources[i], size.error()));
+            continue;
+        }
+        const auto texels = std::uint64_t(size->width) * std::uint64_t(size->height);
+        if (const auto room = budget.take(texels, 4, printable(sources[i].name, 80)); !room) return room.error();
         files[i] = std::move(*file);
     }
     std::vector<std::optional<Error>> failed(sources.size());
@@ -51,7 +73,7 @@ Result<void> load_scene_images(const std::vector<SceneImageSource>& sources, Sce
         files[i] = nullptr;
     });
     for (std::size_t i = 0; i < sources.size(); ++i) {
-        if (failed[i]) return Error{printable(sources[i].name, 80) + ": " + failed[i]->what, "", failed[i]->hint};
+        if (failed[i]) leave_out(scene, i, at_image(sources[i], *failed[i]));
         scene.images[i].name = sources[i].name;
     }
     return {};

@@ -23,7 +23,8 @@ struct SceneImageSource {
 std::vector<SceneTexture*> textures_of(Material& material);
 
 /// Decodes the sources that the scene's materials use, in parallel, into scene.images (those that nothing uses stay
-/// empty there). Errors: a source that is missing, broken or too large.
+/// empty there). Where a source is missing, refused, broken or of a foreign format, its textures are taken from the
+/// materials, whose factors remain, with a warning. Errors: more memory than the budget has.
 Result<void> load_scene_images(const std::vector<SceneImageSource>& sources, Scene& scene, ByteBudget& budget,
                                int threads);
 

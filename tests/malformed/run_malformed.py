@@ -17,7 +17,7 @@ import tempfile
 import threading
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from hostile import hostile_files  # noqa: E402
+from hostile import LEFT_OUT, hostile_files  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("DOMELIGHT_PROGRAM", str(ROOT / "build/dev/cli/domelight"))
@@ -117,7 +117,7 @@ def main():
         jobs = []
         for name, data in hostile_files():
             (work / "made" / name).write_bytes(data)
-            jobs.append((work / "made" / name, True))
+            jobs.append((work / "made" / name, name not in LEFT_OUT))
         data = os.environ.get("DOMELIGHT_DATA")
         if data and pathlib.Path(data, "malformed").is_dir():
             jobs += [(f, False) for f in sorted(pathlib.Path(data, "malformed").rglob("*")) if f.is_file()]

@@ -157,18 +157,34 @@ TEST_CASE("gltf material: images by uri, by buffer view and by WebP, and those t
     CHECK(error_of(unused.load()) == "loaded");
     GltfSample missing = sample;
     missing.json["images"][0]["uri"] = "missing.png";
-    CHECK(contains(error_of(missing.load()), "images[0]: missing.png: no such file"));
+    scene = missing.load();
+    REQUIRE_MESSAGE(scene, error_of(scene));
+    CHECK(warns(*scene, "images[0]: missing.png: no such file: left out"));
+    CHECK(!scene->materials[0].emission_texture);
+    missing.json["images"][0]["uri"] = "../missing.png";
+    scene = missing.load();
+    REQUIRE_MESSAGE(scene, error_of(scene));
+    CHECK(warns(*scene, "leaves the folder of the scene: left out"));
     GltfSample broken = sample;
     broken.json["images"][0]["uri"] = "data:image/png;base64,AAAA";
-    CHECK(contains(error_of(broken.load()), "neither PNG nor JPEG nor WebP"));
+    scene = broken.load();
+    REQUIRE_MESSAGE(scene, error_of(scene));
+    CHECK(warns(*scene, "neither PNG nor JPEG nor WebP"));
     GltfSample outside = sample;
     outside.json["images"][0] = {
         {"bufferView", outside.add("bufferViews", {{"buffer", 0}, {"byteOffset", 1000}, {"byteLength", 5}})},
         {"mimeType", "image/png"}};
-    CHECK(contains(error_of(outside.load()), "do not exist"));
+    CHECK(warns(*outside.load(), "do not exist"));
     GltfSample nothing = sample;
     nothing.json["images"][0] = Json::object();
     CHECK(contains(error_of(nothing.load()), "images[0]: names neither or both"));
+    // An image that starts as a PNG and ends too early.
+    GltfSample cut = sample;
+    cut.json["images"][0]["uri"] =
+        "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR4nGP4";
+    scene = cut.load();
+    REQUIRE_MESSAGE(scene, error_of(scene));
+    CHECK(warns(*scene, "left out, its materials have their factors alone"));
     // A texture whose image exists only in a format that is not read.
     GltfSample basis = sample;
     basis.json["textures"][0] = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};

@@ -93,9 +93,21 @@ TEST_CASE("obj: materials become metallic-roughness") {
     std::ofstream(folder / "b.obj") << "mtllib ../a.mtl\n";
     CHECK(contains(error_of(load_scene(folder / "b.obj")), "leaves the folder"));
     std::ofstream(folder / "a.mtl") << "newmtl m\nmap_Kd -s 2 2 2 -clamp on ../../x y.png\n";
-    CHECK(contains(error_of(load_scene(folder / "a.obj")), "../../x y.png: leaves the folder"));
-    std::ofstream(folder / "a.mtl") << "newmtl m\nmap_Kd missing.png\n";
-    CHECK(contains(error_of(load_scene(folder / "a.obj")), "missing.png: no such file"));
+    auto outside = load_scene(folder / "a.obj");
+    REQUIRE_MESSAGE(outside, error_of(outside));
+    CHECK(warns(*outside, "../../x y.png: leaves the folder"));
+    // Where a picture is missing or foreign, the material has its factor alone, and no light of its own.
+    std::ofstream(folder / "t.bmp", std::ios::binary) << "BM123456789";
+    std::ofstream(folder / "a.mtl") << "newmtl m\nKd 0.5 0 0\nmap_Kd missing.png\nmap_Ke t.bmp\n";
+    auto missing = load_scene(folder / "a.obj");
+    REQUIRE_MESSAGE(missing, error_of(missing));
+    CHECK(warns(*missing, "missing.png: no such file: left out, its materials have their factors alone"));
+    CHECK(warns(*missing, "t.bmp: BMP, neither PNG nor JPEG nor WebP"));
+    for (const Material& m : missing->materials)
+        if (m.name == "m") {
+            CHECK((!m.base_color_texture && m.base_color == Vec3f{0.5f, 0, 0}));
+            CHECK((!m.emission_texture && m.emission == Vec3f{}));
+        }
 }
 
 TEST_CASE("obj: a missing library is missing, also where the scene is named without a folder") {

@@ -1,6 +1,7 @@
 #include "io/picture/texture_image.h"
 
 #include "io/image_reader.h"
+#include "io/picture/foreign_format.h"
 #include "io/picture/jpeg_segments.h"
 
 #include <fmt/format.h>
@@ -23,6 +24,12 @@ Format format_of(std::span<const std::uint8_t> bytes) {
     if (starts("\xff\xd8", 2)) return Format::jpeg;
     if (starts("RIFF", 4) && starts("WEBP", 4, 8)) return Format::webp;
     return Format::other;
+}
+
+Error not_read(std::span<const std::uint8_t> bytes) {
+    const auto foreign = foreign_format(bytes);
+    if (!foreign) return {"neither PNG nor JPEG nor WebP", "", ""};
+    return {foreign->name + ", neither PNG nor JPEG nor WebP", "", foreign->hint};
 }
 
 std::uint32_t big_endian(std::span<const std::uint8_t> bytes, std::size_t at, std::size_t count) {
@@ -55,7 +62,7 @@ Result<TextureSize> claimed_size(std::span<const std::uint8_t> bytes) {
             return size;
         }
         default:
-            return Error{"neither PNG nor JPEG nor WebP", "", ""};
+            return not_read(bytes);
     }
 }
 
@@ -117,7 +124,7 @@ Result<Rgba8Image> decode_texture_image(std::span<const std::uint8_t> bytes) {
         case Format::webp:
             return decode_webp_texture(bytes);
         default:
-            return Error{"neither PNG nor JPEG nor WebP", "", ""};
+            return not_read(bytes);
     }
 }
 

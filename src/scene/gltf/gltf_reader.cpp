@@ -274,7 +274,7 @@ Result<void> SceneBuilder::add_images() {
 }
 
 void SceneBuilder::add_warnings() {
-    scene_.warnings = std::move(document_.warnings);
+    scene_.warnings.insert(scene_.warnings.begin(), document_.warnings.begin(), document_.warnings.end());
     for (std::string& line : repairs_.warnings()) scene_.warnings.push_back(std::move(line));
     const auto say = [&](std::int64_t count, const char* what) {
         if (count) scene_.warnings.push_back(fmt::format("{} {}", count, what));

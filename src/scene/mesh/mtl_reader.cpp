@@ -100,7 +100,6 @@ void MtlReader::statement(std::string_view key, std::string_view rest, Material&
         m.base_color_texture = texture(rest);
     } else if (key == "map_Ke") {
         m.emission_texture = texture(rest);
-        if (m.emission == Vec3f{}) m.emission = {1, 1, 1};
     } else if (key == "norm") {
         m.normal_texture = texture(rest);
     } else if (key.starts_with("map_") || key == "bump" || key == "disp" || key == "refl") {

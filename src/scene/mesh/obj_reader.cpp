@@ -241,6 +241,9 @@ Result<Scene> ObjReader::read() {
     }
     if (const auto loaded = load_scene_images(sources_, scene_, budget_, options_.threads); !loaded)
         return loaded.error();
+    // A map of light without a factor is the light itself.
+    for (Material& m : scene_.materials)
+        if (m.emission_texture && m.emission == Vec3f{}) m.emission = {1, 1, 1};
     if (!materials_.empty()) scene_.warnings.push_back("Phong materials are approximated by roughness and reflectance");
     if (left_out_)
         scene_.warnings.push_back(fmt::format("{} lines, points or curves left out: only faces are drawn", left_out_));
