@@ -39,6 +39,7 @@ int run_compare(const std::vector<std::string>& words) {
         return print_error({fmt::format("needs two pictures, got {}", inputs.size()), "compare",
                             "Say: domelight compare A B, or: domelight compare --bake THEIRS --env SRC."},
                            exit_usage);
+    pictures.layer = bake.environment.layer;
     return compare_pictures(inputs[0], inputs[1], pictures, common);
 }
 

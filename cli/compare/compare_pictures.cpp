@@ -319,9 +319,7 @@ Result<void> check_words(const PictureWords& w) {
 
 void add_picture_options(Arguments& a, PictureWords& w) {
     a.group("Two pictures: what is compared");
-    a.text("--layer", "NAME", w.layer,
-           "OpenEXR: the layer or channel to compare (the unnamed one, else the first with colour)");
-    a.text("--layer-b", "NAME", w.layer_b, "the layer of B (that of --layer)");
+    a.text("--layer-b", "NAME", w.layer_b, "OpenEXR: the layer of B (that of --layer)");
     a.integer("--level", "N", w.level, "textures: the level to compare (0)");
     a.text("--mask", "FILE", w.mask, "an image of the same size: only pixels above 0 count");
     a.text(

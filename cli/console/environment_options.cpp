@@ -40,6 +40,7 @@ Result<Environment> built_in_sky(const EnvironmentOptions& options) {
     };
     if (options.projection != none.projection) return refuse("--projection");
     if (options.latlong != none.latlong) return refuse("--latlong");
+    if (options.layer != none.layer) return refuse("--layer");
     if (options.decode != none.decode) return refuse("--decode");
     if (options.up != none.up) return refuse("--up");
     if (!std::isfinite(options.rotate_y_deg)) return Error{"angle is not a number", "--rotate-y-deg", ""};
@@ -84,6 +85,9 @@ void add_environment_options(Arguments& arguments, EnvironmentOptions& options) 
         "lat-long convention: " + join(latlong_convention_names(), ", ") + k_other_conventions +
             "; pbrt is the same as --projection equal-area-octahedral (the one that the file states, otherwise "
             "default)");
+    arguments.text("--layer", "NAME", options.layer,
+                   "OpenEXR: the layer, the channel, or the part (its name, or its number from 0) to read (the unnamed "
+                   "layer; else rgba, beauty or Combined, after any prefix; else the only one with a colour)");
     arguments.choice(
         "--decode", options.decode,
         "how values of 8 bits are decoded in PNG and JPEG files and in textures; rgbm, rgbd and rgbp are for textures "

@@ -36,7 +36,6 @@ struct ConvertWords {
     std::vector<std::string> rotations;
     std::optional<int> size;
     bool sharp = false, picture = false;
-    std::string layer;
     ConvertOutput output;
     DisplayWords display;
     EnvironmentOptions environment;
@@ -84,8 +83,6 @@ void declare(Arguments& a, ConvertWords& w) {
            "treat IN as a picture, not as an environment: every pixel stays where it is. Without this option that is "
            "done if OUT is a .png or .jpg and IN is not a cube texture, and if OUT is an .exr or .hdr and the shape or "
            "the layers of IN are not an environment's; but not if an option such as --to needs an environment");
-    a.text("--layer", "NAME", w.layer,
-           "the layer or channel of an OpenEXR picture (the unnamed layer, else the first with colour)");
     add_environment_options(a, w.environment);
     a.text("--from", "NAME", w.environment.projection, "the same as --projection");
     add_common_options(a, w.common);
@@ -168,6 +165,7 @@ void print_json(const ConvertWords& w, const Environment& environment, const Con
     Json json{{"version", version()},
               {"source",
                {{"file", environment.file.string()},
+                {"layer", environment.layer},
                 {"projection", environment.projection},
                 {"width", environment.width},
                 {"height", environment.height},
@@ -247,14 +245,15 @@ std::string environment_option(const Arguments& a) {
 /// Whether the input is converted as a picture.
 Result<bool> wants_picture(const ConvertWords& w, const Arguments& a) {
     const std::string other = environment_option(a);
-    for (const auto& [option, given] : {std::pair{"--picture", w.picture}, {"--layer", !w.layer.empty()}}) {
-        if (!given) continue;
+    if (w.picture) {
         if (w.files.size() != 1)
-            return Error{fmt::format("goes with one picture, not with {} files", w.files.size()), option, ""};
-        if (!other.empty()) return Error{"keeps every pixel where it is, and does not go with " + other, option, ""};
+            return Error{fmt::format("goes with one picture, not with {} files", w.files.size()), "--picture", ""};
+        if (!other.empty())
+            return Error{"keeps every pixel where it is, and does not go with " + other, "--picture", ""};
         return true;
     }
-    if (w.files.size() != 1 || !other.empty()) return false;
+    if (w.files.size() != 1 || !other.empty() || has_texture_ending(w.output.file)) return false;
+    if (!w.environment.layer.empty()) return true;
     const std::string extension = lower_case_extension(w.output.file);
     if (is_screen_picture(w.output.file)) return may_be_a_picture(w.files[0]);
     return (extension == ".exr" || extension == ".hdr") && holds_a_picture(w.files[0]);
@@ -264,7 +263,7 @@ int run_picture(const ConvertWords& w) {
     PictureConversion conversion;
     conversion.input = w.files[0];
     conversion.output = w.output.file;
-    conversion.layer = w.layer;
+    conversion.layer = w.environment.layer;
     conversion.decode = w.environment.decode;
     conversion.encoding = w.output.encoding == "srgb" && is_screen_picture(w.output.file) ? "" : w.output.encoding;
     conversion.exposure = w.environment.exposure;

@@ -57,7 +57,7 @@ void print_result(const PictureConversion& c, const Picture& picture, const Disp
     const double ev = std::log2(display.exposure);
     if (common.json) {
         Json json{{"version", version()},
-                  {"source", {{"file", c.input}, {"format", picture.format}, {"layer", c.layer}}},
+                  {"source", {{"file", c.input}, {"format", picture.format}, {"layer", picture.layer}}},
                   {"files", Json::array({c.output})},
                   {"projection", nullptr},
                   {"width", width},

@@ -13,7 +13,7 @@ namespace domelight::cli {
 /// A picture that is converted as it is, pixel by pixel: a render, a layer of it, a photograph.
 struct PictureConversion {
     std::string input, output;
-    std::string layer;  ///< OpenEXR: the layer or channel; empty: the picture itself
+    std::string layer;  ///< OpenEXR: which layer, channel or part; empty: the picture itself
     Decode decode = Decode::automatic;
     std::string encoding;  ///< .exr: half, float, or auto (also where empty): float where half would clip
     double exposure = 0;   ///< stops that radiance is multiplied by

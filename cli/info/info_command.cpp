@@ -29,7 +29,6 @@ struct InfoWords {
     std::vector<std::string> inputs;
     EnvironmentOptions environment;
     bool picture = false;
-    std::string layer;
 };
 
 const char* const k_axes[] = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
@@ -39,6 +38,13 @@ Json vector_json(const Vec3d& v) {
 }
 std::string rgb(const Vec3d& v) {
     return fmt::format("{:9.4g} {:9.4g} {:9.4g}", v.x, v.y, v.z);
+}
+
+/// Values of keys may be anything in other tools' files: one line, not too long.
+std::string shown(std::string value) {
+    std::replace(value.begin(), value.end(), '\n', ' ');
+    const std::string line = printable(value, 200);
+    return line.size() < escaped(value).size() ? line + "..." : line;
 }
 
 // --- an environment ---
@@ -57,6 +63,7 @@ Json environment_json(const std::string& name, const Environment& e, const Envir
             {"kind", "environment"},
             {"file", name},
             {"format", e.format},
+            {"layer", e.layer},
             {"projection", e.projection},
             {"width", e.width},
             {"height", e.height},
@@ -74,6 +81,7 @@ Json environment_json(const std::string& name, const Environment& e, const Envir
 
 void print_environment(const std::string& name, const Environment& e, const EnvironmentSurvey& s) {
     print("{}: {}, {} x {}, {}\n", name, e.format, e.width, e.height, e.projection);
+    if (!e.layer.empty()) print("  layer            {}\n", shown(e.layer));
     print("  range            {:.6g} to {:.6g}\n", s.least, s.largest);
     print("  mean radiance    {}   (red, green, blue)\n", rgb(s.mean_radiance));
     for (int f = 0; f < 6; ++f) print("  irradiance {}    {}\n", k_axes[f], rgb(s.irradiance[f]));
@@ -114,19 +122,13 @@ int info_environment(const InfoWords& w) {
 
 // --- a picture ---
 
-/// Values of keys may be anything in other tools' files: one line, not too long.
-std::string shown(std::string value) {
-    std::replace(value.begin(), value.end(), '\n', ' ');
-    const std::string line = printable(value, 200);
-    return line.size() < escaped(value).size() ? line + "..." : line;
-}
-
 /// Whether the file is described as a picture: because that was asked for, or because its shape or its layers rule out
 /// an environment. A pipe cannot be read twice, and is taken for an environment.
 bool is_picture(const InfoWords& w, const Arguments& a) {
-    if (w.picture || !w.layer.empty()) return true;
+    if (w.picture) return true;
     for (const char* option : {"--projection", "--latlong", "--rotate-y-deg", "--up"})
         if (a.given(option)) return false;
+    if (!w.environment.layer.empty()) return true;
     std::error_code failure;
     if (!fs::is_regular_file(w.inputs[0], failure)) return false;
     return is_picture_of_its_own(w.inputs[0]);
@@ -142,6 +144,7 @@ std::vector<std::string> named_layers(const PictureFacts& facts) {
 void print_picture(const std::string& file, const PictureFacts& facts, const Picture& picture, const PictureSurvey& s) {
     print("{}: {}, {} x {}, a picture\n", file, facts.format, picture.rgb.width(), picture.rgb.height());
     if (!facts.layers.empty()) print("  layers           {}\n", join(named_layers(facts), ", "));
+    if (!picture.layer.empty()) print("  layer            {}\n", shown(picture.layer));
     print("  range            {:.6g} to {:.6g}\n", s.least, s.largest);
     print("  mean             {}   (red, green, blue)\n", rgb(s.mean));
     print("  exposure         {:+.2f} stops suit a screen\n", s.ev);
@@ -167,6 +170,7 @@ Json picture_json(const std::string& file, const PictureFacts& facts, const Pict
               {"format", facts.format},
               {"width", picture.rgb.width()},
               {"height", picture.rgb.height()},
+              {"layer", picture.layer},
               {"layers", facts.layers},
               {"channels", facts.channels},
               {"range", Json::array({s.least, s.largest})},
@@ -186,7 +190,7 @@ int info_picture(const InfoWords& w) {
     const auto facts = read_picture_facts(file);
     if (!facts) return print_error(facts.error());
     PictureOptions options;
-    options.layer = w.layer;
+    options.layer = w.environment.layer;
     options.opacity = true;
     options.decode = w.environment.decode;
     options.threads = w.common.threads.value_or(0);
@@ -334,8 +338,6 @@ int run_info(const std::vector<std::string>& words) {
         "--picture", w.picture,
         "describe it as a picture, not as an environment. Without this option that is done for a file whose shape or "
         "layers are not an environment's");
-    arguments.text("--layer", "NAME", w.layer,
-                   "the layer or channel of an OpenEXR picture (the unnamed layer, else the first with colour)");
     add_environment_options(arguments, w.environment);
     add_common_options(arguments, w.common);
     if (const auto code = begin_command(arguments, words, w.common)) return *code;
@@ -346,9 +348,8 @@ int run_info(const std::vector<std::string>& words) {
         if (input.filename() == "manifest.json" && fs::exists(input, failure)) return info_bake(input.parent_path(), w);
         if (has_texture_ending(input.string())) return info_texture(input.string(), w);
         if (is_picture(w, arguments)) return info_picture(w);
-    } else if (w.picture || !w.layer.empty()) {
-        return print_error({fmt::format("goes with one picture, not with {} files", w.inputs.size()),
-                            w.picture ? "--picture" : "--layer", ""});
+    } else if (w.picture) {
+        return print_error({fmt::format("goes with one picture, not with {} files", w.inputs.size()), "--picture", ""});
     } else if (w.inputs.size() > 1 && !are_cube_faces(w.inputs) && w.environment.projection != "cube-faces") {
         return print_error({"more than one input, and not the six faces of a cube", "", "Ask for one at a time."},
                            exit_usage);

@@ -184,7 +184,7 @@ bool in_openexr_convention(const LightsWords& w) {
     if (w.environment_files.size() != 1) return false;
     auto bytes = FileBytes::open(w.environment_files[0], w.environment.max_bytes);
     if (!bytes) return false;
-    const auto image = open_image_reader(std::move(*bytes), {});
+    const auto image = open_image_reader(std::move(*bytes), {.layer = w.environment.layer});
     return image && (*image)->facts().envmap == ImageFacts::Envmap::latlong;
 }
 

@@ -328,6 +328,7 @@ SourceReport describe_source(const Environment& environment, const std::vector<s
     }
     if (files.empty()) source.file = fmt::format("built-in {}", environment.format);
     source.format = environment.format;
+    source.layer = environment.layer;
     source.projection = environment.projection;
     source.width = environment.width;
     source.height = environment.height;

@@ -49,8 +49,10 @@ Json exponent_json(double exponent) {
 }
 
 Json environment_json(const EnvironmentOptions& e) {
-    return {{"projection", e.projection},     {"latlong", e.latlong}, {"decode", name_of(e.decode)},
-            {"rotate_y_deg", e.rotate_y_deg}, {"up", e.up},           {"exposure", e.exposure}};
+    Json json{{"projection", e.projection},     {"latlong", e.latlong}, {"decode", name_of(e.decode)},
+              {"rotate_y_deg", e.rotate_y_deg}, {"up", e.up},           {"exposure", e.exposure}};
+    if (!e.layer.empty()) json["layer"] = e.layer;
+    return json;
 }
 
 /// Every option that affects the bytes, with defaults filled in: two bakes of equal sources with equal options are
@@ -221,6 +223,7 @@ std::string manifest_json(const EngineReport& report, const EnginePlan& plan, co
                         {"infinite", source.repaired.infinite},
                         {"negative", source.repaired.negative},
                         {"most_negative", source.repaired.negative_radiance}}}};
+    if (!source.layer.empty()) json["source"]["layer"] = source.layer;
     json["engine"] = {{"name", report.name}, {"loads", plan.engine->loads}, {"note", plan.engine->note}};
     json["convention"] = convention_json(plan);
     json["options"] = options_json(plan, options);

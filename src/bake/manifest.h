@@ -15,6 +15,7 @@ struct SourceReport {
     std::string file;  ///< without its folder, so that the bytes do not depend on its location; six faces: their names
     std::string sha256;
     std::string format, projection;
+    std::string layer;  ///< of an OpenEXR file, as in Environment
     int width = 0, height = 0;
     RepairReport repaired;
 };

@@ -67,6 +67,7 @@ Result<Picture> read_plain(std::shared_ptr<const FileBytes> bytes, const ReaderO
                 p[0] = float(v.x), p[1] = float(v.y), p[2] = float(v.z);
             }
     picture.format = facts.format;
+    picture.layer = facts.layer;
     picture.high_dynamic_range = facts.high_dynamic_range;
     if (picture.high_dynamic_range) picture.warnings = facts.warnings;  // the other warnings are about environments
     return picture;
@@ -111,19 +112,14 @@ Result<void> read_objects(ExrLayers& layers, Picture& picture) {
     return {};
 }
 
-/// The channel of opacity that goes with a layer's colour; empty: none. `layer` as in ExrLayers::colour_of; empty: the
-/// unnamed layer, otherwise the first that has an opacity. A layer without an opacity of its own has that of the whole
-/// picture.
+/// The channel of opacity that goes with a layer. A layer without an opacity of its own has that of the whole picture.
 std::string opacity_channel(const ExrLayers& layers, const std::string& layer) {
-    if (layer.empty() && layers.has("A")) return "A";
-    for (const std::string& name : layers.layers())
-        if ((layer.empty() || name == layer || name.ends_with("." + layer)) && layers.has(name + ".A"))
-            return name + ".A";
-    return layers.has("A") ? "A" : "";
+    const std::string own = layer.empty() ? "A" : layer + ".A";
+    return layers.has(own) ? own : layers.has("A") ? "A" : "";
 }
 
-Result<void> read_exr_opacity(ExrLayers& layers, const std::string& layer, Picture& picture) {
-    const std::string channel = opacity_channel(layers, layer);
+Result<void> read_exr_opacity(ExrLayers& layers, Picture& picture) {
+    const std::string channel = opacity_channel(layers, picture.layer);
     if (channel.empty()) return {};
     auto opacity = layers.read(std::vector<std::string>{channel});
     if (!opacity) return opacity.error();
@@ -155,31 +151,19 @@ Result<void> read_png_opacity(const FileBytes& bytes, Picture& picture) {
 
 Result<Picture> read_exr_picture(std::shared_ptr<const FileBytes> bytes, const PictureOptions& options,
                                  const ReaderOptions& reader) {
-    auto layers = open_exr_layers(bytes, reader);
-    Picture picture;
-    if (options.layer.empty()) {
-        auto plain = read_plain(bytes, reader);
-        if (!plain) return plain;
-        picture = std::move(*plain);
-        if (!layers) return picture;
-    } else {
-        if (!layers) return layers.error();
-        const auto channels = (*layers)->colour_of(options.layer);
-        if (!channels) return channels.error();
-        auto pixels = (*layers)->read(*channels);
-        if (!pixels) return pixels.error();
-        picture.rgb = std::move(*pixels);
-        picture.format = "OpenEXR";
-    }
+    auto picture = read_plain(bytes, reader);
+    if (!picture) return picture;
+    const auto layers = open_exr_layers(bytes, reader);
+    if (!layers) return picture;
     // The variance belongs to the picture, not to a layer. The sizes differ if the picture is the data window of an
     // environment.
-    const bool same = (*layers)->width() == picture.rgb.width() && (*layers)->height() == picture.rgb.height();
-    if (same && options.layer.empty())
-        if (auto ok = read_variance(**layers, options, picture); !ok) return ok.error();
-    if (same && options.opacity)
-        if (auto ok = read_exr_opacity(**layers, options.layer, picture); !ok) return ok.error();
-    if (same)
-        if (auto ok = read_objects(**layers, picture); !ok) return ok.error();
+    const bool same = (*layers)->width() == picture->rgb.width() && (*layers)->height() == picture->rgb.height();
+    if (!same) return picture;
+    if (options.layer.empty())
+        if (auto ok = read_variance(**layers, options, *picture); !ok) return ok.error();
+    if (options.opacity)
+        if (auto ok = read_exr_opacity(**layers, *picture); !ok) return ok.error();
+    if (auto ok = read_objects(**layers, *picture); !ok) return ok.error();
     return picture;
 }
 
@@ -194,13 +178,13 @@ Result<Picture> read_picture(const std::filesystem::path& file, const PictureOpt
     auto bytes = FileBytes::open(file, options.max_bytes);
     if (!bytes) return bytes.error().at(file.string());
     const std::string container = texture_container((*bytes)->bytes());
+    if (!container.empty() && !options.layer.empty()) return no_layers().at(file.string());
     if (!container.empty()) return read_texture_picture(file, container, options.level);
     ReaderOptions reader;
     reader.max_bytes = options.max_bytes;
     reader.threads = options.threads;
     reader.decode = options.decode;
-    if (!is_exr(**bytes) && !options.layer.empty())
-        return Error{"only OpenEXR files have layers", file.string(), "Leave out `layer`."};
+    reader.layer = options.layer;
     auto picture = is_exr(**bytes) ? read_exr_picture(*bytes, options, reader) : read_plain(*bytes, reader);
     if (!picture) return picture.error().at(file.string());
     if (options.opacity && picture->format == "PNG")

@@ -19,6 +19,10 @@ Result<void> check_image_size(std::int64_t width, std::int64_t height) {
     return {};
 }
 
+Error no_layers() {
+    return {"only OpenEXR files have layers", "", "Leave out `layer`."};
+}
+
 Result<std::unique_ptr<ImageReader>> open_image_reader(std::shared_ptr<const FileBytes> bytes,
                                                        const ReaderOptions& options) {
     if (options.decode >= Decode::rgbm)
@@ -30,6 +34,7 @@ Result<std::unique_ptr<ImageReader>> open_image_reader(std::shared_ptr<const Fil
         return all.size() >= magic.size() && std::equal(magic.begin(), magic.end(), all.begin(),
                                                         [](char a, std::uint8_t b) { return std::uint8_t(a) == b; });
     };
+    if (!options.layer.empty() && !starts_with("\x76\x2f\x31\x01"sv)) return no_layers();
     if (starts_with("#?"sv)) return open_hdr_reader(std::move(bytes), options);
     if (starts_with("\x76\x2f\x31\x01"sv)) return open_exr_reader(std::move(bytes), options);
     if (starts_with("\x89PNG\r\n\x1a\n"sv)) return open_png_reader(std::move(bytes), options);

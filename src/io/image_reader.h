@@ -25,6 +25,7 @@ struct ImageFacts {
 
     std::string format;  ///< "Radiance HDR", ...
     int width = 0, height = 0;
+    std::string layer;               ///< OpenEXR: the layer that is read; empty: the unnamed one
     bool high_dynamic_range = true;  ///< false: cut off at the white of a screen
     float largest = 0;               ///< the largest finite value of the format, which replaces infinity
     Envmap envmap = Envmap::none;
@@ -36,6 +37,7 @@ struct ReaderOptions {
     Decode decode = Decode::automatic;
     std::int64_t max_bytes = std::int64_t(1) << 30;
     int threads = 0;
+    std::string layer = {};  ///< OpenEXR: which layer, channel or part (exr_channels.h); empty: the picture itself
     /// Codes of a PNG or JPEG as they are stored, whatever the file says of its orientation: for textures.
     bool as_stored = false;
 };
@@ -67,6 +69,9 @@ Result<std::unique_ptr<ImageReader>> open_png_reader(std::shared_ptr<const FileB
                                                      const ReaderOptions& options);
 Result<std::unique_ptr<ImageReader>> open_jpeg_reader(std::shared_ptr<const FileBytes> bytes,
                                                       const ReaderOptions& options);
+
+/// The error where a layer is asked of a file of another format.
+Error no_layers();
 
 /// An error unless 1 <= width, height <= k_max_image_side.
 Result<void> check_image_size(std::int64_t width, std::int64_t height);

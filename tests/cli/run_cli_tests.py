@@ -1072,6 +1072,47 @@ def test_convert_reports_power_and_files(folder):
     assert run("convert", "studio.hdr", "-o", "x.hdr", "--to", "octahedral", "--quiet", folder=folder).stdout == ""
 
 
+def write_exr_layers(file, width, height, channels):
+    """An uncompressed OpenEXR file of 32-bit floats: channels {name: value of every pixel}."""
+    names = sorted(channels)
+    chlist = b"".join(n.encode() + b"\0" + struct.pack("<iiii", 2, 0, 1, 1) for n in names) + b"\0"
+    window = struct.pack("<iiii", 0, 0, width - 1, height - 1)
+    attributes = [("channels", "chlist", chlist), ("compression", "compression", b"\0"), ("dataWindow", "box2i", window), ("displayWindow", "box2i", window),
+                  ("lineOrder", "lineOrder", b"\0"), ("pixelAspectRatio", "float", struct.pack("<f", 1)), ("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0)),
+                  ("screenWindowWidth", "float", struct.pack("<f", 1))]
+    head = struct.pack("<II", 20000630, 2) + b"".join(n.encode() + b"\0" + t.encode() + b"\0" + struct.pack("<i", len(v)) + v for n, t, v in attributes) + b"\0"
+    row = b"".join(struct.pack(f"<{width}f", *[channels[n]] * width) for n in names)
+    first = len(head) + 8 * height
+    offsets = b"".join(struct.pack("<Q", first + y * (8 + len(row))) for y in range(height))
+    file.write_bytes(head + offsets + b"".join(struct.pack("<ii", y, len(row)) + row for y in range(height)))
+
+
+def test_every_command_reads_the_layer_that_is_the_picture_or_the_one_named(folder):
+    layers = {f"View Layer.{layer}.{c}": value for layer, value in [("AO", 0.25), ("Combined", 2.0)] for c in "RGB"}
+    write_exr_layers(folder / "r.exr", 16, 8, {**layers, "View Layer.Depth.Z": 9.0})
+    for words, layer, value in [([], "View Layer.Combined", 2.0), (["--layer", "ao"], "View Layer.AO", 0.25)]:
+        said = json.loads(run("info", "r.exr", *words, "--projection", "latlong", "--json", folder=folder).stdout)
+        assert said["layer"] == layer and abs(said["range"][1] - value) < 1e-6, said
+        run("bake", "r.exr", *words, "-o", "b", *SMALL, folder=folder)
+        source = manifest_of(folder / "b")["source"]
+        assert source["layer"] == layer and abs(source["mean_radiance"][0] - value) < 1e-4, source
+        sample = json.loads(run("sample", "r.exr", *words, "-n", "1", "--json", folder=folder).stdout)["samples"][0]
+        assert abs(sample["radiance"][0] - value) < 1e-6, sample
+        assert converted(folder, "r.exr", *words, "-o", "l.hdr", "--size", "4")["source"]["layer"] == layer
+        assert converted(folder, "r.exr", *words, "-o", "p.exr")["source"]["layer"] == layer
+        assert abs(json.loads(run("info", "p.exr", "--json", folder=folder).stdout)["range"][1] - value) < 1e-6
+        run("lights", "r.exr", *words, "-o", "l", "--no-preview", folder=folder)
+        run("render", "spheres", "--env", "r.exr", *words, "-o", "s.exr", "--width", "8", "--height", "8", "--spp", "1", "--quiet", folder=folder)
+        assert abs(json.loads(run("compare", "r.exr", "r.exr", *words, "--json", folder=folder).stdout)["errors"]["rmse"]) == 0
+    assert "is read" not in run("info", "r.exr", "--layer", "AO", folder=folder).stderr
+    assert "the layer View Layer.Combined is read" in run("info", "r.exr", folder=folder).stderr
+    write_exr_layers(folder / "u.exr", 16, 8, {f"{layer}.{c}": 1.0 for layer in ["sky", "sun"] for c in "RGB"})
+    for words in [["info"], ["bake", "-o", "x"], ["sample", "-n", "1"], ["convert", "-o", "x.ktx2"], ["lights", "-o", "x"]]:
+        error = run(*words, "u.exr", folder=folder, code=1).stderr
+        assert "u.exr" in error and "sky, sun" in error and "--layer" in error, error
+    assert "--layer" in run("info", "studio.hdr", "--layer", "sky", folder=folder, code=1).stderr
+
+
 def test_endings_mean_the_same_in_any_case(folder):
     """An output's format, and what is made of it, follow from its ending whether that is written in small letters or capitals."""
     for ending in [".ktx2", ".ktx", ".dds", ".hdr", ".exr", ".png", ".jpg"]:

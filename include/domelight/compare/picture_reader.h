@@ -13,6 +13,7 @@ namespace domelight {
 /// A picture to be compared: all values are kept, NaN too; nothing is repaired.
 struct Picture {
     std::string format;  ///< "OpenEXR", "PNG", "KTX2", ...
+    std::string layer;   ///< OpenEXR: the layer that was read; empty: the unnamed one
     ImageF rgb;          ///< linear Rec. 709 radiance; a cube: its faces +X -X +Y -Y +Z -Z one below the other
     bool high_dynamic_range = true;  ///< false: 8 or 16 bits for a screen, decoded from sRGB to [0, 1]
     bool cube = false;
@@ -33,7 +34,7 @@ struct Picture {
 };
 
 struct PictureOptions {
-    std::string layer = {};  ///< OpenEXR: which layer or channel; empty: the unnamed one, else the first with colour
+    std::string layer = {};  ///< OpenEXR: which layer, channel or part, as in EnvironmentOptions
     int level = 0;           ///< textures: which level
     /// The meaning of a file's layer "variance": the variance of the pixel's value, or that of one sample, to be
     /// divided by the channel "samples".

@@ -43,6 +43,7 @@ class Environment {
     std::filesystem::path file;  ///< the first of its files; empty where the environment was made in memory
     std::vector<std::filesystem::path> files;  ///< all of them; faces in the order of a cube
     std::string format;                        ///< "Radiance HDR", "OpenEXR", "PNG", "JPEG", "sky", ...
+    std::string layer;                         ///< OpenEXR: the layer that was read; empty: the unnamed one
     std::string projection;                    ///< "latlong", "cube", or the name of another one in projections.h
     int width = 0, height = 0;  ///< texels of the image as it is stored; of one face where a cube is six images
     /// Where to look in the source for the light that arrives from a world direction: the convention, the up axis and

@@ -188,11 +188,12 @@ Environment with_facts(Environment environment, std::vector<std::filesystem::pat
 }
 
 Environment with_facts(Environment environment, std::vector<std::filesystem::path> files, const ImageFacts& facts) {
+    environment.layer = facts.layer;
     return with_facts(std::move(environment), std::move(files), facts.format, facts.width, facts.height);
 }
 
 ReaderOptions reader_options(const EnvironmentOptions& options) {
-    return {options.decode, options.max_bytes, options.threads};
+    return {options.decode, options.max_bytes, options.threads, options.layer};
 }
 
 Result<std::unique_ptr<ImageReader>> open_file(const std::filesystem::path& file, const EnvironmentOptions& options) {
@@ -388,8 +389,9 @@ Result<Environment> open_gltf_light(const std::filesystem::path& file, const Req
 Result<Environment> open_picture(const std::filesystem::path& file, const Request& request) {
     auto bytes = FileBytes::open(file, request.options.max_bytes);
     if (!bytes) return bytes.error();
-    if (const std::string container = texture_container((*bytes)->bytes()); !container.empty())
-        return open_texture(file, container, request);
+    const std::string container = texture_container((*bytes)->bytes());
+    if (!container.empty() && !request.options.layer.empty()) return no_layers();
+    if (!container.empty()) return open_texture(file, container, request);
     if (may_be_gltf_image_light((*bytes)->bytes())) return open_gltf_light(file, request);
     auto image = open_image_reader(*bytes, reader_options(request.options));
     if (!image) return image.error();

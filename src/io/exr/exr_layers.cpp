@@ -12,7 +12,6 @@
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfOpaqueAttribute.h>
-#include <ImfPartType.h>
 #include <ImfStringAttribute.h>
 #include <fmt/format.h>
 
@@ -21,11 +20,6 @@
 namespace domelight {
 
 namespace {
-
-struct Place {
-    int part = 0;
-    std::string channel;
-};
 
 class Layers : public ExrLayers {
   public:
@@ -36,7 +30,7 @@ class Layers : public ExrLayers {
     Result<void> open();
     int width() const override { return window_.max.x - window_.min.x + 1; }
     int height() const override { return window_.max.y - window_.min.y + 1; }
-    const std::vector<std::string>& channels() const override { return names_; }
+    const ExrChannels& table() const override { return *channels_; }
     std::optional<std::string> attribute(const std::string& name) const override;
     Result<ImageF> read(std::span<const std::string> names) override;
 
@@ -47,25 +41,16 @@ class Layers : public ExrLayers {
     ExrStream stream_;
     std::unique_ptr<Imf::MultiPartInputFile> file_;
     Imath::Box2i window_;
-    std::vector<std::string> names_;
-    std::vector<Place> places_;  // of names_
+    std::optional<ExrChannels> channels_;
 };
 
 Result<void> Layers::open() {
     const int threads = resolve_threads(options_.threads);
     provide_exr_threads(threads);
     file_ = std::make_unique<Imf::MultiPartInputFile>(stream_, threads > 1 ? threads : 0, false);
-    for (int p = 0; p < file_->parts(); ++p) {
-        const Imf::Header& header = file_->header(p);
-        if (header.hasType() && Imf::isDeepData(header.type())) continue;
-        const std::string prefix = file_->parts() > 1 && header.hasName() ? header.name() + "." : "";
-        for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
-            names_.push_back(prefix + c.name());
-            places_.push_back({p, c.name()});
-        }
-    }
-    if (names_.empty()) return Error{"no channels that could be read", "", ""};
-    window_ = file_->header(places_[0].part).displayWindow();
+    channels_.emplace(exr_parts(*file_));
+    if (channels_->all().empty()) return Error{"no channels that could be read", "", ""};
+    window_ = file_->header(channels_->all()[0].part).displayWindow();
     const std::int64_t width = std::int64_t(window_.max.x) - window_.min.x + 1,
                        height = std::int64_t(window_.max.y) - window_.min.y + 1;
     return check_image_size(width, height);
@@ -90,12 +75,11 @@ Result<ImageF> Layers::read(std::span<const std::string> names) {
     for (int p = 0; p < file_->parts(); ++p) {
         std::vector<std::pair<std::string, int>> wanted;
         for (std::size_t i = 0; i < names.size(); ++i) {
-            const auto found = std::find(names_.begin(), names_.end(), names[i]);
-            if (found == names_.end()) return Error{fmt::format("no channel {}", printable(names[i])), "", ""};
-            const Place& place = places_[std::size_t(found - names_.begin())];
+            const ExrChannel* channel = channels_->find(names[i]);
+            if (!channel) return Error{fmt::format("no channel {}", printable(names[i])), "", ""};
             const bool first = std::find(names.begin(), names.begin() + std::ptrdiff_t(i), names[i]) ==
                                names.begin() + std::ptrdiff_t(i);
-            if (place.part == p && first) wanted.emplace_back(place.channel, int(i));
+            if (channel->part == p && first) wanted.emplace_back(channel->name, int(i));
         }
         if (wanted.empty()) continue;
         try {
@@ -154,61 +138,30 @@ Result<void> Layers::read_from(int part, const std::vector<std::pair<std::string
     return {};
 }
 
-std::string listed(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) {
-        if (text.size() > 300) return text + ", ...";
-        text += (text.empty() ? "" : ", ") + (name.empty() ? "(unnamed)" : printable(name));
-    }
-    return text;
-}
-
 }  // namespace
 
-std::vector<std::string> ExrLayers::layers() const {
-    std::vector<std::string> found;
-    for (const std::string& name : channels()) {
-        const auto dot = name.rfind('.');
-        const std::string layer = dot == std::string::npos ? "" : name.substr(0, dot);
-        if (std::find(found.begin(), found.end(), layer) == found.end()) found.push_back(layer);
-    }
-    return found;
+std::vector<std::string> ExrLayers::channels() const {
+    std::vector<std::string> names;
+    for (const ExrChannel& channel : table().all()) names.push_back(channel.full());
+    return names;
 }
 
 bool ExrLayers::has(const std::string& channel) const {
-    return std::find(channels().begin(), channels().end(), channel) != channels().end();
+    return table().find(channel) != nullptr;
 }
 
 Result<std::vector<std::string>> ExrLayers::colour_of(const std::string& layer) const {
-    const std::vector<std::string> all = layers();
-    std::string chosen = layer;
-    if (std::find(all.begin(), all.end(), layer) == all.end()) {
-        std::vector<std::string> ending;
-        for (const std::string& name : all)
-            if (name.ends_with("." + layer)) ending.push_back(name);
-        if (ending.size() == 1)
-            chosen = ending[0];
-        else if (has(layer))
-            return std::vector<std::string>(3, layer);
-        else
-            return Error{fmt::format("{} layer {}", ending.empty() ? "no" : "more than one", printable(layer)), "",
-                         "The file has: " + listed(all) + "."};
+    const auto colour = table().colour(layer);
+    if (!colour) return colour.error();
+    const bool grey = colour->kind == ExrColour::Kind::luminance;
+    std::vector<std::string> names;
+    for (int c = 0; c < 3; ++c) {
+        const std::string& name = colour->names[grey ? 0 : c];
+        for (const ExrChannel& channel : table().all())
+            if (channel.part == colour->part && channel.name == name) names.push_back(channel.full());
     }
-    const std::string prefix = chosen.empty() ? "" : chosen + ".";
-    for (const char* set : {"RGB", "rgb", "XYZ", "xyz"}) {
-        std::vector<std::string> names;
-        for (int c = 0; c < 3; ++c) names.push_back(prefix + set[c]);
-        if (std::all_of(names.begin(), names.end(), [&](const std::string& n) { return has(n); })) return names;
-    }
-    // A layer of one channel (depth.Z, samples.Y), or a channel beside a layer of its name.
-    std::vector<std::string> own;
-    for (const std::string& name : channels())
-        if (name.starts_with(prefix) && name.find('.', prefix.size()) == std::string::npos) own.push_back(name);
-    if (own.size() == 1) return std::vector<std::string>(3, own[0]);
-    if (has(layer)) return std::vector<std::string>(3, layer);
-    return Error{
-        fmt::format("layer {} has no colour among: {}", chosen.empty() ? "(unnamed)" : printable(chosen), listed(own)),
-        "", "Name a layer or a channel; the file's layers: " + listed(all) + "."};
+    if (names.size() == 3) return names;
+    return Error{fmt::format("layer {} has no colour of three channels", printable(layer)), "", ""};
 }
 
 Result<std::unique_ptr<ExrLayers>> open_exr_layers(std::shared_ptr<const FileBytes> bytes,

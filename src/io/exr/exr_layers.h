@@ -3,6 +3,7 @@
 #include "domelight/base/result.h"
 #include "domelight/image/image.h"
 
+#include "io/exr/exr_channels.h"
 #include "io/file/file_reader.h"
 #include "io/image_reader.h"
 
@@ -21,8 +22,7 @@ class ExrLayers {
     /// Size of the display window; channels of another part may have another one and are then refused by read().
     virtual int width() const = 0;
     virtual int height() const = 0;
-    /// All channels that are not deep, in the file's order. In a file of several parts a channel is named PART.CHANNEL.
-    virtual const std::vector<std::string>& channels() const = 0;
+    virtual const ExrChannels& table() const = 0;
     /// A string attribute of the first part, if it is there.
     virtual std::optional<std::string> attribute(const std::string& name) const = 0;
     /// The named channels side by side: height() x width() x names.size(). What lies outside the data window is 0.
@@ -30,11 +30,11 @@ class ExrLayers {
     /// memory.
     virtual Result<ImageF> read(std::span<const std::string> names) = 0;
 
-    /// The names before the channels' last dots, each once: "", "direct", "ViewLayer.Combined".
-    std::vector<std::string> layers() const;
+    /// All channels that are not deep by their full names, in the file's order.
+    std::vector<std::string> channels() const;
+    std::vector<std::string> layers() const { return table().layers(); }
     bool has(const std::string& channel) const;
-    /// The channels of a layer's colour: R G B (or r g b, X Y Z), else one channel for all three. `layer`: a layer's
-    /// name, the end of only one layer's name after a dot, or a channel's. The error lists the layers.
+    /// The full names of the three channels of a layer's colour (ExrChannels::colour), or one channel three times.
     Result<std::vector<std::string>> colour_of(const std::string& layer) const;
 };
 

@@ -2,6 +2,7 @@
 
 #include "image/colour_primaries.h"
 #include "image/repair.h"
+#include "io/exr/exr_channels.h"
 #include "io/exr/exr_header_reader.h"
 #include "io/exr/exr_stream.h"
 #include "io/file/printable.h"
@@ -14,7 +15,6 @@
 #include <ImfHeader.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
-#include <ImfPartType.h>
 #include <ImfRgbaFile.h>
 #include <ImfStandardAttributes.h>
 #include <fmt/format.h>
@@ -27,44 +27,13 @@ namespace domelight {
 
 namespace {
 
-/// The channels that make up the picture: three, or one luminance, or luminance and chroma.
-struct ColourChannels {
-    enum class Kind { none, rgb, luminance, luminance_chroma } kind = Kind::none;
-    std::string names[3];  ///< rgb: red, green, blue, empty where there is none; luminance: the first
-};
-
-/// Looks for colour under one prefix ("" or "layer.").
-ColourChannels colour_under(const Imf::ChannelList& channels, const std::string& prefix) {
-    const auto has = [&](const char* name) { return channels.findChannel(prefix + name) != nullptr; };
-    if (has("R") || has("G") || has("B")) {
-        ColourChannels found{ColourChannels::Kind::rgb, {}};
-        for (int c = 0; c < 3; ++c)
-            if (const char* name[3] = {"R", "G", "B"}; has(name[c])) found.names[c] = prefix + name[c];
-        return found;
-    }
-    if (has("Y") && has("RY") && has("BY")) return {ColourChannels::Kind::luminance_chroma, {prefix + "Y", "", ""}};
-    if (has("Y")) return {ColourChannels::Kind::luminance, {prefix + "Y", "", ""}};
-    return {};
-}
-
-/// Unnamed channels first, then the first layer that has colour.
-ColourChannels find_colour(const Imf::ChannelList& channels) {
-    ColourChannels found = colour_under(channels, "");
-    for (auto c = channels.begin(); c != channels.end() && found.kind == ColourChannels::Kind::none; ++c) {
-        const std::string_view name = c.name();
-        if (const auto dot = name.rfind('.'); dot != std::string_view::npos)
-            found = colour_under(channels, std::string(name.substr(0, dot + 1)));
-    }
-    return found;
-}
-
 class ExrReader : public ImageReader {
   public:
-    ExrReader(std::shared_ptr<const FileBytes> bytes, ExrPreflight preflight, int threads)
-        : threads_(resolve_threads(threads)), stream_(bytes, std::move(preflight.headers)) {}
+    ExrReader(std::shared_ptr<const FileBytes> bytes, ExrPreflight preflight, const ReaderOptions& options)
+        : options_(options), threads_(resolve_threads(options.threads)), stream_(bytes, std::move(preflight.headers)) {}
 
     /// Throws OpenEXR's exceptions.
-    Result<void> open(std::int64_t max_bytes);
+    Result<void> open();
     Result<bool> read(ImageView<float> rows) override;
 
   private:
@@ -72,36 +41,19 @@ class ExrReader : public ImageReader {
     void read_rgb(ImageView<float> rows, int y);
     void read_luminance_chroma(ImageView<float> rows, int y);
 
+    ReaderOptions options_;
     int threads_;
     ExrStream stream_;
     std::unique_ptr<Imf::MultiPartInputFile> file_;
     std::unique_ptr<Imf::InputPart> part_;
     std::unique_ptr<Imf::RgbaInputFile> rgba_;  // luminance-chroma: the library upsamples
-    ColourChannels colour_;
+    ExrColour colour_;
     Imath::Box2i window_;  // of the picture that is read
     Imath::Box2i data_;    // of the texels in the file
     int next_row_ = 0;
     ImageF band_;  // if the data window extends beyond the picture
     std::vector<Imf::Rgba> rgba_band_;
 };
-
-/// Which part of the file to read: the first with colour.
-Result<int> choose_part(const Imf::MultiPartInputFile& file) {
-    bool deep = false;
-    std::string names;
-    for (int p = 0; p < file.parts(); ++p) {
-        const Imf::Header& header = file.header(p);
-        if (header.hasType() && Imf::isDeepData(header.type())) {
-            deep = true;
-            continue;
-        }
-        if (find_colour(header.channels()).kind != ColourChannels::Kind::none) return p;
-        for (auto c = header.channels().begin(); c != header.channels().end() && names.size() < 200; ++c)
-            names += (names.empty() ? "" : ", ") + printable(c.name());
-    }
-    if (deep) return Error{"deep images cannot be read", "", "Flatten it first."};
-    return Error{fmt::format("no colour channels (R, G, B or Y) among: {}", names.empty() ? "none" : names), "", ""};
-}
 
 /// A header of some hundred bytes may promise two gigapixels of display window round a data window of one texel. The
 /// black round the data window is made row by row, but whoever reads the picture works on all of it.
@@ -120,15 +72,17 @@ Result<void> check_black(const Imath::Box2i& display, const Imath::Box2i& data, 
         "", "Crop the picture to its data window, or enlarge the data window to what is to be read."};
 }
 
-Result<void> ExrReader::open(std::int64_t max_bytes) {
+Result<void> ExrReader::open() {
     provide_exr_threads(threads_);
     const int line_threads = threads_ > 1 ? threads_ : 0;
     file_ = std::make_unique<Imf::MultiPartInputFile>(stream_, line_threads, false);
-    const Result<int> part = choose_part(*file_);
-    if (!part) return part.error();
-    const Imf::Header header = file_->header(*part);
-    colour_ = find_colour(header.channels());
-    if (!file_->partComplete(*part)) return Error{"file is incomplete: some of its texels were never written", "", ""};
+    const ExrChannels channels(exr_parts(*file_));
+    auto colour = channels.colour(options_.layer);
+    if (!colour) return colour.error();
+    colour_ = *std::move(colour);
+    const Imf::Header header = file_->header(colour_.part);
+    if (!file_->partComplete(colour_.part))
+        return Error{"file is incomplete: some of its texels were never written", "", ""};
 
     data_ = header.dataWindow();
     const bool envmap = Imf::hasEnvmap(header);
@@ -139,30 +93,35 @@ Result<void> ExrReader::open(std::int64_t max_bytes) {
     if (const auto sized = check_image_size(width, height); !sized) return sized.error();
     if (!window_.intersects(data_))
         return Error{"the data window lies outside the display window: no texel would be seen", "", ""};
-    if (const auto checked = check_black(window_, data_, max_bytes); !checked) return checked.error();
+    if (const auto checked = check_black(window_, data_, options_.max_bytes); !checked) return checked.error();
     facts_.width = int(width);
     facts_.height = int(height);
 
-    if (colour_.kind == ColourChannels::Kind::luminance_chroma) {
-        if (*part != 0 || colour_.names[0] != "Y")
-            return Error{"luminance and chroma are read from the first part's own channels only", "", ""};
+    if (colour_.kind == ExrColour::Kind::luminance_chroma) {
+        if (colour_.part != 0) return Error{"luminance and chroma are read from the first part only", "", ""};
         file_.reset();
         stream_.seekg(0);
-        rgba_ = std::make_unique<Imf::RgbaInputFile>(stream_, line_threads);
+        const std::string& y = colour_.names[0];  // "Y", or "layer.Y"
+        rgba_ = std::make_unique<Imf::RgbaInputFile>(stream_, y.substr(0, std::max(y.size(), std::size_t(2)) - 2),
+                                                     line_threads);
     } else {
         for (const std::string& name : colour_.names) {
             const Imf::Channel* channel = header.channels().findChannel(name);
             if (channel && (channel->xSampling != 1 || channel->ySampling != 1))
                 return Error{fmt::format("channel {} is subsampled", printable(name)), "", ""};
         }
-        part_ = std::make_unique<Imf::InputPart>(*file_, *part);
+        part_ = std::make_unique<Imf::InputPart>(*file_, colour_.part);
     }
+    if (colour_.chosen_by_us)
+        facts_.warnings.push_back(fmt::format("the layer {} is read, of: {} (`layer` names another)",
+                                              printable(colour_.layer), channels.layer_list()));
     take_facts(header);
     return {};
 }
 
 void ExrReader::take_facts(const Imf::Header& header) {
     facts_.format = "OpenEXR";
+    facts_.layer = colour_.layer;
     facts_.largest = k_largest_radiance;
     const Imf::Channel* first = nullptr;
     for (const std::string& name : colour_.names)
@@ -172,14 +131,14 @@ void ExrReader::take_facts(const Imf::Header& header) {
         facts_.envmap =
             Imf::envmap(header) == Imf::ENVMAP_CUBE ? ImageFacts::Envmap::cube : ImageFacts::Envmap::latlong;
 
-    if (colour_.kind == ColourChannels::Kind::rgb)
+    if (colour_.kind == ExrColour::Kind::rgb)
         for (int c = 0; c < 3; ++c)
             if (colour_.names[c].empty())
                 facts_.warnings.push_back(fmt::format("channel {} is missing: read as 0", "RGB"[c]));
     if (!window_.isEmpty() && !(data_.min.x <= window_.min.x && data_.min.y <= window_.min.y &&
                                 data_.max.x >= window_.max.x && data_.max.y >= window_.max.y))
         facts_.warnings.push_back("the data window does not fill the display window: the rest is black");
-    if (!Imf::hasChromaticities(header)) return;
+    if (!Imf::hasChromaticities(header) || colour_.kind == ExrColour::Kind::vector) return;
     const Imf::Chromaticities& c = Imf::chromaticities(header);
     const auto xy = [](const Imath::V2f& v) { return ColourPrimaries::Xy{v.x, v.y}; };
     const ColourPrimaries primaries{xy(c.red), xy(c.green), xy(c.blue), xy(c.white)};
@@ -203,7 +162,7 @@ void ExrReader::read_rgb(ImageView<float> rows, int y) {
     float* first = target.data + (inside ? 3 * (data_.min.x - window_.min.x) : 0);
 
     Imf::FrameBuffer buffer;
-    const bool grey = colour_.kind == ColourChannels::Kind::luminance;
+    const bool grey = colour_.kind == ExrColour::Kind::luminance;
     for (int c = 0; c < (grey ? 1 : 3); ++c)
         if (!colour_.names[c].empty())
             buffer.insert(colour_.names[c],
@@ -258,9 +217,9 @@ Result<std::unique_ptr<ImageReader>> open_exr_reader(std::shared_ptr<const FileB
                                                      const ReaderOptions& options) {
     Result<ExrPreflight> preflight = check_exr_headers(bytes->bytes(), options.max_bytes);
     if (!preflight) return preflight.error();
-    auto reader = std::make_unique<ExrReader>(std::move(bytes), std::move(*preflight), options.threads);
+    auto reader = std::make_unique<ExrReader>(std::move(bytes), std::move(*preflight), options);
     try {
-        if (const auto opened = reader->open(options.max_bytes); !opened) return opened.error();
+        if (const auto opened = reader->open(); !opened) return opened.error();
     } catch (const std::exception& e) {
         return Error{fmt::format("not a readable OpenEXR file: {}", exr_message(e)), "",
                      "The file is truncated or damaged."};

@@ -3,6 +3,9 @@
 #include "io/file/printable.h"
 
 #include <Iex.h>
+#include <ImfChannelList.h>
+#include <ImfHeader.h>
+#include <ImfPartType.h>
 #include <ImfThreading.h>
 
 #include <algorithm>
@@ -27,6 +30,19 @@ bool ExrStream::read(char out[], int n) {
 void ExrStream::seekg(std::uint64_t position) {
     if (position > bytes_->bytes().size()) throw Iex::InputExc("an offset points past the end of the file");
     at_ = std::size_t(position);
+}
+
+std::vector<ExrPart> exr_parts(const Imf::MultiPartInputFile& file) {
+    std::vector<ExrPart> parts;
+    for (int p = 0; p < file.parts(); ++p) {
+        const Imf::Header& header = file.header(p);
+        ExrPart& part = parts.emplace_back();
+        if (file.parts() > 1 && header.hasName()) part.name = header.name();
+        if (header.hasView()) part.view = header.view();
+        part.deep = header.hasType() && Imf::isDeepData(header.type());
+        for (auto c = header.channels().begin(); c != header.channels().end(); ++c) part.channels.push_back(c.name());
+    }
+    return parts;
 }
 
 std::string exr_message(const std::exception& error) {

@@ -1,9 +1,11 @@
 #pragma once
 // Functions shared by the readers of OpenEXR.
 
+#include "io/exr/exr_channels.h"
 #include "io/file/file_reader.h"
 
 #include <ImfIO.h>
+#include <ImfMultiPartInputFile.h>
 
 #include <cstdint>
 #include <exception>
@@ -28,6 +30,9 @@ class ExrStream : public Imf::IStream {
     std::vector<char> headers_;
     std::size_t at_ = 0;
 };
+
+/// The parts of a file, as their headers state them.
+std::vector<ExrPart> exr_parts(const Imf::MultiPartInputFile& file);
 
 /// OpenEXR's message, on one line and without its name of the stream.
 std::string exr_message(const std::exception& error);

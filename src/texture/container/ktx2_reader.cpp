@@ -178,8 +178,8 @@ Result<Ktx2> parse(ByteSource& source, Decode decode = Decode::automatic) {
     return file;
 }
 
-/// Zstandard cannot compress more than 128 KiB into a block of 4 bytes, and deflate no more than 1032 bytes into one, so
-/// a header that states more is wrong, and no memory is allocated for it.
+/// Zstandard cannot compress more than 128 KiB into a block of 4 bytes, and deflate no more than 1032 bytes into one.
+/// So a header that states more is wrong, and no memory is allocated for it.
 constexpr std::uint64_t k_zstd_max_ratio = 32768, k_zlib_max_ratio = 1032;
 
 Result<Bytes> undo_zlib(std::span<const std::uint8_t> packed, std::uint64_t bytes) {

@@ -18,6 +18,11 @@ struct EnvironmentOptions {
     /// Lat-long convention: default, usd, mitsuba, openexr, materialx, mod, or "centre=+X,right=+Z[,up=+Y]", or pbrt
     /// (the equal-area octahedral square). Empty: the convention that the file states, otherwise default.
     std::string latlong = "";
+    /// OpenEXR: the layer to read. Empty: the unnamed layer; else the one named rgba, rgb, beauty or combined, in any
+    /// case and after any prefix ("View Layer.Combined"); else the only one that has a colour. Otherwise a layer's
+    /// name, the end of only one layer's name after a dot, a channel's name, or the name, the view or the number (from
+    /// 0) of a part of a file with several.
+    std::string layer = "";
     Decode decode = Decode::automatic;  ///< of PNG, JPEG, and textures of eight bits a channel
     double rotate_y_deg = 0;            ///< turns the light about +Y: +X moves towards +Z
     /// The axis, in the coordinate system of the file's author, at the top of the image: +Y, +Z, ...
