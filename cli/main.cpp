@@ -7,8 +7,11 @@
 #include "cli/console/print.h"
 #include "cli/console/suggestion.h"
 
+#include <fcntl.h>
 #include <fmt/core.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <exception>
 #include <string>
 #include <vector>
@@ -65,7 +68,7 @@ int refuse(const std::string& word) {
 
 int run(const std::vector<std::string>& words) {
     if (words.empty()) {
-        print_lines(help(), stderr);
+        print_to_stderr(help());
         return exit_usage;
     }
     const bool wants_help = words[0] == "--help" || words[0] == "-h" || words[0] == "help";
@@ -85,15 +88,25 @@ int run(const std::vector<std::string>& words) {
     return refuse(name);
 }
 
+/// Opens /dev/null in place of standard streams that the caller closed: otherwise the first file that is opened would
+/// become one of them, and what is printed would go into it. Writing to the closed stdout stays an error.
+void open_closed_streams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF)
+            ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);  // the lowest number that is free
+}
+
 }  // namespace
 }  // namespace domelight::cli
 
 int main(int argc, char** argv) {
+    domelight::cli::open_closed_streams();
     domelight::remove_temporaries_on_signals();
     try {
         const int status = domelight::cli::run({argv + 1, argv + argc});
         // A full disk or a closed pipe behind stdout shows only now.
-        if (std::fflush(stdout) != 0) return domelight::cli::print_error({"results cannot be written", "stdout", ""});
+        if (std::fflush(stdout) != 0 || std::ferror(stdout))
+            return domelight::cli::print_error({"results cannot be written", "stdout", ""});
         return status;
     } catch (const std::bad_alloc&) {
         return domelight::cli::print_error({"not enough memory", "", "Ask for smaller maps, or fewer at once."});

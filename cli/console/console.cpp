@@ -29,7 +29,7 @@ Result<void> check_common_options(const CommonOptions& options) {
 int print_error(const Error& error, int otherwise) {
     const Error told = with_options(error);
     const Error shown{escaped(told.what), escaped(told.where), escaped(told.hint)};
-    fmt::print(stderr, "error: {}\n", shown.format());
+    print_to_stderr(fmt::format("error: {}\n", shown.format()));
     return told.where.starts_with("--") ? exit_usage : otherwise;
 }
 
@@ -47,8 +47,8 @@ std::optional<int> begin_command(Arguments& arguments, const std::vector<std::st
 void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options, const std::string& place) {
     if (options.quiet) return;
     for (const std::string& warning : warnings)
-        fmt::print(stderr, "warning: {}{}{}\n", escaped(place), place.empty() ? "" : ": ",
-                   escaped(with_options(warning)));
+        print_to_stderr(fmt::format("warning: {}{}{}\n", escaped(place), place.empty() ? "" : ": ",
+                                    escaped(with_options(warning))));
 }
 
 std::string clock_text(double seconds) {
@@ -63,7 +63,7 @@ ProgressBar::ProgressBar(std::string title, const CommonOptions& options)
       on_(!options.quiet && !options.json && isatty(STDERR_FILENO)) {}
 
 ProgressBar::~ProgressBar() {
-    if (!shown_.empty()) fmt::print(stderr, "\r\033[K");
+    if (!shown_.empty()) print_to_stderr("\r\033[K");
 }
 
 Progress ProgressBar::callback() {
@@ -91,8 +91,7 @@ bool ProgressBar::update(std::string_view stage, double done) {
         line = printable(line, std::size_t(window.ws_col) - 1);
     if (line == shown_) return true;
     shown_ = line;
-    fmt::print(stderr, "\r{}\033[K", line);
-    std::fflush(stderr);
+    print_to_stderr(fmt::format("\r{}\033[K", line));
     return true;
 }
 

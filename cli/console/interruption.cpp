@@ -54,7 +54,7 @@ bool Interruption::wanted() {
 }
 
 int Interruption::end(const std::string& what) {
-    fmt::print(stderr, "interrupted: {}\n", escaped(what));
+    print_to_stderr(fmt::format("interrupted: {}\n", escaped(what)));
     std::fflush(nullptr);
     restore();
     if (g_signal != 0) ::raise(g_signal);

@@ -1,5 +1,5 @@
 #pragma once
-// The only way to stdout for what a command says: whatever comes from outside is escaped here.
+// The only way to stdout and stderr for what a command says: whatever comes from outside is escaped here.
 
 #include "io/file/json.h"
 #include "io/file/printable.h"
@@ -34,7 +34,11 @@ void print(fmt::format_string<decltype(printed(std::declval<const Arguments&>())
 }
 
 /// Prints a text of several lines in which what comes from outside is escaped already.
-void print_lines(std::string_view text, std::FILE* to = stdout);
+void print_lines(std::string_view text);
+
+/// Prints the same to stderr. A stderr that cannot be written to (closed, a full disk) changes nothing else: there is
+/// nowhere to tell of it.
+void print_to_stderr(std::string_view text) noexcept;
 
 /// Prints the document that --json asks for.
 void print_document(const Json& json);

@@ -12,6 +12,7 @@
 #include "cli/console/print.h"
 #include "compare/picture_survey.h"
 #include "io/file/json.h"
+#include "io/file/path_inside.h"
 #include "io/file/sha256.h"
 
 #include <fmt/core.h>
@@ -250,11 +251,14 @@ void list_files(const Json& json, std::vector<std::pair<std::string, std::string
     for (const Json& element : json.elements()) list_files(element, files, depth + 1);
 }
 
-std::string file_state(const fs::path& file, const std::string& expected) {
+std::string file_state(const fs::path& folder, const std::string& name, const std::string& expected) {
     std::error_code failure;
-    if (!fs::exists(file, failure)) return "missing";
+    // A bake never lists such names, so nothing is said of what they lead to.
+    if (!path_inside(folder / name, folder, name)) return "not in the folder, not read";
+    if (!fs::exists(folder / name, failure)) return "missing";
+    if (!fs::is_regular_file(folder / name, failure)) return "not a file";
     if (expected.empty()) return "there";
-    const auto hash = sha256_file(file);
+    const auto hash = sha256_in_folder(folder, name);
     return !hash ? "unreadable" : *hash == expected ? "unchanged" : "changed";
 }
 
@@ -285,7 +289,8 @@ void print_levels(const Json& map) {
 int info_bake(const fs::path& folder, const InfoWords& w) {
     const fs::path file = folder / "manifest.json";
     const auto parsed = Json::read(file);
-    const Json manifest = parsed ? *parsed : Json();
+    if (!parsed) return print_error(parsed.error());
+    const Json& manifest = *parsed;
     if (!manifest.is_object() || !manifest.contains("source") || !manifest.contains("options"))
         return print_error({"is not a manifest that a bake wrote", file.string(), ""});
     std::vector<std::pair<std::string, std::string>> files;
@@ -294,7 +299,7 @@ int info_bake(const fs::path& folder, const InfoWords& w) {
     Json states = Json::array();
     bool whole = true;
     for (const auto& [name, hash] : files) {
-        const std::string state = file_state(folder / name, hash);
+        const std::string state = file_state(folder, name, hash);
         whole = whole && (state == "unchanged" || state == "there");
         states.push_back({{"file", name}, {"state", state}});
     }

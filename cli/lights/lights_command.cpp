@@ -12,10 +12,8 @@
 #include "cli/console/environment_options.h"
 #include "cli/console/output_endings.h"
 #include "cli/console/print.h"
-#include "io/file/file_reader.h"
 #include "io/file/json.h"
 #include "io/file/sha256.h"
-#include "io/image_reader.h"
 #include "preview/lights_sheet.h"
 #include "scene/gltf/gltf_lights_writer.h"
 
@@ -177,17 +175,6 @@ Result<void> write_text(const std::filesystem::path& file, const std::string& te
     return write_file_atomically(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-/// Whether the environment is in OpenEXR's own lat-long convention, because --latlong or the file itself says so. An
-/// .exr file can state it by an attribute, and an .hdr file cannot.
-bool in_openexr_convention(const LightsWords& w) {
-    if (!w.environment.latlong.empty()) return w.environment.latlong == "openexr";
-    if (w.environment_files.size() != 1) return false;
-    auto bytes = FileBytes::open(w.environment_files[0], w.environment.max_bytes);
-    if (!bytes) return false;
-    const auto image = open_image_reader(std::move(*bytes), {.layer = w.environment.layer});
-    return image && (*image)->facts().envmap == ImageFacts::Envmap::latlong;
-}
-
 Result<void> write_remainder(const std::filesystem::path& file, const Outcome& o, bool hdr, int threads) {
     if (hdr) return write_hdr(file, o.found.remainder.view(), threads);
     ExrWriteOptions exr;
@@ -250,14 +237,10 @@ int run(const LightsWords& w) {
     if (!picture) return print_error(picture.error().at(name));
     auto found = extract_lights(picture->image.view(), w.options, picture->world_to_source);
     if (!found) return print_error(found.error().at(name));
-    std::string hash;
-    if (!environment->files.empty()) {
-        auto computed = sha256_files(environment->files);
-        if (!computed) return print_error(computed.error());
-        hash = *computed;
-    }
-    Outcome outcome{std::filesystem::path(name).filename().string(), hash, "", "", *environment, *picture, *found};
-    outcome.in_openexr_convention = environment->projection == "latlong" && in_openexr_convention(w);
+    const auto hash = environment_sha256(*environment);
+    if (!hash) return print_error(hash.error());
+    Outcome outcome{std::filesystem::path(name).filename().string(), *hash, "", "", *environment, *picture, *found};
+    outcome.in_openexr_convention = environment->convention == "openexr";
     const auto json = write_all(w, outcome);
     if (!json) return print_error(json.error());
     print_warnings(environment->report().warnings, w.common, name);

@@ -4,6 +4,7 @@
 #include "domelight/base/parallel.h"
 #include "domelight/base/version.h"
 #include "domelight/filtering/resample/reproject.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/io/file/atomic_file.h"
 #include "domelight/io/write_image.h"
 
@@ -379,7 +380,9 @@ Result<BakeReport> bake(const Environment& environment, const BakeOptions& optio
 
     Result<std::string> source_hash = std::string();
     std::jthread hashing;
-    if (options.hashes && !files.empty()) hashing = std::jthread([&] { source_hash = sha256_files(files); });
+    if (options.hashes && !files.empty())
+        hashing = std::jthread(
+            [&] { source_hash = files == environment.files ? environment_sha256(environment) : sha256_files(files); });
 
     FilterJob job(*plans, environment, options);
     {

@@ -196,7 +196,7 @@ bool files_match(const Json& json, const std::filesystem::path& folder, int dept
     if (depth > 16) return false;  // not a manifest of ours
     if (json.is_object() && json.contains("file") && json.contains("sha256")) {
         if (!json["file"].is_string() || !json["sha256"].is_string()) return false;
-        const auto hash = sha256_file(folder / json["file"].get<std::string>());
+        const auto hash = sha256_in_folder(folder, json["file"].get<std::string>());
         if (!hash || *hash != json["sha256"].get<std::string>()) return false;
     }
     for (const auto& [key, value] : json.items())

@@ -122,6 +122,8 @@ def gltf_files():
         "leaves-folder.gltf": gltf(buffers=[{"byteLength": 36, "uri": "../../../../../../etc/passwd"}]),
         "faces-huge.ply": b"ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n"
                           b"property float z\nend_header\n" + bytes(64),
+        "faces-of-no-bytes.ply": b"ply\nformat ascii 1.0\nelement face 9999999999999\nend_header\n",
+        "elements-of-no-bytes.ply": b"ply\nformat binary_little_endian 1.0\nelement other 9999999999999\nend_header\n",
         "index-huge.obj": b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4000000000\n",
     }
 

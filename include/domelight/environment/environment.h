@@ -45,6 +45,10 @@ class Environment {
     std::string format;                        ///< "Radiance HDR", "OpenEXR", "PNG", "JPEG", "sky", ...
     std::string layer;                         ///< OpenEXR: the layer that was read; empty: the unnamed one
     std::string projection;                    ///< "latlong", "cube", or the name of another one in projections.h
+    std::string convention;                    ///< of a lat-long file: "default", "usd", "openexr", ...
+    /// The SHA-256 of the file as it was read, in 64 hexadecimal digits; null where the files have to be read again
+    /// for it (environment_sha256() does that).
+    std::function<std::string()> sha256;
     int width = 0, height = 0;  ///< texels of the image as it is stored; of one face where a cube is six images
     /// Where to look in the source for the light that arrives from a world direction: the convention, the up axis and
     /// the rotation together (orthogonal, may mirror). The source's own frame is that of latlong_direction() for rows,

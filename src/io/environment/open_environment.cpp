@@ -5,6 +5,7 @@
 #include "base/field_place.h"
 #include "io/environment/cube_input.h"
 #include "io/environment/cube_texture_reader.h"
+#include "io/file/sha256.h"
 #include "io/hdr/radiance_reader.h"
 #include "io/image_reader.h"
 #include "projection/latlong_convention.h"
@@ -196,8 +197,9 @@ ReaderOptions reader_options(const EnvironmentOptions& options) {
     return {options.decode, options.max_bytes, options.threads, options.layer};
 }
 
+/// One of several files.
 Result<std::unique_ptr<ImageReader>> open_file(const std::filesystem::path& file, const EnvironmentOptions& options) {
-    auto bytes = FileBytes::open(file, options.max_bytes);
+    auto bytes = FileBytes::open(file, options.max_bytes, FileKinds::regular);
     if (!bytes) return bytes.error();
     auto image = open_image_reader(std::move(*bytes), reader_options(options));
     if (!image) return image.error().at(file.string());
@@ -275,6 +277,7 @@ Result<Environment> open_latlong(const std::filesystem::path& file, std::shared_
         facts.width, facts.height,
         [source](std::shared_ptr<RepairReport> report) { return source->open(std::move(report)); }, facts.warnings);
     environment.world_to_source = convention->world_to_default() * request.turn;
+    environment.convention = name;
     return with_facts(std::move(environment), {file}, facts);
 }
 
@@ -386,14 +389,18 @@ Result<Environment> open_gltf_light(const std::filesystem::path& file, const Req
     return environment;
 }
 
-Result<Environment> open_picture(const std::filesystem::path& file, const Request& request) {
-    auto bytes = FileBytes::open(file, request.options.max_bytes);
-    if (!bytes) return bytes.error();
-    const std::string container = texture_container((*bytes)->bytes());
+Result<Environment> open_picture(const std::filesystem::path& file, std::shared_ptr<const FileBytes> bytes,
+                                 const Request& request) {
+    const std::string container = texture_container(bytes->bytes());
+    const bool gltf = container.empty() && may_be_gltf_image_light(bytes->bytes());
+    if ((gltf || !container.empty()) && !bytes->regular())
+        return Error{
+            fmt::format("is a pipe with {}, which is read from regular files only", gltf ? "a glTF file" : "a texture"),
+            "", "Write it to a file first."};
     if (!container.empty() && !request.options.layer.empty()) return no_layers();
     if (!container.empty()) return open_texture(file, container, request);
-    if (may_be_gltf_image_light((*bytes)->bytes())) return open_gltf_light(file, request);
-    auto image = open_image_reader(*bytes, reader_options(request.options));
+    if (gltf) return open_gltf_light(file, request);
+    auto image = open_image_reader(bytes, reader_options(request.options));
     if (!image) return image.error();
     const ImageFacts facts = (*image)->facts();
     if (request.other) {
@@ -404,7 +411,7 @@ Result<Environment> open_picture(const std::filesystem::path& file, const Reques
     }
     const auto layout = choose_layout(facts, request.options.projection);
     if (!layout) return layout.error();
-    if (!*layout) return open_latlong(file, *std::move(bytes), *std::move(image), request);
+    if (!*layout) return open_latlong(file, std::move(bytes), *std::move(image), request);
 
     const bool strip = **layout != CubeLayout::horizontal_cross && **layout != CubeLayout::vertical_cross;
     const int size = strip ? std::min(facts.width, facts.height) : std::max(facts.width, facts.height) / 4;
@@ -477,9 +484,19 @@ Result<Environment> open_environment(const std::vector<std::filesystem::path>& f
                          files[0].string(), hint_for_folder(files[0])};
         return open_faces(faces, *request);
     }
-    Result<Environment> environment = open_picture(files[0], *request);
+    const auto bytes = FileBytes::open(files[0], options.max_bytes);
+    if (!bytes) return bytes.error();
+    Result<Environment> environment = open_picture(files[0], *bytes, *request);
     if (!environment) return environment.error().at(files[0].string());
+    // The rows of a lat-long image are decoded from these bytes again and again, so they are kept in any case.
+    if (!(*bytes)->regular() || environment->storage() == Environment::Storage::rows)
+        environment->sha256 = [bytes = *bytes] { return sha256(bytes->bytes()); };
     return environment;
+}
+
+Result<std::string> environment_sha256(const Environment& environment) {
+    if (environment.sha256) return environment.sha256();
+    return environment.files.empty() ? Result<std::string>(std::string()) : sha256_files(environment.files);
 }
 
 }  // namespace domelight

@@ -1,13 +1,15 @@
 #include "io/file/file_reader.h"
 
+#include "io/file/byte_source.h"
+
 #include <fcntl.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <string>
+#include <utility>
 
 namespace domelight {
 
@@ -26,8 +28,8 @@ Error system_error(const std::filesystem::path& file, const char* doing) {
 }
 
 /// Reads everything from a pipe or device, up to `max_bytes`.
-Result<std::vector<std::uint8_t>> drain(int fd, const std::filesystem::path& file, std::int64_t max_bytes) {
-    std::vector<std::uint8_t> all;
+Result<Bytes> drain(int fd, const std::filesystem::path& file, std::int64_t max_bytes) {
+    Bytes all;
     std::uint8_t block[1 << 16];
     for (;;) {
         const ssize_t n = read(fd, block, sizeof block);
@@ -40,52 +42,55 @@ Result<std::vector<std::uint8_t>> drain(int fd, const std::filesystem::path& fil
     }
 }
 
+/// Reads a regular file of `size` bytes.
+Result<Bytes> read_whole(int fd, const std::filesystem::path& file, std::int64_t size) {
+    if (size > k_most_file_bytes)
+        return Error{
+            "has " + std::to_string(size) + " bytes, more than the limit of " + std::to_string(k_most_file_bytes),
+            file.string(), ""};
+    Bytes all(static_cast<std::size_t>(size));
+    for (std::int64_t at = 0; at < size;) {
+        const ssize_t n = pread(fd, all.data() + at, std::size_t(size - at), off_t(at));
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return system_error(file, "reading");
+        if (n == 0)
+            return Error{
+                "became shorter while it was read: " + std::to_string(at) + " bytes of " + std::to_string(size),
+                file.string(), "Another program writes to it: try again when it has ended."};
+        at += n;
+    }
+    return all;
+}
+
 }  // namespace
 
-Result<std::shared_ptr<const FileBytes>> FileBytes::open(const std::filesystem::path& file, std::int64_t max_bytes) {
-    const Descriptor descriptor{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+Result<std::shared_ptr<const FileBytes>> FileBytes::open(const std::filesystem::path& file, std::int64_t max_bytes,
+                                                         FileKinds kinds) {
+    // O_NONBLOCK: opening a pipe that is refused must not wait for its writer.
+    const int flags = kinds == FileKinds::regular ? O_RDONLY | O_CLOEXEC | O_NONBLOCK : O_RDONLY | O_CLOEXEC;
+    const Descriptor descriptor{::open(file.c_str(), flags)};
     if (descriptor.fd < 0) return Error{errno == ENOENT ? "no such file" : std::strerror(errno), file.string(), ""};
     struct stat about {};
     if (fstat(descriptor.fd, &about) != 0) return system_error(file, "stat");
-    if (S_ISDIR(about.st_mode)) return Error{"is a folder, not an image", file.string(), ""};
+    if (S_ISDIR(about.st_mode)) return Error{"is a folder, not a file", file.string(), ""};
+    const bool regular = S_ISREG(about.st_mode);
+    if (!regular && kinds == FileKinds::regular) return Error{"is not a regular file", file.string(), ""};
 
+    // Files of the system, as in /proc, state no size.
+    const bool whole = regular && about.st_size > 0;
+    auto bytes = whole ? read_whole(descriptor.fd, file, about.st_size) : drain(descriptor.fd, file, max_bytes);
+    if (!bytes) return bytes.error();
+    if (bytes->empty()) return Error{"file is empty", file.string(), ""};
     std::shared_ptr<FileBytes> result(new FileBytes);
-    if (S_ISREG(about.st_mode) && about.st_size > 0) {
-        void* mapping = mmap(nullptr, std::size_t(about.st_size), PROT_READ, MAP_PRIVATE, descriptor.fd, 0);
-        if (mapping != MAP_FAILED) {
-            result->mapping_ = mapping;
-            result->data_ = static_cast<const std::uint8_t*>(mapping);
-            result->size_ = std::size_t(about.st_size);
-        }
-    }
-    if (!result->mapping_) {
-        Result<std::vector<std::uint8_t>> bytes = drain(descriptor.fd, file, max_bytes);
-        if (!bytes) return bytes.error();
-        result->memory_ = std::move(*bytes);
-        result->data_ = result->memory_.data();
-        result->size_ = result->memory_.size();
-    }
-    if (result->size_ == 0) return Error{"file is empty", file.string(), ""};
+    result->memory_ = *std::move(bytes);
+    result->regular_ = regular;
     return std::shared_ptr<const FileBytes>(std::move(result));
 }
 
 std::shared_ptr<const FileBytes> FileBytes::from_memory(std::vector<std::uint8_t> bytes) {
     std::shared_ptr<FileBytes> result(new FileBytes);
-    result->memory_ = std::move(bytes);
-    result->data_ = result->memory_.data();
-    result->size_ = result->memory_.size();
+    result->memory_.assign(bytes.begin(), bytes.end());
     return result;
-}
-
-FileBytes::~FileBytes() {
-    if (mapping_) munmap(mapping_, size_);
-}
-
-std::size_t FileBytes::release(std::size_t first, std::size_t end) const {
-    first = first / k_release_step * k_release_step;
-    end = end / k_release_step * k_release_step;
-    if (mapping_ && end > first) madvise(static_cast<char*>(mapping_) + first, end - first, MADV_DONTNEED);
-    return std::max(first, end);
 }
 
 }  // namespace domelight

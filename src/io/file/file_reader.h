@@ -1,8 +1,8 @@
 #pragma once
 
+#include "domelight/base/large_allocator.h"
 #include "domelight/base/result.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -11,32 +11,37 @@
 
 namespace domelight {
 
-/// The bytes of a whole file, mapped into memory where that is possible, so that a reader touches only what it decodes.
+/// The largest file that is read, in bytes. (OpenEXR's 32768 x 16384 texels of 32-bit floats are 6.4e9.)
+inline constexpr std::int64_t k_most_file_bytes = std::int64_t(8) << 30;
+
+/// What may stand behind a file's name.
+enum class FileKinds {
+    any,     ///< also a pipe or a device, which can be read only once: for names that the user gives
+    regular  ///< for names that stand in files, and for what is read again later
+};
+
+/// The bytes of a whole file, as they were when it was opened. Another program may change or shorten the file
+/// afterwards: the bytes stay as they are.
+///
+/// It is read and not mapped into memory: touching a page that a mapped file has lost ends the program (SIGBUS), and
+/// what has been checked in a mapping may have changed when it is used. The bakes of a 4096 x 2048 .hdr file (34 MB) and
+/// of a 16384 x 8192 .exr file (805 MB) take as long as with mapped files, and at most the file's size more memory.
 class FileBytes {
   public:
-    /// Errors: missing, not readable, empty, a folder; something that cannot be mapped (a pipe) and is over
-    /// `max_bytes`.
-    static Result<std::shared_ptr<const FileBytes>> open(const std::filesystem::path& file, std::int64_t max_bytes);
+    /// Errors: missing, not readable, empty, a folder; larger than k_most_file_bytes; a file that becomes shorter while
+    /// it is read; a pipe or a device that is over `max_bytes`, or that `kinds` rules out. Throws std::bad_alloc.
+    static Result<std::shared_ptr<const FileBytes>> open(const std::filesystem::path& file, std::int64_t max_bytes,
+                                                         FileKinds kinds = FileKinds::any);
     static std::shared_ptr<const FileBytes> from_memory(std::vector<std::uint8_t> bytes);
-    ~FileBytes();
-    FileBytes(const FileBytes&) = delete;
-    FileBytes& operator=(const FileBytes&) = delete;
 
-    std::span<const std::uint8_t> bytes() const { return {data_, size_}; }
-
-    /// Says that bytes first .. end - 1 are not needed for now: their pages leave this process (they would count as its
-    /// memory otherwise) and come back from the system's cache when they are touched again. Offsets are rounded down to
-    /// a multiple of k_release_step; returns `end` so rounded, from where the next call may go on.
-    std::size_t release(std::size_t first, std::size_t end) const;
-    /// Large enough for releases to cost nothing, small enough for little to be held.
-    static constexpr std::size_t k_release_step = std::size_t(8) << 20;
+    std::span<const std::uint8_t> bytes() const { return memory_; }
+    /// Whether they came from a regular file, which can be read again.
+    bool regular() const { return regular_; }
 
   private:
     FileBytes() = default;
-    const std::uint8_t* data_ = nullptr;
-    std::size_t size_ = 0;
-    void* mapping_ = nullptr;  // null: the bytes are in memory_
-    std::vector<std::uint8_t> memory_;
+    std::vector<std::uint8_t, LargeAllocator<std::uint8_t>> memory_;
+    bool regular_ = false;
 };
 
 }  // namespace domelight

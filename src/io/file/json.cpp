@@ -1,8 +1,8 @@
 #include "io/file/json.h"
 
+#include "io/file/file_reader.h"
+
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
 
@@ -195,9 +195,15 @@ Result<Json> Json::parse(std::string_view text) {
 }
 
 Result<Json> Json::read(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return Error{"cannot be read", file.string(), ""};
-    return parse(std::string(std::istreambuf_iterator<char>(stream), {}));
+    constexpr std::uintmax_t k_most_bytes = std::uintmax_t(1) << 28;
+    std::error_code failure;
+    if (const auto size = std::filesystem::file_size(file, failure); !failure && size > k_most_bytes)
+        return Error{"is larger than 256 MiB", file.string(), ""};
+    const auto bytes = FileBytes::open(file, std::int64_t(k_most_bytes), FileKinds::regular);
+    if (!bytes) return bytes.error();
+    const auto all = (*bytes)->bytes();
+    auto json = parse({reinterpret_cast<const char*>(all.data()), all.size()});
+    return json ? json : json.error().at(file.string());
 }
 
 }  // namespace domelight

@@ -111,7 +111,7 @@ class Json {
     std::string dump(int indent = -1) const;
     /// Errors: it is not JSON (the error says where); arrays and objects nested more than 256 deep.
     static Result<Json> parse(std::string_view text);
-    /// The same of a file's text; a file that cannot be read is an error, too.
+    /// The same of a regular file of at most 256 MiB; a file that cannot be read is an error, too. Errors name it.
     static Result<Json> read(const std::filesystem::path& file);
 
     friend bool operator==(const Json& a, const Json& b) { return a.value_ == b.value_; }

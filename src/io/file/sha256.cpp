@@ -1,10 +1,11 @@
 #include "io/file/sha256.h"
 
+#include "io/file/byte_source.h"
+#include "io/file/path_inside.h"
+
 #include <openssl/evp.h>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
+#include <algorithm>
 #include <vector>
 
 namespace domelight {
@@ -50,15 +51,21 @@ Result<std::string> sha256_files(std::span<const std::filesystem::path> files) {
     Sha256 hash;
     std::vector<std::uint8_t> buffer(std::size_t(1) << 20);
     for (const auto& file : files) {
-        const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
-        if (!stream) return Error{std::string("cannot be opened: ") + std::strerror(errno), file.string(), ""};
-        std::setvbuf(stream.get(), nullptr, _IONBF, 0);
-        for (std::size_t n; (n = std::fread(buffer.data(), 1, buffer.size(), stream.get())) > 0;)
-            hash.add({buffer.data(), n});
-        if (std::ferror(stream.get()))
-            return Error{std::string("cannot be read: ") + std::strerror(errno), file.string(), ""};
+        auto source = FileSource::open(file);
+        if (!source) return source.error();
+        for (std::uint64_t at = 0; at < source->size(); at += buffer.size()) {
+            const auto piece = std::span(buffer).first(std::min<std::uint64_t>(buffer.size(), source->size() - at));
+            if (auto ok = source->read(at, piece, "content"); !ok) return ok.error().at(file.string());
+            hash.add(piece);
+        }
     }
     return hash.finish();
+}
+
+Result<std::string> sha256_in_folder(const std::filesystem::path& folder, const std::string& name) {
+    const auto file = path_inside(folder / name, folder, name);
+    if (!file) return file.error();
+    return sha256_file(*file);
 }
 
 }  // namespace domelight

@@ -29,9 +29,13 @@ class Sha256 {
 
 std::string sha256(std::span<const std::uint8_t> bytes);
 
-/// Hash of a file's content, read in pieces; of several files: of their contents one after the other. Errors name the
-/// file.
+/// Hash of a regular file's content, read in pieces; of several files: of their contents one after the other. Errors
+/// name the file: not there, not readable, a pipe or a device.
 Result<std::string> sha256_file(const std::filesystem::path& file);
 Result<std::string> sha256_files(std::span<const std::filesystem::path> files);
+
+/// The same of the file that a file in `folder`, such as a manifest, calls `name`. Errors also: it is not in the folder
+/// (path_inside).
+Result<std::string> sha256_in_folder(const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace domelight

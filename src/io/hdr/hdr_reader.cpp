@@ -172,7 +172,6 @@ Result<bool> HdrReader::read_scanlines(ImageView<float> rows) {
         resolve_threads(threads_) == 1 && !header_.flip_y ? read_in_order(rows) : read_by_index(rows);
     if (!in_range) return in_range;
     next_row_ += rows.height;
-    if (!header_.flip_y) released_ = bytes_->release(released_, offsets_[next_row_]);
     return in_range;
 }
 

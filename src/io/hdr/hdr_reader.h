@@ -33,11 +33,10 @@ class HdrReader : public ImageReader {
     HdrHeader header_;
     int threads_ = 0;
     int next_row_ = 0;
-    std::size_t released_ = 0;  ///< bytes before it have been given back to the system
     std::array<float, 3> scale_{1, 1, 1};
-    std::vector<float> curve_;  ///< where the header has a GAMMA: the light of each mantissa, for each exponent
-    int brightest_exponent_ = 0;         // exponents up to this one give values within k_largest_radiance
-    std::vector<std::size_t> offsets_;   // where the scanlines found so far start, and where the last of them ends
+    std::vector<float> curve_;          ///< where the header has a GAMMA: the light of each mantissa, for each exponent
+    int brightest_exponent_ = 0;        // exponents up to this one give values within k_largest_radiance
+    std::vector<std::size_t> offsets_;  // where the scanlines found so far start, and where the last of them ends
     std::vector<std::uint8_t> columns_;  // four planes of the whole image, where scanlines are columns
 };
 

@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 namespace domelight {
 
@@ -53,11 +52,10 @@ float level_roughness(const Json& level, Lobe lobe) {
 }
 
 Result<Json> read_json(const std::filesystem::path& file) {
-    if (!std::ifstream(file))
-        return Error{"cannot be read", file.string(),
-                     "The folder must be one that `domelight bake` wrote for the generic engine."};
     auto json = Json::read(file);
-    if (!json) return Error{"is not JSON", file.string(), ""};
+    if (!json)
+        return Error{json.error().what, file.string(),
+                     "The folder must be one that `domelight bake` wrote for the generic engine."};
     return json;
 }
 

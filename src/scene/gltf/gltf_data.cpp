@@ -80,7 +80,7 @@ Result<std::shared_ptr<const FileBytes>> GltfData::resource(const std::string& u
     }
     const auto path = path_of_uri(uri, folder_);
     if (!path) return path.error();
-    auto file = FileBytes::open(*path, budget_->left());
+    auto file = FileBytes::open(*path, budget_->left(), FileKinds::regular);
     if (!file) return Error{printable(uri, 80) + ": " + file.error().what, "", file.error().hint};
     return file;
 }

@@ -1,5 +1,6 @@
 #include "scene/gltf/gltf_uri.h"
 
+#include "io/file/path_inside.h"
 #include "io/file/printable.h"
 
 #include <algorithm>
@@ -72,24 +73,6 @@ Result<std::filesystem::path> path_of_uri(std::string_view uri, const std::files
     if (name.empty() || scheme || relative.is_absolute() || name.find('\0') != name.npos)
         return Error{shown + ": not the name of a file in the folder", "", "Only files beside the scene are read."};
     return path_inside(folder / relative, folder, uri);
-}
-
-Result<std::filesystem::path> path_inside(const std::filesystem::path& path, const std::filesystem::path& folder,
-                                          std::string_view shown) {
-    std::error_code failed;
-    // Links are followed: one that leads out of the folder leaves it as ".." does. From absolute paths: a relative one
-    // that does not exist at all would stay relative.
-    const auto resolved = [&](const std::filesystem::path& p) {
-        const std::filesystem::path absolute = std::filesystem::absolute(p, failed);
-        return failed ? p : std::filesystem::weakly_canonical(absolute, failed);
-    };
-    const std::filesystem::path root = resolved(folder.empty() ? "." : folder);
-    const std::filesystem::path found = failed ? root : resolved(path);
-    if (failed) return Error{printable(shown, 80) + ": " + failed.message(), "", ""};
-    if (std::mismatch(root.begin(), root.end(), found.begin(), found.end()).first != root.end())
-        return Error{printable(shown, 80) + ": leaves the folder of the scene", "",
-                     "Only files beside the scene are read."};
-    return found;
 }
 
 }  // namespace domelight

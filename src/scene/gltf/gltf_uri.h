@@ -18,8 +18,4 @@ Result<std::vector<std::uint8_t>> decode_data_uri(std::string_view uri);
 /// by a symbolic link).
 Result<std::filesystem::path> path_of_uri(std::string_view uri, const std::filesystem::path& folder);
 
-/// `path` made canonical. Errors: it does not lie in `folder`. `shown`: what messages call it.
-Result<std::filesystem::path> path_inside(const std::filesystem::path& path, const std::filesystem::path& folder,
-                                          std::string_view shown);
-
 }  // namespace domelight

@@ -1,5 +1,6 @@
 #include "scene/mesh/mtl_reader.h"
 
+#include "io/file/path_inside.h"
 #include "io/file/printable.h"
 #include "io/file/text_fields.h"
 #include "io/image_reader.h"
@@ -70,7 +71,7 @@ SceneTexture MtlReader::texture(std::string_view rest) {
             {name, [name, folder = folder_, root = root_]() -> Result<std::shared_ptr<const FileBytes>> {
                  const auto path = path_inside(folder / name, root, name);
                  if (!path) return path.error();
-                 auto file = FileBytes::open(*path, std::int64_t(1) << 30);
+                 auto file = FileBytes::open(*path, std::int64_t(1) << 30, FileKinds::regular);
                  return file ? file : Error{printable(name, 80) + ": " + file.error().what, "", file.error().hint};
              }});
     return texture;

@@ -1,5 +1,6 @@
 #include "domelight/base/parallel.h"
 
+#include "io/file/path_inside.h"
 #include "io/file/printable.h"
 #include "io/file/text_fields.h"
 #include "io/image_reader.h"
@@ -153,7 +154,7 @@ Result<void> ObjReader::library(std::string_view name) {
     const std::string file(name);
     const auto path = path_inside(folder_ / file, folder_, file);
     if (!path) return path.error();
-    auto bytes = FileBytes::open(*path, options_.max_bytes);
+    auto bytes = FileBytes::open(*path, options_.max_bytes, FileKinds::regular);
     if (!bytes) {
         scene_.warnings.push_back(
             fmt::format("{}: {}: its materials are left out", printable(name, 80), bytes.error().what));

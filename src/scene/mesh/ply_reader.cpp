@@ -65,13 +65,14 @@ class PlyValues {
   public:
     PlyValues(std::string_view rest, Format format) : rest_(rest), format_(format) {}
 
-    /// Whether the file can contain so many entries of an element.
+    /// Whether the file can contain so many entries of an element. Entries without properties take no bytes: a header
+    /// could state any number of them.
     bool holds(const Element& element) const {
         std::size_t least = 0;
         for (const Property& p : element.properties)
             least += format_ == Format::ascii ? 2 : bytes_of(p.count_type == Type::none ? p.type : p.count_type);
         // The last value of a text file need not be followed by a blank.
-        return least == 0 || element.count <= (rest_.size() + 1) / least;
+        return least == 0 ? element.count == 0 : element.count <= (rest_.size() + 1) / least;
     }
     bool next(Type type, double& value) {
         if (format_ == Format::ascii) return parse_number(take_word(rest_), value);
@@ -279,7 +280,6 @@ Result<void> PlyReader::read_faces(const Element& element, PlyValues& values) {
 }
 
 Result<void> PlyReader::skip(const Element& element, PlyValues& values) {
-    if (element.properties.empty()) return {};
     for (std::uint64_t i = 0; i < element.count; ++i)
         for (const Property& p : element.properties) {
             double length = 1, value = 0;

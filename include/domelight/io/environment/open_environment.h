@@ -39,6 +39,11 @@ struct EnvironmentOptions {
 Result<Environment> open_environment(const std::vector<std::filesystem::path>& files,
                                      const EnvironmentOptions& options = {});
 
+/// The SHA-256 of the contents of an environment's files, one after the other, in 64 hexadecimal digits: of a lat-long
+/// image and of a pipe as they were read, of others by reading them once more. Empty where there are no files.
+/// Errors name the file: it cannot be read any more.
+Result<std::string> environment_sha256(const Environment& environment);
+
 /// Whether a picture of this size is taken for an environment where nothing else is said: twice as wide as high (a
 /// lat-long map), or a cross or strip of cube faces (4:3, 3:4, 6:1 or 1:6).
 bool has_environment_shape(int width, int height);
