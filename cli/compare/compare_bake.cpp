@@ -2,6 +2,7 @@
 
 #include "domelight/base/version.h"
 #include "domelight/compare/bake_audit.h"
+#include "domelight/compare/read_error.h"
 #include "domelight/engines/engine.h"
 #include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"
@@ -33,6 +34,7 @@ struct Bake {
     std::string format;
     std::string stated_by;  ///< who says which roughness the levels have
     Lobe lobe = Lobe::ggx;
+    std::function<double(double)> level_of;  ///< by --for; empty: linear between the levels
 };
 
 /// "0 0.25 0.5" or "0,0.25,0.5": one number from 0 to `most` a level, else nothing.
@@ -140,6 +142,9 @@ Result<Bake> read_bake(const BakeWords& w, int threads) {
     for (int l = 0; l < count; ++l)
         bake->levels[std::size_t(l)].roughness = (*engine)->roughness(l, count, bake->levels[0].cube.size());
     bake->stated_by = w.engine + "'s curve";
+    bake->level_of = [engine = *engine, count, size = bake->levels[0].cube.size()](double roughness) {
+        return level_of_roughness(*engine, roughness, count, size);
+    };
     return bake;
 }
 
@@ -151,6 +156,25 @@ std::string convention_of(const Mat3& ours_from_theirs, const Mat3& world_to_sou
         if (const auto convention = latlong_convention(name); convention && convention->world_to_default() == read)
             return name;
     return "";
+}
+
+/// The bake as a shader reads it; nothing where it was not asked for, or where no orientation fits.
+Result<std::optional<ReadErrors>> read_errors_of(const BakeWords& w, const Bake& bake, const BakeAudit& audit,
+                                                 const Environment& environment, int threads) {
+    if (!w.as_read || audit.orientation.error > AuditOptions{}.same) return std::optional<ReadErrors>();
+    ReadChain chain;
+    chain.lobe = bake.lobe;
+    chain.level_of = bake.level_of;
+    chain.map_from_world = audit.orientation.ours_from_theirs.transposed();
+    for (std::size_t l = 0; l < bake.levels.size(); ++l) {
+        chain.levels.emplace_back(bake.levels[l].cube);
+        chain.roughness.push_back(bake.levels[l].roughness.value_or(audit.levels[l].roughness));
+    }
+    ReadErrorOptions options;
+    options.threads = threads;
+    auto errors = measure_as_read(chain, environment, options);
+    if (!errors) return errors.error().at("--as-read");
+    return std::optional(*std::move(errors));
 }
 
 // --- telling ---
@@ -180,32 +204,46 @@ Json level_json(int index, const LevelAudit& l) {
     return json;
 }
 
-void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, const std::string& as_convention,
-                std::vector<std::string> warnings) {
+Json read_json(const ReadErrorAt& at) {
+    return {
+        {"roughness", at.roughness}, {"level", at.level}, {"relative_rmse", at.relative_rmse}, {"largest", at.largest}};
+}
+
+Json as_read_json(const ReadErrors& errors) {
+    Json levels = Json::array(), between = Json::array();
+    for (const ReadErrorAt& at : errors.levels) levels.push_back(read_json(at));
+    for (const ReadErrorAt& at : errors.between) between.push_back(read_json(at));
+    return {
+        {"relative_rmse", errors.relative_rmse}, {"largest", errors.largest}, {"levels", levels}, {"between", between}};
+}
+
+void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, const std::optional<ReadErrors>& as_read,
+                const std::string& as_convention, std::vector<std::string> warnings) {
     warnings.insert(warnings.end(), audit.notes.begin(), audit.notes.end());
     const CubeOrientation& o = audit.orientation;
     Json matrix = Json::array(), levels = Json::array();
     for (const Vec3d& row : o.ours_from_theirs.row) matrix.push_back({row.x, row.y, row.z});
     for (std::size_t l = 0; l < audit.levels.size(); ++l) levels.push_back(level_json(int(l), audit.levels[l]));
-    const Json json{{"version", version()},
-                    {"kind", "audit"},
-                    {"bake", w.bake},
-                    {"format", bake.format},
-                    {"env", w.env},
-                    {"verdict", audit.verdict},
-                    {"of_source", audit.of_source},
-                    {"within", audit.within},
-                    {"lobe", name_of(audit.lobe)},
-                    {"orientation",
-                     {{"words", o.words},
-                      {"ours_from_theirs", matrix},
-                      {"latlong", as_convention.empty() ? Json() : Json(as_convention)},
-                      {"certain", o.certain},
-                      {"error", o.error},
-                      {"next_error", o.next_error}}},
-                    {"roughness_stated_by", bake.stated_by},
-                    {"levels", levels},
-                    {"warnings", with_options(warnings)}};
+    Json json{{"version", version()},
+              {"kind", "audit"},
+              {"bake", w.bake},
+              {"format", bake.format},
+              {"env", w.env},
+              {"verdict", audit.verdict},
+              {"of_source", audit.of_source},
+              {"within", audit.within},
+              {"lobe", name_of(audit.lobe)},
+              {"orientation",
+               {{"words", o.words},
+                {"ours_from_theirs", matrix},
+                {"latlong", as_convention.empty() ? Json() : Json(as_convention)},
+                {"certain", o.certain},
+                {"error", o.error},
+                {"next_error", o.next_error}}},
+              {"roughness_stated_by", bake.stated_by},
+              {"levels", levels},
+              {"warnings", with_options(warnings)}};
+    if (as_read) json["as_read"] = as_read_json(*as_read);
     print_document(json);
 }
 
@@ -276,6 +314,17 @@ void print_text(const BakeWords& w, const Bake& bake, const BakeAudit& audit, co
     if (stated) print("  stated        by {}; errors there, at scale 1\n", bake.stated_by);
 }
 
+void print_as_read(const Bake& bake, const ReadErrors& errors) {
+    print("\n  as a shader reads it, between texels{}\n", bake.levels.size() > 1 ? " and between levels" : "");
+    print("  {:>9}  {:>6}  {:>8}  {:>8}\n", "roughness", "level", "RMSE", "largest");
+    const auto row = [](const ReadErrorAt& at) {
+        print("  {:>9.3f}  {:>6.2f}  {:>8}  {:>8}\n", at.roughness, at.level, percent(at.relative_rmse),
+              percent(at.largest));
+    };
+    for (const ReadErrorAt& at : errors.levels) row(at);
+    print("  {:>9}  {:>6}  {:>8}  {:>8}\n", "0.1 to 1", "all", percent(errors.relative_rmse), percent(errors.largest));
+}
+
 }  // namespace
 
 void add_bake_options(Arguments& a, BakeWords& w) {
@@ -297,6 +346,9 @@ void add_bake_options(Arguments& a, BakeWords& w) {
         "the environment");
     a.integer("--texels", "N", w.texels,
               "texels compared in each level, 96 to 10000000, a quarter of them the brightest (6144)");
+    a.flag("--as-read", w.as_read,
+           "also measure what a shader reads, between texels and between levels, in random directions for random "
+           "roughnesses from 0.1 to 1; between levels by the curve of --for, otherwise linearly in the roughness");
     add_environment_options(a, w.environment);
 }
 
@@ -327,13 +379,17 @@ int compare_bake(const BakeWords& w, const CommonOptions& common) {
         audit = audit_bake(bake->levels, *environment, audit_options);
     }
     if (!audit) return print_error(audit.error().at(w.bake[0]));
+    const auto as_read = read_errors_of(w, *bake, *audit, *environment, threads);
+    if (!as_read) return print_error(as_read.error());
     print_warnings(environment->report().warnings, common, join(w.env, " "));
     const std::string convention =
         environment->cube() ? "" : convention_of(audit->orientation.ours_from_theirs, environment->world_to_source);
     if (common.json)
-        print_json(w, *bake, *audit, convention, environment->report().warnings);
-    else if (!common.quiet)
+        print_json(w, *bake, *audit, *as_read, convention, environment->report().warnings);
+    else if (!common.quiet) {
         print_text(w, *bake, *audit, convention);
+        if (*as_read) print_as_read(*bake, **as_read);
+    }
     return audit->passed() ? exit_done : exit_failed;
 }
 

@@ -20,6 +20,7 @@ struct BakeWords {
     std::optional<Lobe> lobe;  ///< nothing: what the file states, otherwise ggx
     EnvironmentOptions environment;
     std::optional<int> texels;
+    bool as_read = false;
     double within = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not given
 };
 void add_bake_options(Arguments& arguments, BakeWords& words);

@@ -57,6 +57,7 @@
 #include "domelight/compare/metrics.h"
 #include "domelight/compare/picture_comparison.h"
 #include "domelight/compare/picture_reader.h"
+#include "domelight/compare/read_error.h"
 #include "domelight/engines/engine.h"
 #include "domelight/environment/environment.h"
 #include "domelight/environment/sky/sky.h"

@@ -227,6 +227,10 @@ Result<void> plan_chain(EnginePlan& plan, const BakeOptions& o) {
     const int size = o.size.value_or(scale * engine.size);
     const auto levels = level_count(engine, o, size, plan.layout, is_chain(plan.container));
     if (!levels) return levels.error();
+    if (o.roughness.empty())
+        plan.level_of = [&engine, count = *levels, size = size / scale](double roughness) {
+            return level_of_roughness(engine, roughness, count, size);
+        };
     const auto exponents = o.exponents.empty() ? default_phong_exponents(*levels) : o.exponents;
     for (int l = 0; l < *levels; ++l) {
         const int level_size = size >> l;

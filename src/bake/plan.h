@@ -6,6 +6,7 @@
 #include "engines/chain.h"
 #include "texture/texel_order.h"
 
+#include <functional>
 #include <vector>
 
 namespace domelight {
@@ -17,6 +18,8 @@ struct EnginePlan {
     Lobe lobe = Lobe::ggx;
     std::vector<LevelPlan> specular;
     std::vector<LevelPlan> sheen;
+    /// The level that the engine's shader reads for a roughness; empty if the roughness of each level was asked for.
+    std::function<double(double roughness)> level_of;
     std::vector<LevelSpec> gap_probes;  ///< of a Phong chain: phong_gaps.h
     Encoding encoding = Encoding::rgba16f;
     Container container = Container::ktx2;

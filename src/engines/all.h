@@ -25,6 +25,6 @@ Engine materialx_engine();
 
 /// For engines that read level = (levels - 1) r (2 - r), Filament and three.js: r = 1 - sqrt(1 - level / (levels -
 /// 1)).
-double quadratic_roughness(int level, int levels, int size);
+double quadratic_roughness(double level, int levels, int size);
 
 }  // namespace domelight

@@ -7,8 +7,8 @@ namespace domelight {
 namespace {
 
 /// Babylon reads level = 0.8 log2(N alpha): alpha = min(1, 2^(level / 0.8) / N), and the mirror at level 0.
-double babylon_roughness(int level, int, int size) {
-    if (level == 0) return 0;
+double babylon_roughness(double level, int, int size) {
+    if (level <= 0) return 0;
     return std::sqrt(std::min(1.0, std::exp2(level / 0.8) / size));
 }
 

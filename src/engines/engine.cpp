@@ -60,8 +60,19 @@ Mat3 cube_mirror_matrix(CubeMirror mirror) {
     return {};
 }
 
-double linear_roughness(int level, int levels, int) {
-    return levels > 1 ? double(level) / (levels - 1) : 0;
+double linear_roughness(double level, int levels, int) {
+    return levels > 1 ? level / (levels - 1) : 0;
+}
+
+double level_of_roughness(const Engine& engine, double roughness, int levels, int size) {
+    double below = 0, above = levels - 1;
+    if (engine.roughness(below, levels, size) >= roughness) return below;
+    if (engine.roughness(above, levels, size) < roughness) return above;
+    for (int halving = 0; halving < 60; ++halving) {
+        const double middle = (below + above) / 2;
+        (engine.roughness(middle, levels, size) < roughness ? below : above) = middle;
+    }
+    return above;
 }
 
 int default_levels(const Engine& engine, int size) {
@@ -87,8 +98,8 @@ std::vector<double> default_phong_exponents(int levels) {
     return exponents;
 }
 
-double quadratic_roughness(int level, int levels, int) {
-    return levels > 1 ? 1 - std::sqrt(1 - double(level) / (levels - 1)) : 0;
+double quadratic_roughness(double level, int levels, int) {
+    return levels > 1 ? 1 - std::sqrt(1 - level / (levels - 1)) : 0;
 }
 
 std::span<const Engine> engines() {

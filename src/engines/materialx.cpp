@@ -8,8 +8,8 @@ namespace {
 
 /// MaterialX reads level = last * (alpha < 1/4 ? sqrt(alpha) : alpha / 2 + 3/8). With y = level / last: alpha = y^2
 /// below y = 1/2, else min(1, 2 y - 3/4).
-double materialx_roughness(int level, int levels, int) {
-    const double y = levels > 1 ? double(level) / (levels - 1) : 0;
+double materialx_roughness(double level, int levels, int) {
+    const double y = levels > 1 ? level / (levels - 1) : 0;
     return y < 0.5 ? y : std::sqrt(std::min(1.0, 2 * y - 0.75));
 }
 

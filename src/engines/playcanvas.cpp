@@ -7,7 +7,7 @@ namespace {
 
 /// PlayCanvas reads level = 5 roughness: level l shows roughness l / 5. (Its own tool stores 0.18, 0.36, 0.55, 0.73,
 /// 0.91 and 1 in levels 1 to 6.) Level 6 is never reached.
-double playcanvas_roughness(int level, int, int) {
+double playcanvas_roughness(double level, int, int) {
     return std::min(1.0, level / 5.0);
 }
 

@@ -7,8 +7,8 @@ namespace domelight {
 namespace {
 
 /// Unity reads level = 6 r (1.7 - 0.7 r) of seven: 0.7 r^2 - 1.7 r + level / 6 = 0, the root below 1.
-double unity_roughness(int level, int levels, int) {
-    const double y = levels > 1 ? double(level) / (levels - 1) : 0;
+double unity_roughness(double level, int levels, int) {
+    const double y = levels > 1 ? level / (levels - 1) : 0;
     return (1.7 - std::sqrt(std::max(0.0, 2.89 - 2.8 * y))) / 1.4;
 }
 

@@ -7,9 +7,9 @@ namespace {
 
 /// Unreal reads level = last - (1 - 1.2 log2 r): r = 2^((level - last + 1) / 1.2), 1 from the last but one on. Level 0
 /// is the environment itself.
-double unreal_roughness(int level, int levels, int) {
+double unreal_roughness(double level, int levels, int) {
     const int last = levels - 1;
-    if (level == 0) return 0;
+    if (level <= 0) return 0;
     return level >= last - 1 ? 1 : std::exp2((level - last + 1) / 1.2);
 }
 

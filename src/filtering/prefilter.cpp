@@ -161,7 +161,9 @@ class Synthesis {
             const bool irradiance = levels[i] == FilterPlan::k_irradiance;
             const int size = irradiance ? options_.irradiance_size : options_.specular[levels[i]].size;
             FilteredMap& map = irradiance ? result_.irradiance_over_pi : result_.specular[levels[i]];
-            if (options_.layout == Layout::cube)
+            if (!options_.directions.empty())
+                map = {Layout::latlong, grid_at_directions(grids[i], options_.directions, lookup, result_.clamped)};
+            else if (options_.layout == Layout::cube)
                 map = grid_to_cube(grids[i], size, lookup, result_.clamped);
             else
                 map = {Layout::latlong, grid_to_latlong(grids[i], size, lookup, result_.clamped)};
@@ -194,7 +196,7 @@ class RowPrefilter {
   public:
     RowPrefilter(int width, int height, const FilterOptions& options)
         : options_(options),
-          plan_(make_filter_plan(options, true)),
+          plan_(make_filter_plan(options, options.directions.empty())),
           analysis_(width, height, plan_.band_limit, options.threads),
           bright_(width, height),
           split_(width, height) {

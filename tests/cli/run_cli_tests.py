@@ -390,6 +390,18 @@ def test_encodings_report_their_errors_and_are_read_again(folder):
     assert all(l["encoding_rms_error"] > 0 for l in manifest_of(folder / "picture")["specular"]["levels"])
 
 
+def test_a_bake_is_measured_as_a_shader_reads_it(folder):
+    run("bake", "studio.hdr", "-o", "out", "--size", "32", "--levels", "4", "--for", "khronos", "--no-preview", folder=folder)
+    words = ["compare", "--bake", "out/ggx/specular.ktx2", "--env", "studio.hdr", "--as-read"]
+    audit = json.loads(run(*words, "--json", folder=folder).stdout)
+    levels, between = audit["as_read"]["levels"], audit["as_read"]["between"]
+    assert [l["level"] for l in levels] == [1, 2, 3] and abs(levels[2]["roughness"] - 1) < 1e-9
+    assert len(between) == 24 and all(0.1 <= b["roughness"] <= 1 and abs(b["level"] - 3 * b["roughness"]) < 1e-6 for b in between)
+    assert all(l["relative_rmse"] < audit["as_read"]["relative_rmse"] < 1 for l in levels)
+    text = run(*words, "--for", "filament", folder=folder).stdout  # it is not filament's curve
+    assert "as a shader reads it" in text and "0.1 to 1" in text
+
+
 def test_phong_records_exponents(folder):
     run("bake", "studio.hdr", "-o", "out", *SMALL, "--lobe", "phong", "--exponents", "inf,64,8", folder=folder)
     manifest = manifest_of(folder / "out")

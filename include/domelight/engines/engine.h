@@ -67,8 +67,9 @@ struct EnumNames<BrdfForm> {
     };
 };
 
-/// The roughness of a level in a chain of `levels` levels whose first has `size`^2 texels a face.
-using RoughnessCurve = double (*)(int level, int levels, int size);
+/// The roughness that a shader reads at a level in a chain of `levels` levels whose first has `size`^2 texels a face.
+/// The level is a number from 0 to levels - 1: a baked level, or a place between two. The roughness rises with it.
+using RoughnessCurve = double (*)(double level, int levels, int size);
 
 /// One engine: what it loads and in which convention. In file names, {stem} stands for the environment's name, and
 /// the container's extension is appended. An empty name means that the map is not written.
@@ -119,7 +120,11 @@ Result<const Engine*> find_engine(const std::string& name);
 inline constexpr double k_charlie_least_roughness = 0.1;
 
 /// roughness = level / (levels - 1); 0 for a single level.
-double linear_roughness(int level, int levels, int size);
+double linear_roughness(double level, int levels, int size);
+
+/// The level from 0 to levels - 1 that an engine's shader reads for a roughness in [0, 1]: the inverse of
+/// Engine::roughness, which must not be null. The least level where several have the roughness.
+double level_of_roughness(const Engine& engine, double roughness, int levels, int size);
 
 /// The number of levels of an engine's cube chain from `size`^2 texels a face down to its smallest.
 int default_levels(const Engine& engine, int size);

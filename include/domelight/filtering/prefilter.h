@@ -35,6 +35,10 @@ struct LevelSpec {
 struct FilterOptions {
     Layout layout = Layout::cube;
     std::vector<LevelSpec> specular;
+    /// Not empty: the light in these world directions (any length but 0) is computed in place of whole maps. Each map is
+    /// then an image one row high with a pixel for each direction, whatever `layout` and the sizes say. No level may be
+    /// the environment itself.
+    std::vector<Vec3d> directions;
     int irradiance_size = 0;  ///< face size (cube) or height (lat-long); 0: none
     int sh_bands = 3;         ///< spherical harmonics of the radiance, this many bands; 0: none
     /// Where to look in the source for the light from a world direction. An Environment has a world_to_source of its

@@ -180,4 +180,17 @@ ImageF grid_to_latlong(const SphereGrid& grid, int height, const LookupOptions& 
     return image;
 }
 
+ImageF grid_at_directions(const SphereGrid& grid, std::span<const Vec3d> directions, const LookupOptions& options,
+                          std::int64_t& clamped) {
+    constexpr int k_piece = 256;
+    const int count = int(directions.size());
+    ImageF image = ImageF::uninitialized(count, 1, 3);
+    const RowLookup lookup(grid, options);
+    clamped += for_rows((count + k_piece - 1) / k_piece, options.threads, [&](int piece) {
+        const int first = piece * k_piece;
+        return lookup.row(directions.subspan(first, std::min(k_piece, count - first)), image.at(first, 0));
+    });
+    return image;
+}
+
 }  // namespace domelight

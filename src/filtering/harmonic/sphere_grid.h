@@ -9,6 +9,7 @@
 #include "filtering/harmonic/ring_grid.h"
 
 #include <cstdint>
+#include <span>
 
 namespace domelight {
 
@@ -50,5 +51,8 @@ struct LookupOptions {
 /// become 0; the number of texels with such values is added to `clamped`.
 Cubemap grid_to_cube(const SphereGrid& grid, int size, const LookupOptions& options, std::int64_t& clamped);
 ImageF grid_to_latlong(const SphereGrid& grid, int height, const LookupOptions& options, std::int64_t& clamped);
+/// The same in single world directions, as one row.
+ImageF grid_at_directions(const SphereGrid& grid, std::span<const Vec3d> directions, const LookupOptions& options,
+                          std::int64_t& clamped);
 
 }  // namespace domelight
