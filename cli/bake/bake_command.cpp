@@ -162,8 +162,7 @@ struct Job {
 Result<std::vector<Job>> list_jobs(const BakeWords& w) {
     if (w.output.empty()) return Error{"is missing", "--output", "Say where the results go: -o DIR."};
     if (auto ok = check_folder("--output", w.output); !ok) return ok.error();
-    if (w.environments.size() <= 1 || w.environment.projection == "cube-faces" || are_cube_faces(w.environments))
-        return std::vector<Job>{{w.environments, w.output}};
+    if (is_one_environment(w.environments, w.environment)) return std::vector<Job>{{w.environments, w.output}};
     std::vector<Job> jobs;
     std::map<std::string, std::string> stems;
     for (const std::string& file : w.environments) {
@@ -186,7 +185,7 @@ BakeOutcome run_job(const Job& job, bool skip_up_to_date, BakeOptions options, c
     outcome.environment = job.environment;
     outcome.folder = job.folder;
     const Stopwatch stopwatch;
-    if (!job.environment.empty()) options.source_files = environment_files(job.environment);
+    if (!job.environment.empty()) options.source_files = environment_files(job.environment, options.environment);
     if (skip_up_to_date && bake_is_up_to_date(options.source_files, options, job.folder)) {
         outcome.up_to_date = true;
         return outcome;

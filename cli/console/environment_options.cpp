@@ -5,7 +5,7 @@
 #include "domelight/projection/projections.h"
 
 #include "cli/console/suggestion.h"
-#include "io/environment/cube_input.h"
+#include "io/environment/cube_face_names.h"
 #include "projection/latlong_convention.h"
 
 #include <algorithm>
@@ -41,6 +41,8 @@ Result<Environment> built_in_sky(const EnvironmentOptions& options) {
     if (options.projection != none.projection) return refuse("--projection");
     if (options.latlong != none.latlong) return refuse("--latlong");
     if (options.layer != none.layer) return refuse("--layer");
+    if (options.faces != none.faces) return refuse("--faces");
+    if (options.face_orientation) return refuse("--face-orientation");
     if (options.decode != none.decode) return refuse("--decode");
     if (options.up != none.up) return refuse("--up");
     if (!std::isfinite(options.rotate_y_deg)) return Error{"angle is not a number", "--rotate-y-deg", ""};
@@ -88,6 +90,13 @@ void add_environment_options(Arguments& arguments, EnvironmentOptions& options) 
     arguments.text("--layer", "NAME", options.layer,
                    "OpenEXR: the layer, the channel, or the part (its name, or its number from 0) to read (the unnamed "
                    "layer; else rgba, beauty or Combined, after any prefix; else the only one with a colour)");
+    arguments.text(
+        "--faces", "ORDER", options.faces,
+        "the faces that six files, or the pictures of a strip, show one after the other, where their names do "
+        "not say it: px,nx,py,ny,pz,nz or right,left,up,down,front,back ... in any order");
+    arguments.choice("--face-orientation", options.face_orientation,
+                     "how the faces of a cube lie: opengl (right is +X, front +Z), directx (front is -Z: what a viewer "
+                     "sees around him), openexr (what the files state or show, otherwise opengl)");
     arguments.choice(
         "--decode", options.decode,
         "how values of 8 bits are decoded in PNG and JPEG files and in textures; rgbm, rgbd and rgbp are for textures "
@@ -98,11 +107,19 @@ void add_environment_options(Arguments& arguments, EnvironmentOptions& options) 
     arguments.number("--exposure", "STOPS", options.exposure, "multiply radiance by 2^STOPS, -64 to 64 (0)");
 }
 
-bool are_cube_faces(const std::vector<std::string>& files) {
-    return files.size() == 6 && cube_faces_by_name({files.begin(), files.end()});
+bool is_one_environment(const std::vector<std::string>& arguments, const EnvironmentOptions& options) {
+    return arguments.size() <= 1 || options.projection == "cube-faces" || !options.faces.empty() ||
+           are_cube_faces({arguments.begin(), arguments.end()});
 }
 
-std::vector<std::filesystem::path> environment_files(const std::vector<std::string>& arguments) {
+Result<void> check_one_environment(const std::vector<std::string>& arguments, const EnvironmentOptions& options) {
+    if (is_one_environment(arguments, options)) return {};
+    return Error{"the command takes one environment at a time, or the six faces of a cube", "",
+                 "Name them one at a time. Six faces of other names: --faces says their order."};
+}
+
+std::vector<std::filesystem::path> environment_files(const std::vector<std::string>& arguments,
+                                                     const EnvironmentOptions& options) {
     std::vector<std::filesystem::path> files(arguments.begin(), arguments.end());
     std::error_code failure;
     if (files.size() == 1 && std::filesystem::is_directory(files[0], failure)) {
@@ -111,15 +128,15 @@ std::vector<std::filesystem::path> environment_files(const std::vector<std::stri
     }
     if (files.size() != 6) return files;
     // In the order of the faces, so that the hash does not depend on how they were named on the command line.
-    const auto faces = cube_faces_by_name(files);
-    if (faces) files.assign(faces->begin(), faces->end());
+    const auto faces = options.faces.empty() ? cube_faces_by_name(files) : cube_faces_in_order(files, options.faces);
+    if (faces) files.assign(faces->files.begin(), faces->files.end());
     return files;
 }
 
 Result<Environment> open_environment_or_sky(const std::vector<std::string>& arguments,
                                             const EnvironmentOptions& options) {
     if (arguments.empty()) return built_in_sky(options);
-    auto environment = open_environment(environment_files(arguments), options);
+    auto environment = open_environment({arguments.begin(), arguments.end()}, options);
     if (environment) return environment;
     Error error = environment.error();
     std::vector<std::string> names = latlong_convention_names();

@@ -32,10 +32,15 @@ std::string projection_list(const std::map<std::string, std::string>& remarks = 
 /// there is none.
 Result<Environment> open_environment_or_sky(const std::vector<std::string>& files, const EnvironmentOptions& options);
 
-/// The files that make up an environment: the six in a folder of faces, else the arguments themselves.
-std::vector<std::filesystem::path> environment_files(const std::vector<std::string>& arguments);
+/// The files that make up an environment: the six faces of a cube in their order, else the arguments themselves.
+std::vector<std::filesystem::path> environment_files(const std::vector<std::string>& arguments,
+                                                     const EnvironmentOptions& options = {});
 
-/// Whether the arguments are the six faces of one cube, by their names (cube_face_of_name).
-bool are_cube_faces(const std::vector<std::string>& files);
+/// Whether the arguments are at most one environment: one file or folder, or the six faces of one cube, by their names
+/// or because the options say so.
+bool is_one_environment(const std::vector<std::string>& arguments, const EnvironmentOptions& options);
+
+/// An error unless they are.
+Result<void> check_one_environment(const std::vector<std::string>& arguments, const EnvironmentOptions& options);
 
 }  // namespace domelight::cli

@@ -201,9 +201,6 @@ void print_text(const ConvertWords& w, const Conversion& made, const WrittenPict
     print("radiant power {:.6g} before, {:.6g} after ({:+.2g} %); method: {}\n", before, after,
           100 * relative(before, after), method_words(made.method));
     if (written.widened) print("32-bit float channels: {}\n", k_why_float_channels);
-    if (written.encoding.clipped_texels > 0)
-        print("{} clips {} texels and {:.3g} % of the power\n", written.encoding_name, written.encoding.clipped_texels,
-              100 * written.encoding.clipped_energy);
 }
 
 Result<void> check(ConvertWords& w) {
@@ -237,7 +234,7 @@ std::string meant_projection(const std::string& to) {
 /// The first of the given options that needs an environment, and so does not go with a picture; empty: none was given.
 std::string environment_option(const Arguments& a) {
     for (const char* option : {"--to", "--size", "--sharp", "--layout", "--rotate", "--mirror", "--projection",
-                               "--latlong", "--rotate-y-deg", "--up", "--from"})
+                               "--latlong", "--faces", "--face-orientation", "--rotate-y-deg", "--up", "--from"})
         if (a.given(option)) return option;
     return "";
 }
@@ -337,6 +334,10 @@ int run_convert(const std::vector<std::string>& words) {
     print_warnings(environment->report().warnings, w.common);
     if (is_screen_picture(w.output.file))
         print_warnings({w.output.file + " is for the eye: write .hdr or .exr for light"}, w.common);
+    if (const EncodingReport& e = written->encoding; e.clipped_texels > 0)
+        print_warnings({fmt::format("{} clips {} texels and {:.3g} % of the power", written->encoding_name,
+                                    e.clipped_texels, 100 * e.clipped_energy)},
+                       w.common, w.output.file);
     if (!target->full())
         print_warnings({fmt::format("{} shows {:.0f} % of all directions: the rest is lost", target->name(),
                                     25 * target->shape().coverage() / k_pi)},

@@ -109,6 +109,8 @@ int convert_picture(const PictureConversion& c, const CommonOptions& common) {
     });
     if (auto ok = write(c, *picture, display, threads); !ok) return print_error(ok.error().at(c.output));
     print_warnings(picture->warnings, common, c.input);
+    if (c.encoding == "half" && !fits_half(picture->rgb.view()))
+        print_warnings({"half floats clip what is beyond 65504: leave out --encoding half"}, common, c.output);
     if (picture->cut_out() && !holds_opacity(c.output) && is_screen_picture(c.output))
         print_warnings({c.output + ": JPEG holds no opacity: the picture stands on black"}, common);
     print_result(c, *picture, display, common);

@@ -127,7 +127,7 @@ int info_environment(const InfoWords& w) {
 /// an environment. A pipe cannot be read twice, and is taken for an environment.
 bool is_picture(const InfoWords& w, const Arguments& a) {
     if (w.picture) return true;
-    for (const char* option : {"--projection", "--latlong", "--rotate-y-deg", "--up"})
+    for (const char* option : {"--projection", "--latlong", "--faces", "--face-orientation", "--rotate-y-deg", "--up"})
         if (a.given(option)) return false;
     if (!w.environment.layer.empty()) return true;
     std::error_code failure;
@@ -355,9 +355,8 @@ int run_info(const std::vector<std::string>& words) {
         if (is_picture(w, arguments)) return info_picture(w);
     } else if (w.picture) {
         return print_error({fmt::format("goes with one picture, not with {} files", w.inputs.size()), "--picture", ""});
-    } else if (w.inputs.size() > 1 && !are_cube_faces(w.inputs) && w.environment.projection != "cube-faces") {
-        return print_error({"more than one input, and not the six faces of a cube", "", "Ask for one at a time."},
-                           exit_usage);
+    } else if (auto ok = check_one_environment(w.inputs, w.environment); !ok) {
+        return print_error(ok.error(), exit_usage);
     }
     return info_environment(w);
 }

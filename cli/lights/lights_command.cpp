@@ -71,9 +71,7 @@ Result<void> check(const LightsWords& w) {
     if (auto ok = check_folder("--output", w.output); !ok) return ok.error();
     if (!(w.lux_per_unit > 0 && w.lux_per_unit <= 1e12))
         return Error{fmt::format("{:g} is not from above 0 to 1e12", w.lux_per_unit), "--lux-per-unit", ""};
-    if (w.environment_files.size() > 1 && !are_cube_faces(w.environment_files) &&
-        w.environment.projection != "cube-faces")
-        return Error{"more than one environment, and not the six faces of a cube", "", "Ask for one at a time."};
+    if (auto ok = check_one_environment(w.environment_files, w.environment); !ok) return ok;
     return check_light_extraction_options(w.options);
 }
 

@@ -160,9 +160,7 @@ void declare_sample_options(Arguments& a, SampleWords& w) {
 }
 
 Result<void> check_sample_options(const Arguments& arguments, SampleWords& w) {
-    if (w.inputs.size() > 1 && !are_cube_faces(w.inputs) && w.environment.projection != "cube-faces")
-        return Error{"more than one input, and not the six faces of a cube", "--projection",
-                     "Sample one environment at a time."};
+    if (auto ok = check_one_environment(w.inputs, w.environment); !ok) return ok;
     const int most = w.estimate ? 1 << 24 : 100'000'000;
     if (auto ok = within("--count", w.count.value_or(1), 1, most); !ok) return ok;
     if (auto ok = check_ending("--output", w.output, k_sample_endings); !ok) return ok;

@@ -129,7 +129,7 @@ Result<void> write_samples(const SampleWords& w, const EnvironmentSampler& sampl
 
 Result<SamplingTables> write_tables(const SampleWords& w, const EnvironmentSampler& sampler) {
     const SamplingTextures textures = sampling_textures(sampler);
-    auto staging = Staging::open(w.tables, environment_files(w.inputs));
+    auto staging = Staging::open(w.tables, environment_files(w.inputs, w.environment));
     if (!staging) return staging.error();
     const std::map<std::string, std::string> notes{
         {"domelight.weight", name_of(w.sampler.weight)},

@@ -77,6 +77,7 @@
 #include "domelight/io/decode.h"
 #include "domelight/io/environment/convert.h"
 #include "domelight/io/environment/open_environment.h"
+#include "domelight/io/face_orientation.h"
 #include "domelight/io/file/atomic_file.h"
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/picture/animation.h"

@@ -51,7 +51,10 @@ Json exponent_json(double exponent) {
 Json environment_json(const EnvironmentOptions& e) {
     Json json{{"projection", e.projection},     {"latlong", e.latlong}, {"decode", name_of(e.decode)},
               {"rotate_y_deg", e.rotate_y_deg}, {"up", e.up},           {"exposure", e.exposure}};
+    // What few files need stands there only where it was given.
     if (!e.layer.empty()) json["layer"] = e.layer;
+    if (!e.faces.empty()) json["faces"] = e.faces;
+    if (e.face_orientation) json["face_orientation"] = name_of(*e.face_orientation);
     return json;
 }
 

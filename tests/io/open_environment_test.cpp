@@ -163,6 +163,27 @@ TEST_CASE("environment: bad texels are mended and counted as rows pass") {
     CHECK(environment->report().negative_radiance == -2);
 }
 
+TEST_CASE("environment: a lat-long map of another shape is read where one says that it is one, with a warning") {
+    TemporaryFolder folder;
+    for (const auto& [width, height] : {std::pair{66, 32}, {128, 32}, {7, 5}, {32, 32}, {8, 6}}) {
+        CAPTURE(width);
+        // The upper half is bright and the lower one dark, whatever the shape.
+        ImageF image(width, height, 3, 1.0f);
+        for (int y = 0; y < height / 2; ++y) std::fill_n(image.row(y), 3 * width, 3.0f);
+        write_exr(folder / "e.exr", image);
+        for (const EnvironmentOptions& options : {EnvironmentOptions{.projection = "latlong"}, {.latlong = "usd"}}) {
+            if (!options.latlong.empty() && width * 3 == height * 4) continue;  // the shape of a cube cross
+            const auto environment = open_environment({folder / "e.exr"}, options);
+            REQUIRE_MESSAGE(environment, environment.error().format());
+            REQUIRE(environment->report().warnings.size() == 1);
+            CHECK(environment->report().warnings[0].find("not twice as wide as high") != std::string::npos);
+            CHECK(environment->radiance({0.3, 0.9, 0.1})->x == doctest::Approx(3));
+            CHECK(environment->radiance({0.3, -0.9, 0.1})->x == doctest::Approx(1));
+            CHECK(environment->report().warnings.size() == 1);  // after the image has been read, too
+        }
+    }
+}
+
 TEST_CASE("environment: wrong shapes and options say what is wrong, where, and what to do") {
     TemporaryFolder folder;
     const auto error_for = [&](int width, int height, const EnvironmentOptions& options = {}) {
@@ -172,13 +193,12 @@ TEST_CASE("environment: wrong shapes and options say what is wrong, where, and w
         return environment.error().format();
     };
     CHECK(error_for(1000, 600) == (folder / "e.exr").string() +
-                                      ": image is 1000 x 600, but a lat-long map must be twice as wide as high\n"
-                                      "       If this is a cube cross, pass `projection` cube-cross.");
+                                      ": image is 1000 x 600, but a lat-long map is twice as wide as high\n"
+                                      "       If it is one all the same, stretched, pass `projection` latlong.");
     CHECK(error_for(8, 8).find("give all six") != std::string::npos);
     CHECK(error_for(8, 4, {.projection = "cube-cross"}).find("4:3") != std::string::npos);
     CHECK(error_for(8, 4, {.projection = "cube-strip"}).find("6:1") != std::string::npos);
     CHECK(error_for(8, 4, {.projection = "cube-faces"}).find("six files") != std::string::npos);
-    CHECK(error_for(8, 6, {.projection = "latlong"}).find("twice as wide") != std::string::npos);
     CHECK(error_for(8, 4, {.projection = "sphere"}).find("Accepted: auto, latlong") != std::string::npos);
     CHECK(error_for(8, 4, {.latlong = "west"}).find("Accepted: default, usd") != std::string::npos);
     CHECK(error_for(8, 4, {.up = "Q"}).find("Accepted: +X") != std::string::npos);

@@ -2,11 +2,14 @@
 #include "domelight/projection/projection.h"
 #include "domelight/texture/texture.h"
 
+#include "io/environment/cube_face_names.h"
 #include "io/environment/cube_input.h"
 #include "io/reader_samples.h"
 #include "test.h"
 
+#include <array>
 #include <cmath>
+#include <functional>
 
 using namespace domelight;
 using namespace domelight::test;
@@ -129,6 +132,14 @@ TEST_CASE("cube reader: six files are recognised by name, in any order and case"
         {"sky_right", "sky_left", "sky_up", "sky_down", "sky_front", "sky_back"},
         {"px_sky", "nx_sky", "py_sky", "ny_sky", "pz_sky", "nz_sky"},
         {"front_right", "front_left", "front_top", "front_bottom", "front_front", "front_back"},
+        {"sky_rt", "sky_lf", "sky_up", "sky_dn", "sky_ft", "sky_bk"},
+        {"desertrt", "desertlf", "desertup", "desertdn", "desertft", "desertbk"},
+        {"sky_r", "sky_l", "sky_u", "sky_d", "sky_f", "sky_b"},
+        {"sky_0", "sky_1", "sky_2", "sky_3", "sky_4", "sky_5"},
+        {"sky0", "sky1", "sky2", "sky3", "sky4", "sky5"},
+        {"front_0", "front_1", "front_2", "front_3", "front_4", "front_5"},
+        {"sky_px_1k", "sky_nx_1k", "sky_py_1k", "sky_ny_1k", "sky_pz_1k", "sky_nz_1k"},
+        {"px_back", "nx_back", "py_back", "ny_back", "pz_back", "nz_back"},
     };
     for (const auto& names : namings) {
         TemporaryFolder folder;
@@ -151,6 +162,186 @@ TEST_CASE("cube reader: six files are recognised by name, in any order and case"
     CHECK(!cube_face_of_name("expx.hdr"));
     CHECK(!cube_face_of_name("topaz.hdr"));
     CHECK(!cube_face_of_name("bright.hdr"));
+}
+
+TEST_CASE(
+    "cube reader: six files are a cube only where they are named as faces, and square where the names are words") {
+    TemporaryFolder folder;
+    std::vector<std::filesystem::path> files, axes;
+    for (int f = 0; f < 6; ++f) {
+        files.push_back(folder / ("day_" + std::to_string(f) + ".hdr"));
+        save(files.back(), as_hdr(ImageF(16, 8, 3, 1.0f)));
+        axes.push_back(folder / (std::string(f % 2 ? "n" : "p") + "xyz"[f / 2] + ".hdr"));
+    }
+    CHECK_FALSE(are_cube_faces(files));  // six skies, one after the other
+    for (const auto& file : files) save(file, as_hdr(ImageF(8, 8, 3, 1.0f)));
+    CHECK(are_cube_faces(files));
+    CHECK(are_cube_faces(axes));
+    CHECK_FALSE(are_cube_faces({files[0], files[1]}));
+    CHECK_FALSE(are_cube_faces({files[0], files[1], files[2], files[3], files[4], folder / "day_7.hdr"}));
+}
+
+TEST_CASE("cube reader: the order of files without names of faces is as one says") {
+    TemporaryFolder folder;
+    std::vector<std::filesystem::path> files;
+    for (const int f : {4, 1, 0, 5, 3, 2}) {
+        files.push_back(folder / ("image" + std::string(1, char('p' + f)) + "a.hdr"));
+        save(files.back(), as_hdr(face_picture(f)));
+    }
+    CHECK_FALSE(open_environment(files));
+    for (const char* order : {"front left right back bottom top", "pz,nx,px,nz,ny,py", "4, 1, 0, 5, 3, 2"}) {
+        const auto environment = open_environment(files, {.faces = order});
+        REQUIRE_MESSAGE(environment, environment.error().format());
+        CHECK(error_of(*environment->cube()) <= k_rgbe_step);
+        CHECK(environment->files[0] == files[2]);
+    }
+    for (const char* order :
+         {"front left right back bottom", "front left right back bottom front", "pz nx px nz ny up2"}) {
+        const auto refused = open_environment(files, {.faces = order});
+        REQUIRE_FALSE(refused);
+        CHECK(refused.error().where == "`faces`");
+    }
+    // The pictures of a strip likewise.
+    const int order[] = {4, 1, 0, 5, 3, 2};
+    save(folder / "strip.hdr", as_hdr(picture(6, 1, [&](int column, int, double s, double t) {
+             return std::optional(cube_direction(order[column], {(s + 1) / 2, (t + 1) / 2}));
+         })));
+    const auto strip = open_environment({folder / "strip.hdr"}, {.faces = "front left right back bottom top"});
+    REQUIRE_MESSAGE(strip, strip.error().format());
+    CHECK(error_of(*strip->cube()) <= k_rgbe_step);
+    save(folder / "cross.hdr", as_hdr(ImageF(32, 24, 3, 1.0f)));
+    CHECK_FALSE(open_environment({folder / "cross.hdr"}, {.faces = "px nx py ny pz nz"}));
+    save(folder / "map.hdr", as_hdr(ImageF(16, 8, 3, 1.0f)));
+    CHECK_FALSE(open_environment({folder / "map.hdr"}, {.faces = "px nx py ny pz nz"}));
+    CHECK_FALSE(open_environment({folder / "map.hdr"}, {.face_orientation = FaceOrientation::directx}));
+}
+
+namespace {
+
+/// The six files px.hdr ... (or names of the caller) of a cube of which `place` says where a texel of face f goes.
+std::vector<std::filesystem::path> write_faces(const TemporaryFolder& folder, const std::array<const char*, 6>& names,
+                                               const std::function<Vec3d(int f, double u, double v)>& direction) {
+    std::vector<std::filesystem::path> files;
+    for (int f = 0; f < 6; ++f) {
+        ImageF image(k_size, k_size, 3);
+        for (int y = 0; y < k_size; ++y)
+            for (int x = 0; x < k_size; ++x) colour_of(direction(f, x, y), image.at(x, y));
+        files.push_back(folder / (std::string(names[std::size_t(f)]) + ".hdr"));
+        save(files.back(), as_hdr(image));
+    }
+    return files;
+}
+
+constexpr std::array<const char*, 6> k_axis_names{"px", "nx", "py", "ny", "pz", "nz"};
+constexpr std::array<const char*, 6> k_word_names{"right", "left", "top", "bottom", "front", "back"};
+
+bool warns_of(const Environment& environment, const std::string& text) {
+    for (const std::string& warning : environment.report().warnings)
+        if (warning.find(text) != std::string::npos) return true;
+    return false;
+}
+
+/// The largest difference between an environment and colour_of, in directions to the centres of a cube's texels.
+double error_in_directions(const Environment& environment) {
+    double largest = 0;
+    for (int f = 0; f < 6; ++f)
+        for (const double u : {0.25, 0.5, 0.625})
+            for (const double v : {0.3125, 0.5, 0.75}) {
+                const Vec3d d = cube_direction(f, {u, v});
+                float expected[3];
+                colour_of(d, expected);
+                const Vec3f is = *environment.radiance(d);
+                for (const double e : {is.x - expected[0], is.y - expected[1], is.z - expected[2]})
+                    largest = std::max(largest, std::abs(double(e)));
+            }
+    return largest;
+}
+
+}  // namespace
+
+TEST_CASE("cube reader: faces in Direct3D's world are those that a viewer sees around him, and front is ahead") {
+    TemporaryFolder folder;
+    // What a viewer who looks along -Z, with +X to the right and +Y up, sees in each face as it hangs there upright.
+    const auto seen = [](int f, double x, double y) -> Vec3d {
+        const double s = 2 * (x + 0.5) / k_size - 1, t = 2 * (y + 0.5) / k_size - 1;
+        switch (f) {
+            case 0:
+                return {1, -t, s};  // right: behind is further to the right
+            case 1:
+                return {-1, -t, -s};
+            case 2:
+                return {s, 1, -t};  // above: what is ahead is at the bottom
+            case 3:
+                return {s, -1, t};
+            case 4:
+                return {s, -t, -1};  // ahead
+            default:
+                return {-s, -t, 1};
+        }
+    };
+    const auto files = write_faces(folder, k_word_names, seen);
+    const auto environment = open_environment(files, {.face_orientation = FaceOrientation::directx});
+    REQUIRE_MESSAGE(environment, environment.error().format());
+    CHECK(error_in_directions(*environment) < 0.05);
+    CHECK_FALSE(warns_of(*environment, "convention"));
+    const auto assumed = open_environment(files);
+    REQUIRE(assumed);
+    CHECK(warns_of(*assumed, "front +Z"));
+    CHECK(error_in_directions(*assumed) > 0.5);
+}
+
+TEST_CASE("cube reader: six faces as exrenvmap writes them are recognised by their edges, and read as asked") {
+    TemporaryFolder folder;
+    // ImfEnvmap.h: samples from edge to edge, each face the mirror image of OpenGL's.
+    const auto openexr = [](int f, double x, double y) {
+        const double u = x / (k_size - 1), v = y / (k_size - 1);
+        const bool vertical = f == 2 || f == 3;
+        return cube_direction(f, {vertical ? u : 1 - u, vertical ? 1 - v : v});
+    };
+    const auto files = write_faces(folder, k_axis_names, openexr);
+    const auto found = open_environment(files);
+    REQUIRE_MESSAGE(found, found.error().format());
+    CHECK(error_in_directions(*found) < 0.05);
+    CHECK(warns_of(*found, "exrenvmap"));
+    for (const EnvironmentOptions& options :
+         {EnvironmentOptions{.face_orientation = FaceOrientation::openexr}, {.projection = "cube/openexr"}}) {
+        const auto asked = open_environment(files, options);
+        REQUIRE_MESSAGE(asked, asked.error().format());
+        CHECK(error_in_directions(*asked) < 0.05);
+        CHECK(asked->report().warnings.empty());
+    }
+    const auto other = open_environment(files, {.face_orientation = FaceOrientation::opengl});
+    REQUIRE(other);
+    CHECK(error_in_directions(*other) > 0.5);
+    const auto contradiction =
+        open_environment(files, {.projection = "cube/openexr", .face_orientation = FaceOrientation::opengl});
+    REQUIRE_FALSE(contradiction);
+    CHECK(contradiction.error().where == "`face_orientation`");
+    // Faces in OpenGL's orientation, and faces of one colour, are not taken for them.
+    const auto opengl = [](int f, double x, double y) {
+        return cube_direction(f, {(x + 0.5) / k_size, (y + 0.5) / k_size});
+    };
+    const auto usual = open_environment(write_faces(folder, k_axis_names, opengl));
+    REQUIRE(usual);
+    CHECK(usual->report().warnings.empty());
+    const auto plain = open_environment(write_faces(folder, k_axis_names, [](int, double, double) {
+        return Vec3d{1, 0, 0};
+    }));
+    REQUIRE(plain);
+    CHECK(plain->report().warnings.empty());
+}
+
+TEST_CASE("cube reader: the six files of exrenvmap hold the light of its single file") {
+    DOMELIGHT_DATA_FILE(six, "reports/exrenvmap_faces");
+    DOMELIGHT_DATA_FILE(single, "reports/exrenvmap_single.exr");
+    const auto faces = open_environment({six});
+    const auto strip = open_environment({single});
+    REQUIRE_MESSAGE(faces, faces.error().format());
+    REQUIRE_MESSAGE(strip, strip.error().format());
+    double largest = 0;
+    for (std::size_t i = 0; i < strip->cube()->pixels().size(); ++i)
+        largest = std::max(largest, double(std::abs(strip->cube()->pixels()[i] - faces->cube()->pixels()[i])));
+    CHECK(largest == 0);  // mirrored faces differ by up to 0.7
 }
 
 TEST_CASE("cube reader: the faces that other tools write are recognised") {

@@ -1,11 +1,11 @@
 #include "io/environment/cube_input.h"
 
+#include "domelight/projection/projection.h"
+
 #include <algorithm>
 #include <cassert>
-#include <cctype>
-#include <span>
-#include <string>
-#include <string_view>
+#include <cmath>
+#include <utility>
 
 namespace domelight {
 
@@ -71,28 +71,6 @@ void move_to_texel_centres(ImageView<float> face) {
     }
 }
 
-/// The names of the faces +X -X +Y -Y +Z -Z. The first is the axis.
-const std::vector<std::string_view> k_face_names[6] = {
-    {"+x", "px", "posx", "right"},     {"-x", "nx", "mx", "negx", "left"},
-    {"+y", "py", "posy", "top", "up"}, {"-y", "ny", "my", "negy", "bottom", "down"},
-    {"+z", "pz", "posz", "front"},     {"-z", "nz", "mz", "negz", "back"},
-};
-
-bool is_word(char c) {
-    return std::isalnum(static_cast<unsigned char>(c));
-}
-
-/// Whether `name` is the end of `stem`, set off from what stands before it.
-bool ends_in(std::string_view stem, std::string_view name) {
-    if (!stem.ends_with(name)) return false;
-    return stem.size() == name.size() || !is_word(name[0]) || !is_word(stem[stem.size() - name.size() - 1]);
-}
-
-/// Whether `name` is the start of `stem`, set off from what follows.
-bool begins_with(std::string_view stem, std::string_view name) {
-    return stem.starts_with(name) && (stem.size() == name.size() || !is_word(stem[name.size()]));
-}
-
 }  // namespace
 
 std::optional<CubeLayout> cube_layout_of_shape(int width, int height) {
@@ -118,48 +96,68 @@ Result<Cubemap> read_cube_picture(RowSource& source, CubeLayout layout) {
             for (const Tile& tile : sheet.tiles)
                 if (tile.row == top / n) place_row(tile, top % n, band.at(tile.column * n, y), cube.face(tile.face));
     }
-    if (layout == CubeLayout::openexr_strip)
-        for (int f = 0; f < 6; ++f) move_to_texel_centres(cube.face(f));
     return cube;
 }
 
-std::optional<int> cube_face_of_name(const std::filesystem::path& file) {
-    std::string stem = file.stem().string();
-    std::transform(stem.begin(), stem.end(), stem.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    // The end of a name says more than its start: "front_left.hdr" is a face of the cube "front".
-    for (const auto speaks_of : {ends_in, begins_with})
-        for (int f = 0; f < 6; ++f)
-            for (const std::string_view name : k_face_names[f])
-                if (speaks_of(stem, name)) return f;
-    return std::nullopt;
+Cubemap cube_from_openexr(Cubemap cube) {
+    const ImageF stored(std::move(cube).take_strip());
+    const int n = stored.width();
+    Cubemap turned(n);
+    for (const Tile& tile : sheet_of(CubeLayout::openexr_strip).tiles)
+        for (int y = 0; y < n; ++y) place_row(tile, y, stored.row(tile.row * n + y), turned.face(tile.face));
+    for (int f = 0; f < 6; ++f) move_to_texel_centres(turned.face(f));
+    return turned;
 }
 
-Result<std::array<std::filesystem::path, 6>> cube_faces_by_name(const std::vector<std::filesystem::path>& files) {
-    const std::string hint =
-        "Accepted: px nx py ny pz nz, px mx ..., posx negx ..., +x -x ..., or right left top bottom (or up down) "
-        "front back, alone or after a prefix (sky_px.hdr).";
-    std::array<std::filesystem::path, 6> faces;
-    for (const std::filesystem::path& file : files) {
-        const std::optional<int> f = cube_face_of_name(file);
-        if (!f) return Error{"the name does not say which face of a cube it is", file.string(), hint};
-        std::filesystem::path& face = faces[std::size_t(*f)];
-        if (!face.empty()) return Error{"is the same face of the cube as " + face.string(), file.string(), hint};
-        face = file;
-    }
+Cubemap cube_with_faces(const Cubemap& cube, const std::array<int, 6>& order) {
+    Cubemap sorted(cube.size());
+    for (int i = 0; i < 6; ++i)
+        for (int y = 0; y < cube.size(); ++y)
+            std::copy_n(cube.face(i).row(y), 3 * cube.size(), sorted.face(order[std::size_t(i)]).row(y));
+    return sorted;
+}
+
+namespace {
+
+/// Whether a cube's samples are mirrored as OpenEXR's are.
+enum class Mirrored { no, as_openexr };
+
+/// The mean difference, relative to their sum, between the texels on either side of the twelve edges.
+double step_across_edges(const Cubemap& cube, Mirrored mirrored) {
+    const Sheet openexr = sheet_of(CubeLayout::openexr_strip);
+    const int n = cube.size();
+    const auto texel = [&](int f, int x, int y) {
+        const Tile& tile = openexr.tiles[std::size_t(f)];
+        const bool turn = mirrored == Mirrored::as_openexr;
+        return cube.face(f).at(turn && tile.mirror_x ? n - 1 - x : x, turn && tile.mirror_y ? n - 1 - y : y);
+    };
+    double sum = 0;
     for (int f = 0; f < 6; ++f)
-        if (faces[std::size_t(f)].empty())
-            return Error{"face " + std::string(k_face_names[f][0]) + " of the cube is missing",
-                         files.empty() ? "" : files[0].string(), hint};
-    return faces;
+        for (int side = 0; side < 4; ++side)
+            for (int i = 0; i < n; ++i) {
+                const int x = side == 0 ? 0 : side == 1 ? n - 1 : i, y = side == 2 ? 0 : side == 3 ? n - 1 : i;
+                constexpr double k_beyond = 1e-6;
+                const auto place = [&](int at, int low, int high) {
+                    return side == low ? -k_beyond : side == high ? 1 + k_beyond : (at + 0.5) / n;
+                };
+                const CubePoint other = cube_point(cube_direction(f, {place(x, 0, 1), place(y, 2, 3)}));
+                const auto index = [&](double u) { return std::clamp(int(u * n), 0, n - 1); };
+                const float *a = texel(f, x, y), *b = texel(other.face, index(other.uv.u), index(other.uv.v));
+                for (int c = 0; c < 3; ++c) {
+                    const double larger = std::abs(a[c]) + std::abs(b[c]);
+                    if (larger > 0) sum += std::abs(double(a[c]) - b[c]) / larger;
+                }
+            }
+    return sum / (6.0 * 4 * 3 * n);
 }
 
-std::vector<std::filesystem::path> cube_faces_in_folder(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> found;
-    std::error_code error;
-    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-        if (entry->is_regular_file(error) && cube_face_of_name(entry->path())) found.push_back(entry->path());
-    std::sort(found.begin(), found.end());
-    return found;
+}  // namespace
+
+bool meets_as_openexr(const Cubemap& cube) {
+    // Samples on an edge are in both faces, so their difference is that of rounding, to half floats or to eight bits.
+    constexpr double k_same = 2e-3, k_clearly = 8;
+    const double as_openexr = step_across_edges(cube, Mirrored::as_openexr);
+    return as_openexr < k_same && step_across_edges(cube, Mirrored::no) > k_clearly * std::max(as_openexr, k_same / 2);
 }
 
 }  // namespace domelight

@@ -5,9 +5,7 @@
 #include "domelight/image/row_source.h"
 
 #include <array>
-#include <filesystem>
 #include <optional>
-#include <vector>
 
 namespace domelight {
 
@@ -32,19 +30,19 @@ enum class CubeLayout { horizontal_cross, vertical_cross, horizontal_strip, vert
 /// The layout whose shape a picture has, if any: 4:3, 3:4, 6:1 or 1:6 exactly.
 std::optional<CubeLayout> cube_layout_of_shape(int width, int height);
 
-/// Reads a picture of a cube into OpenGL's faces, holding a few of its rows at a time. Precondition: `rows` has the
-/// layout's shape.
+/// Reads a picture of a cube into OpenGL's faces, holding a few of its rows at a time. Preconditions: `rows` has the
+/// layout's shape; the layout is not openexr_strip, which is read as a vertical strip for cube_from_openexr().
 Result<Cubemap> read_cube_picture(RowSource& rows, CubeLayout layout);
 
-/// The face (0..5: +X -X +Y -Y +Z -Z) that a file's name speaks of: px nx py ny pz nz, mx my mz for nx ny nz, posx negx
-/// ..., +x -x ..., right left top bottom front back (right is +X, top is +Y, front is +Z), or up down for top bottom.
-/// The name is in any case, and stands alone or is set off from the rest by something other than a letter or digit.
-std::optional<int> cube_face_of_name(const std::filesystem::path& file);
+/// Faces as OpenEXR has them, turned into OpenGL's orientation, with their samples moved from the edges to texel
+/// centres.
+Cubemap cube_from_openexr(Cubemap cube);
 
-/// Sorts six files into faces +X -X +Y -Y +Z -Z by their names.
-Result<std::array<std::filesystem::path, 6>> cube_faces_by_name(const std::vector<std::filesystem::path>& files);
+/// The cube whose face order[i] is the i-th face of `cube`.
+Cubemap cube_with_faces(const Cubemap& cube, const std::array<int, 6>& order);
 
-/// The files of a folder that are named as faces.
-std::vector<std::filesystem::path> cube_faces_in_folder(const std::filesystem::path& folder);
+/// Whether faces that nothing is known of lie as OpenEXR has them: the samples on an edge are then in both faces that
+/// meet there, and are equal, and in OpenGL's orientation the faces do not meet. False for a cube of one colour.
+bool meets_as_openexr(const Cubemap& cube);
 
 }  // namespace domelight

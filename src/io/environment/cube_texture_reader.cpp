@@ -66,7 +66,6 @@ Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_
         const TexelOrder mirrored = TexelOrder::of_cube({{Vec3d{-1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}});
         return mirrored.apply(std::move(cube)).cube();
     }
-    report.warnings.push_back("the faces are taken to be in OpenGL's orientation; some tools write them mirrored");
     if (info->eight_bits && texture->encoding == Encoding::rgba16f)
         report.warnings.push_back(std::string("eight bits a channel are not HDR unless they are RGBM or its like "
                                               "(`decode` rgbm)") +

@@ -3,6 +3,7 @@
 #include "domelight/image/row_source.h"
 
 #include "base/field_place.h"
+#include "io/environment/cube_face_names.h"
 #include "io/environment/cube_input.h"
 #include "io/environment/cube_texture_reader.h"
 #include "io/file/sha256.h"
@@ -16,6 +17,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <span>
@@ -52,8 +54,9 @@ struct Request {
     EnvironmentOptions options;
     Mat3 turn;  ///< from the world to the file's frame, without its lat-long convention
     float scale = 1;
-    std::optional<Projection> other;  ///< neither lat-long nor a cube
-    Mat3 cube_axes;                   ///< the turned light to the frame of a cube's faces
+    std::optional<Projection> other;          ///< neither lat-long nor a cube
+    Mat3 cube_axes;                           ///< the turned light to the frame of a cube's faces
+    std::optional<std::array<int, 6>> faces;  ///< EnvironmentOptions::faces
 };
 
 /// The names of lat-long maps and cubes that a request knows; "cube" is one in any layout.
@@ -95,8 +98,34 @@ Result<Request> read_convention(Request request) {
     return request;
 }
 
+/// Where what lies in directions of the world is in the world of Direct3D, whose +Z is our -Z.
+constexpr Mat3 k_to_left_handed{{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, -1}}};
+
+/// Makes the orientation of faces and the projection agree.
+Result<void> take_face_orientation(Request& request) {
+    std::optional<FaceOrientation>& orientation = request.options.face_orientation;
+    std::string& projection = request.options.projection;
+    if (projection == "cube/openexr") {
+        if (orientation && *orientation != FaceOrientation::openexr)
+            return Error{name_of(*orientation) + " contradicts `projection` cube/openexr",
+                         field_place("face_orientation"), ""};
+        orientation = FaceOrientation::openexr;
+        projection = "cube";
+    }
+    if (orientation == FaceOrientation::directx) request.cube_axes = k_to_left_handed * request.cube_axes;
+    return {};
+}
+
+/// An error if options about the faces of a cube were given for what is none.
+Result<void> check_no_faces(const EnvironmentOptions& options, const char* what) {
+    for (const auto& [given, name] :
+         {std::pair{!options.faces.empty(), "faces"}, {options.face_orientation.has_value(), "face_orientation"}})
+        if (given) return Error{fmt::format("is about the faces of a cube, not about {}", what), field_place(name), ""};
+    return {};
+}
+
 Result<Request> check_options(const EnvironmentOptions& options) {
-    auto asked = read_convention({options, {}, 1, {}, {}});
+    auto asked = read_convention({options, {}, 1, {}, {}, {}});
     if (!asked) return asked;
     Request request = *std::move(asked);
     const auto one_of = [](const std::string& value, std::span<const std::string_view> accepted) {
@@ -114,6 +143,12 @@ Result<Request> check_options(const EnvironmentOptions& options) {
         if (!other) return other.error().at(field_place("projection"));
         request.other = *std::move(other);
     }
+    if (!options.faces.empty()) {
+        const auto faces = cube_face_order(options.faces);
+        if (!faces) return faces.error();
+        request.faces = *faces;
+    }
+    if (auto ok = take_face_orientation(request); !ok) return ok.error();
     if (!std::isfinite(options.rotate_y_deg)) return Error{"angle is not a number", field_place("rotate_y_deg"), ""};
     if (!(std::abs(options.exposure) <= 64))
         return Error{"exposure must lie between -64 and 64 stops", field_place("exposure"), ""};
@@ -144,37 +179,51 @@ bool has_environment_shape(int width, int height) {
 
 namespace {
 
-/// The layout to read a picture in, or none for lat-long. `projection` is one of the accepted names.
-Result<std::optional<CubeLayout>> choose_layout(const ImageFacts& facts, const std::string& projection) {
+/// The layout of a cube in a picture, as `projection` and the orientation of its faces ask.
+Result<CubeLayout> choose_cube_layout(const ImageFacts& facts, const EnvironmentOptions& options) {
+    const std::string& projection = options.projection;
     const std::string is = fmt::format("image is {} x {}", facts.width, facts.height);
-    std::optional<CubeLayout> layout = cube_layout_of_shape(facts.width, facts.height);
+    const std::optional<CubeLayout> layout = cube_layout_of_shape(facts.width, facts.height);
     const bool strip = layout == CubeLayout::horizontal_strip || layout == CubeLayout::vertical_strip;
-    if (layout == CubeLayout::vertical_strip && facts.envmap == ImageFacts::Envmap::cube)
-        layout = CubeLayout::openexr_strip;
-    if (projection == "cube" && !layout)
-        return Error{is + ", but a cube must be a cross (4:3 or 3:4), a strip of its faces (6:1 or 1:6) or six files",
-                     "", ""};
-    if (projection == "cube/openexr") {
-        if (layout != CubeLayout::vertical_strip && layout != CubeLayout::openexr_strip)
-            return Error{is + ", but OpenEXR's cube must be 1:6", "", ""};
-        return std::optional(CubeLayout::openexr_strip);
-    }
     if (projection == "cube-cross" && (!layout || strip))
         return Error{is + ", but a cube cross must be 4:3 (horizontal) or 3:4 (vertical)", "", ""};
     if (projection == "cube-strip" && !strip)
         return Error{is + ", but a strip of cube faces must be 6:1 or 1:6", "", ""};
     if (projection == "cube-faces") return Error{"six files are needed for the faces of a cube", "", ""};
-    if (projection == "latlong" || (projection == "auto" && !layout)) {
-        if (!has_latlong_shape(facts.width, facts.height))
-            return Error{is + ", but a lat-long map must be twice as wide as high", "",
-                         facts.width == facts.height
-                             ? "If this is one face of a cube, give all six; if it is a mirror ball or another "
-                               "round or octahedral map, say which: `projection` sphere-map, "
-                               "mirror-ball/fov=DEGREES, angular, octahedral, ..."
-                             : "If this is a cube cross, pass `projection` cube-cross."};
-        return std::optional<CubeLayout>();
+    const bool stated = facts.envmap == ImageFacts::Envmap::cube;
+    const auto orientation =
+        options.face_orientation.value_or(stated ? FaceOrientation::openexr : FaceOrientation::opengl);
+    if (orientation == FaceOrientation::openexr && (options.face_orientation || layout == CubeLayout::vertical_strip)) {
+        if (layout != CubeLayout::vertical_strip) return Error{is + ", but OpenEXR's cube must be 1:6", "", ""};
+        return CubeLayout::openexr_strip;
     }
-    return layout;
+    if (!layout)
+        return Error{is + ", but a cube must be a cross (4:3 or 3:4), a strip of its faces (6:1 or 1:6) or six files",
+                     "", ""};
+    if (!options.faces.empty() && !strip)
+        return Error{"a cross has its faces in their places", field_place("faces"), ""};
+    return *layout;
+}
+
+/// Whether a picture is read as lat-long rather than as a cube.
+Result<bool> is_latlong(const ImageFacts& facts, const EnvironmentOptions& options) {
+    if (options.projection == "latlong") return true;
+    if (options.projection != "auto" || cube_layout_of_shape(facts.width, facts.height)) return false;
+    if (has_latlong_shape(facts.width, facts.height) || !options.latlong.empty()) return true;
+    return Error{
+        fmt::format("image is {} x {}, but a lat-long map is twice as wide as high", facts.width, facts.height), "",
+        facts.width == facts.height ? "If this is one face of a cube, give all six; if it is a mirror ball or another "
+                                      "round or octahedral map, say which: `projection` sphere-map, "
+                                      "mirror-ball/fov=DEGREES, angular, octahedral, ..."
+                                    : "If it is one all the same, stretched, pass `projection` latlong."};
+}
+
+/// The warning about a lat-long map of another shape than 2:1; empty for one of that shape.
+std::string stretched_warning(const ImageFacts& facts) {
+    if (has_latlong_shape(facts.width, facts.height)) return "";
+    return fmt::format(
+        "image is {} x {}, not twice as wide as high: it is taken for the whole sphere, stretched to that shape",
+        facts.width, facts.height);
 }
 
 /// Sets what is known about the file as a whole.
@@ -243,6 +292,8 @@ class LatlongFile {
     Result<std::unique_ptr<RowSource>> open(std::shared_ptr<RepairReport> report) {
         auto image = reader();
         if (!image) return image.error().at(file_.string());
+        if (const std::string warning = stretched_warning((*image)->facts()); !warning.empty())
+            report->warnings.push_back(warning);
         return regrid_latlong(radiance_of(file_, *std::move(image), request_, true, std::move(report)), grid_);
     }
 
@@ -266,7 +317,9 @@ class LatlongFile {
 
 Result<Environment> open_latlong(const std::filesystem::path& file, std::shared_ptr<const FileBytes> bytes,
                                  std::unique_ptr<ImageReader> image, const Request& request) {
-    const ImageFacts facts = image->facts();
+    if (auto ok = check_no_faces(request.options, "a lat-long map"); !ok) return ok.error();
+    ImageFacts facts = image->facts();
+    if (const std::string warning = stretched_warning(facts); !warning.empty()) facts.warnings.push_back(warning);
     std::string name = request.options.latlong;
     if (name.empty()) name = facts.envmap == ImageFacts::Envmap::latlong ? "openexr" : "default";
     const Result<LatlongConvention> convention = latlong_convention(name);
@@ -295,6 +348,12 @@ Environment finish_cube(Cubemap cube, RepairReport report, const Request& reques
         report.warnings.push_back("a lat-long convention means nothing for a cube: ignored");
     return Environment::from_cube(std::move(cube), request.cube_axes * request.turn, std::move(report),
                                   request.options.threads);
+}
+
+/// The faces of one file in the order that was asked for, and in OpenGL's orientation.
+Cubemap in_order(Cubemap cube, const Request& request, bool openexr) {
+    if (request.faces) cube = cube_with_faces(cube, *request.faces);
+    return openexr ? cube_from_openexr(std::move(cube)) : cube;
 }
 
 /// A picture in any other projection.
@@ -360,10 +419,18 @@ Result<Environment> open_texture(const std::filesystem::path& file, const std::s
                                  const Request& request) {
     if (const std::string& projection = request.options.projection; projection != "auto" && projection != "cube")
         return Error{"a texture's projection is known: leave " + projection + " out", field_place("projection"), ""};
+    const bool babylon = container.starts_with("Babylon");
+    if (babylon)
+        if (auto ok = check_no_faces(request.options, "a .env file, which states them"); !ok) return ok.error();
     RepairReport report;
     Result<Cubemap> cube =
         read_cube_texture(file, request.options.max_bytes, request.scale, report, request.options.decode);
     if (!cube) return cube.error();
+    const auto orientation = request.options.face_orientation;
+    if (!orientation && !babylon)
+        report.warnings.push_back(
+            "the faces are taken to be in OpenGL's orientation; some tools write them mirrored (`face_orientation`)");
+    cube = in_order(*std::move(cube), request, orientation == FaceOrientation::openexr);
     const int size = cube->size();
     return with_facts(finish_cube(*std::move(cube), std::move(report), request), {file}, container, size, size);
 }
@@ -378,6 +445,7 @@ Mat3 turn_of(const std::array<float, 4>& q) {
 Result<Environment> open_gltf_light(const std::filesystem::path& file, const Request& request) {
     if (const std::string& projection = request.options.projection; projection != "auto" && projection != "cube")
         return Error{"a glTF file's light is a cube: leave " + projection + " out", field_place("projection"), ""};
+    if (auto ok = check_no_faces(request.options, "a glTF file, which states them"); !ok) return ok.error();
     RepairReport report;
     auto light = read_gltf_environment(file, request.options.max_bytes, request.scale, report);
     if (!light) return light.error();
@@ -404,35 +472,64 @@ Result<Environment> open_picture(const std::filesystem::path& file, std::shared_
     if (!image) return image.error();
     const ImageFacts facts = (*image)->facts();
     if (request.other) {
+        if (auto ok = check_no_faces(request.options, "this projection"); !ok) return ok.error();
         const PictureRows source(file, *std::move(image), request);
         Result<ProjectedImage> picture = read_other(*source.rows, *request.other);
         if (!picture) return picture.error();
         return with_facts(finish_other(*std::move(picture), *source.report, request), {file}, facts);
     }
-    const auto layout = choose_layout(facts, request.options.projection);
+    const auto latlong = is_latlong(facts, request.options);
+    if (!latlong) return latlong.error();
+    if (*latlong) return open_latlong(file, std::move(bytes), *std::move(image), request);
+    const auto layout = choose_cube_layout(facts, request.options);
     if (!layout) return layout.error();
-    if (!*layout) return open_latlong(file, std::move(bytes), *std::move(image), request);
-
-    const bool strip = **layout != CubeLayout::horizontal_cross && **layout != CubeLayout::vertical_cross;
+    const bool strip = *layout != CubeLayout::horizontal_cross && *layout != CubeLayout::vertical_cross;
     const int size = strip ? std::min(facts.width, facts.height) : std::max(facts.width, facts.height) / 4;
     if (const auto fits = check_cube_memory(size, request.options.max_bytes); !fits) return fits.error();
     const PictureRows source(file, *std::move(image), request);
-    Result<Cubemap> cube = read_cube_picture(*source.rows, **layout);
+    const bool openexr = *layout == CubeLayout::openexr_strip;
+    Result<Cubemap> cube = read_cube_picture(*source.rows, openexr ? CubeLayout::vertical_strip : *layout);
     if (!cube) return cube.error();
+    cube = in_order(*std::move(cube), request, openexr);
     return with_facts(finish_cube(*std::move(cube), *source.report, request), {file}, facts);
+}
+
+/// The six files of a cube in the order of its faces.
+Result<CubeFaceFiles> sorted_faces(const std::vector<std::filesystem::path>& files, const std::string& order) {
+    return order.empty() ? cube_faces_by_name(files) : cube_faces_in_order(files, order);
+}
+
+/// Turns faces into OpenGL's orientation, and adds to the report what was assumed.
+Cubemap oriented(Cubemap cube, const CubeFaceFiles& faces, bool stated_openexr, const Request& request,
+                 RepairReport& report) {
+    const auto asked = request.options.face_orientation;
+    if (asked == FaceOrientation::openexr || (!asked && stated_openexr)) return cube_from_openexr(std::move(cube));
+    if (asked) return cube;
+    if (meets_as_openexr(cube)) {
+        report.warnings.push_back(
+            "the faces fit together as OpenEXR's exrenvmap writes them, and are read in its orientation "
+            "(`face_orientation` says another)");
+        return cube_from_openexr(std::move(cube));
+    }
+    if (!faces.axes_named)
+        report.warnings.push_back(
+            "the names of the faces say no convention: right is taken to be +X, front +Z, each in OpenGL's "
+            "orientation (`face_orientation` directx: front is -Z, each as a viewer sees it)");
+    return cube;
 }
 
 Result<Environment> open_faces(const std::vector<std::filesystem::path>& files, const Request& request) {
     if (const std::string& projection = request.options.projection;
         projection != "auto" && projection != "cube" && projection != "cube-faces")
         return Error{"six files are the faces of a cube, not " + projection, field_place("projection"), ""};
-    const auto faces = cube_faces_by_name(files);
+    const auto faces = sorted_faces(files, request.options.faces);
     if (!faces) return faces.error();
+    bool stated_openexr = false;
     ImageFacts first;
     RepairReport report;
     Cubemap cube;
     for (int f = 0; f < 6; ++f) {
-        const std::filesystem::path& file = (*faces)[std::size_t(f)];
+        const std::filesystem::path& file = faces->files[std::size_t(f)];
         auto image = open_file(file, request.options);
         if (!image) return image.error();
         const ImageFacts facts = (*image)->facts();
@@ -446,14 +543,17 @@ Result<Environment> open_faces(const std::vector<std::filesystem::path>& files, 
             cube = Cubemap(facts.width);
         } else if (facts.width != cube.size()) {
             return Error{fmt::format("image is {} x {}, but {} is {} x {}", facts.width, facts.height,
-                                     (*faces)[0].filename().string(), cube.size(), cube.size()),
+                                     faces->files[0].filename().string(), cube.size(), cube.size()),
                          file.string(), "The faces of a cube must have one size."};
         }
         PictureRows picture(file, *std::move(image), request);
         if (const auto read = picture.rows->read(cube.face(f)); !read) return read.error();
         add_report(report, *picture.report);
+        stated_openexr = stated_openexr || facts.envmap == ImageFacts::Envmap::cube;
     }
-    return with_facts(finish_cube(std::move(cube), std::move(report), request), {faces->begin(), faces->end()}, first);
+    cube = oriented(std::move(cube), *faces, stated_openexr, request, report);
+    return with_facts(finish_cube(std::move(cube), std::move(report), request),
+                      {faces->files.begin(), faces->files.end()}, first);
 }
 
 /// What a folder without the faces of a cube may be instead.

@@ -2,9 +2,11 @@
 
 #include "domelight/environment/environment.h"
 #include "domelight/io/decode.h"
+#include "domelight/io/face_orientation.h"
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,11 @@ struct EnvironmentOptions {
     /// name, the end of only one layer's name after a dot, a channel's name, or the name, the view or the number (from
     /// 0) of a part of a file with several.
     std::string layer = "";
+    /// The faces that six files, or the pictures of a strip of faces, show one after the other, where their names do
+    /// not say it: "px nx py ny pz nz". Any of the names that docs/conventions.md lists, separated by spaces or commas.
+    std::string faces = "";
+    /// How each face of a cube lies. Empty: what the files state or show, otherwise opengl.
+    std::optional<FaceOrientation> face_orientation = std::nullopt;
     Decode decode = Decode::automatic;  ///< of PNG, JPEG, and textures of eight bits a channel
     double rotate_y_deg = 0;            ///< turns the light about +Y: +X moves towards +Z
     /// The axis, in the coordinate system of the file's author, at the top of the image: +Y, +Z, ...
