@@ -381,11 +381,11 @@ int compare_bake(const BakeWords& w, const CommonOptions& common) {
     if (!audit) return print_error(audit.error().at(w.bake[0]));
     const auto as_read = read_errors_of(w, *bake, *audit, *environment, threads);
     if (!as_read) return print_error(as_read.error());
-    print_warnings(environment->report().warnings, common, join(w.env, " "));
+    print_warnings(environment->report().lines(), common, join(w.env, " "));
     const std::string convention =
         environment->cube() ? "" : convention_of(audit->orientation.ours_from_theirs, environment->world_to_source);
     if (common.json)
-        print_json(w, *bake, *audit, *as_read, convention, environment->report().warnings);
+        print_json(w, *bake, *audit, *as_read, convention, environment->report().lines());
     else if (!common.quiet) {
         print_text(w, *bake, *audit, convention);
         if (*as_read) print_as_read(*bake, **as_read);

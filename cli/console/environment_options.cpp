@@ -45,6 +45,7 @@ Result<Environment> built_in_sky(const EnvironmentOptions& options) {
     if (options.face_orientation) return refuse("--face-orientation");
     if (options.decode != none.decode) return refuse("--decode");
     if (options.up != none.up) return refuse("--up");
+    if (options.negatives != none.negatives) return refuse("--negatives");
     if (!std::isfinite(options.rotate_y_deg)) return Error{"angle is not a number", "--rotate-y-deg", ""};
     if (!(std::abs(options.exposure) <= 64))
         return Error{"exposure must lie between -64 and 64 stops", "--exposure", ""};
@@ -101,6 +102,10 @@ void add_environment_options(Arguments& arguments, EnvironmentOptions& options) 
         "--decode", options.decode,
         "how values of 8 bits are decoded in PNG and JPEG files and in textures; rgbm, rgbd and rgbp are for textures "
         "only (auto: as the file says, otherwise srgb)");
+    arguments.choice("--negatives", options.negatives,
+                     "what becomes of negative values, which lossy compression leaves beside bright lights: balance: 0, "
+                     "and the light that this adds is taken from the texels round it; clamp: 0; keep: as they are, for "
+                     "convert, info and bake (balance)");
     arguments.number("--rotate-y-deg", "DEGREES", options.rotate_y_deg,
                      "turn the light about +Y: +X moves towards +Z (0)");
     arguments.text("--up", "AXIS", options.up, "the axis at the top of the image: +Y, +Z, ... (+Y)");
@@ -131,6 +136,14 @@ std::vector<std::filesystem::path> environment_files(const std::vector<std::stri
     const auto faces = options.faces.empty() ? cube_faces_by_name(files) : cube_faces_in_order(files, options.faces);
     if (faces) files.assign(faces->files.begin(), faces->files.end());
     return files;
+}
+
+Result<Environment> open_light_to_draw_from(const std::vector<std::string>& arguments,
+                                            const EnvironmentOptions& options) {
+    if (options.negatives == Negatives::keep)
+        return Error{"light is drawn in proportion to radiance, which must not be negative", "--negatives",
+                     "Accepted here: balance, clamp."};
+    return open_environment_or_sky(arguments, options);
 }
 
 Result<Environment> open_environment_or_sky(const std::vector<std::string>& arguments,

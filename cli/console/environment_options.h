@@ -32,6 +32,9 @@ std::string projection_list(const std::map<std::string, std::string>& remarks = 
 /// there is none.
 Result<Environment> open_environment_or_sky(const std::vector<std::string>& files, const EnvironmentOptions& options);
 
+/// The same for commands that need radiance without negative values: with an error where these are to be kept.
+Result<Environment> open_light_to_draw_from(const std::vector<std::string>& files, const EnvironmentOptions& options);
+
 /// The files that make up an environment: the six faces of a cube in their order, else the arguments themselves.
 std::vector<std::filesystem::path> environment_files(const std::vector<std::string>& arguments,
                                                      const EnvironmentOptions& options = {});

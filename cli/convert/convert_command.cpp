@@ -331,7 +331,7 @@ int run_convert(const std::vector<std::string>& words) {
     if (is_screen_picture(w.output.file)) w.output.display = display_for(w, *environment, made->image);
     const auto written = write_projected(made->image, w.output);
     if (!written) return print_error(written.error());
-    print_warnings(environment->report().warnings, w.common);
+    print_warnings(environment->report().lines(), w.common);
     if (is_screen_picture(w.output.file))
         print_warnings({w.output.file + " is for the eye: write .hdr or .exr for light"}, w.common);
     if (const EncodingReport& e = written->encoding; e.clipped_texels > 0)

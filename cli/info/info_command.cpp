@@ -76,7 +76,8 @@ Json environment_json(const std::string& name, const Environment& e, const Envir
              {{"not_a_number", r.not_a_number},
               {"infinite", r.infinite},
               {"negative", r.negative},
-              {"most_negative", r.negative_radiance}}},
+              {"most_negative", r.negative_radiance},
+              {"light_added", vector_json(r.share_added())}}},
             {"warnings", with_options(r.warnings)}};
 }
 
@@ -94,9 +95,13 @@ void print_environment(const std::string& name, const Environment& e, const Envi
             2 * l.radius_deg);
     if (s.lights.empty()) print("  bright light     none stands out\n");
     const RepairReport r = e.report();
+    const Vec3d added = r.share_added() * 100;
     if (r.repaired())
-        print("  bad texels       {} not a number, {} infinite, {} negative (down to {:.4g}); repaired on reading\n",
-              r.not_a_number, r.infinite, r.negative, r.negative_radiance);
+        print(
+            "  bad texels       {} not a number, {} infinite, {} negative (down to {:.4g}){}; repaired on reading, which "
+            "changed the light by {:+.3g} % red, {:+.3g} % green, {:+.3g} % blue\n",
+            r.not_a_number, r.infinite, r.negative, r.negative_radiance, r.negatives_kept ? ", kept" : "", added.x, added.y,
+            added.z);
     else
         print("  bad texels       none\n");
 }

@@ -229,7 +229,7 @@ int run(const LightsWords& w) {
     const std::string name = w.environment_files.empty() ? "built-in sky" : w.environment_files[0];
     EnvironmentOptions reading = w.environment;
     reading.threads = w.common.threads.value_or(0);
-    auto environment = open_environment_or_sky(w.environment_files, reading);
+    auto environment = open_light_to_draw_from(w.environment_files, reading);
     if (!environment) return print_error(environment.error());
     auto picture = read_picture(*environment, reading.threads);
     if (!picture) return print_error(picture.error().at(name));
@@ -241,7 +241,7 @@ int run(const LightsWords& w) {
     outcome.in_openexr_convention = environment->convention == "openexr";
     const auto json = write_all(w, outcome);
     if (!json) return print_error(json.error());
-    print_warnings(environment->report().warnings, w.common, name);
+    print_warnings(environment->report().lines(), w.common, name);
     if (outcome.in_openexr_convention && outcome.remainder_file == "remainder.hdr" && w.environment.latlong.empty())
         print_warnings({"the remainder is in OpenEXR's lat-long convention, which an .hdr file cannot state: read it "
                         "with --latlong openexr"},

@@ -242,7 +242,7 @@ int run_render(const std::vector<std::string>& words) {
         print_warnings(w.shading ? not_rendered(*scene, *w.shading) : not_rendered(*scene), w.common, name);
     }
     w.environment.threads = w.threads();
-    const auto open = [&] { return open_environment_or_sky(w.environment_files, w.environment); };
+    const auto open = [&] { return open_light_to_draw_from(w.environment_files, w.environment); };
     if (w.study) {
         auto environment = open();
         return environment ? run_study(w, std::move(scene), *environment) : print_error(environment.error());
@@ -260,6 +260,7 @@ int run_render(const std::vector<std::string>& words) {
     auto sampler =
         EnvironmentSampler::build(*environment, reference_sampler_options(options->strategy, options->threads));
     if (!sampler) return print_error(sampler.error());
+    print_warnings(environment->report().lines(), w.common, join(w.environment_files, " "));
     const auto maps = maps_for(w, *sampler);
     if (!maps) return print_error(maps.error());
     const LightMaps* bound = *maps ? &**maps : nullptr;

@@ -165,6 +165,7 @@ int run_study(const RenderWords& w, std::optional<Scene> given, const Environmen
     }
     auto sampler = EnvironmentSampler::build(environment, reference_sampler_options(LightStrategy::mis, w.threads()));
     if (!sampler) return print_error(sampler.error());
+    print_warnings(environment.report().lines(), w.common, join(w.environment_files, " "));
     StudyLight light;
     light.name = w.environment_files.empty() ? "sky" : fs::path(w.environment_files[0]).stem().string();
     light.world_to_source = sampler->world_to_source();

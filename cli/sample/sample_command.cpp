@@ -113,11 +113,11 @@ int run_sample(const std::vector<std::string>& words) {
     if (const auto code = begin_command(arguments, words, w.common)) return *code;
     if (auto ok = check_sample_options(arguments, w); !ok) return print_error(ok.error(), exit_usage);
 
-    auto environment = open_environment_or_sky(w.inputs, w.environment);
+    auto environment = open_light_to_draw_from(w.inputs, w.environment);
     if (!environment) return print_error(environment.error());
     auto sampler = EnvironmentSampler::build(*environment, w.sampler);
     if (!sampler) return print_error(sampler.error().at(w.environment_name()));
-    print_warnings(environment->report().warnings, w.common, w.environment_name());
+    print_warnings(environment->report().lines(), w.common, w.environment_name());
     if (w.sampler.compensate && !w.common.quiet && sampler->compensation() > 0)
         print_warnings({"compensated samples leave out the light below the mean: use them only beside BRDF sampling"},
                        w.common);

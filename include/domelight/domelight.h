@@ -71,6 +71,7 @@
 #include "domelight/image/colour.h"
 #include "domelight/image/cube_layout.h"
 #include "domelight/image/image.h"
+#include "domelight/image/negatives.h"
 #include "domelight/image/repair_report.h"
 #include "domelight/image/rgba8_image.h"
 #include "domelight/image/row_source.h"

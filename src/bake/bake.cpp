@@ -347,11 +347,7 @@ std::filesystem::path engine_folder(const std::filesystem::path& folder, const B
 }
 
 void add_warnings(BakeReport& report, const Environment& environment, const BakeOptions& options) {
-    report.warnings = report.repaired.warnings;
-    if (report.repaired.repaired())
-        report.warnings.push_back(fmt::format(
-            "repaired texels: {} not a number, {} infinite, {} negative (down to {:.4g})", report.repaired.not_a_number,
-            report.repaired.infinite, report.repaired.negative, report.repaired.negative_radiance));
+    report.warnings = report.repaired.lines();
     if (options.method != BakeMethod::exact && environment.cube())
         report.warnings.push_back(fmt::format(
             "`method` {} works on lat-long images: the cube was resampled to one first", name_of(options.method)));

@@ -55,6 +55,7 @@ Json environment_json(const EnvironmentOptions& e) {
     if (!e.layer.empty()) json["layer"] = e.layer;
     if (!e.faces.empty()) json["faces"] = e.faces;
     if (e.face_orientation) json["face_orientation"] = name_of(*e.face_orientation);
+    if (e.negatives != Negatives::balance) json["negatives"] = name_of(e.negatives);
     return json;
 }
 
@@ -227,6 +228,10 @@ std::string manifest_json(const EngineReport& report, const EnginePlan& plan, co
                         {"negative", source.repaired.negative},
                         {"most_negative", source.repaired.negative_radiance}}}};
     if (!source.layer.empty()) json["source"]["layer"] = source.layer;
+    if (source.repaired.repaired()) {
+        const Vec3d added = source.repaired.share_added();
+        json["source"]["repaired"]["light_added"] = {added.x, added.y, added.z};
+    }
     json["engine"] = {{"name", report.name}, {"loads", plan.engine->loads}, {"note", plan.engine->note}};
     json["convention"] = convention_json(plan);
     json["options"] = options_json(plan, options);

@@ -27,6 +27,7 @@ struct ImageFacts {
     int width = 0, height = 0;
     std::string layer;               ///< OpenEXR: the layer that is read; empty: the unnamed one
     bool high_dynamic_range = true;  ///< false: cut off at the white of a screen
+    bool always_light = false;       ///< the format has no negative values, infinities and NaNs (before `to_rec709`)
     float largest = 0;               ///< the largest finite value of the format, which replaces infinity
     Envmap envmap = Envmap::none;
     std::optional<Mat3> to_rec709 = std::nullopt;  ///< the file's primaries to linear Rec. 709, where they differ

@@ -4,6 +4,7 @@
 #include "domelight/filtering/resample/area_resample.h"
 #include "domelight/image/row_source.h"
 
+#include "image/row_sum.h"
 #include "io/environment/convert_rows.h"
 
 #include <algorithm>
@@ -21,17 +22,7 @@ class MeasuredRows {
         if (const auto read = rows_.read(block); !read) return read;
         std::vector<Vec3d> sums(std::size_t(block.height));
         parallel_for(block.height, threads, [&](int y) {
-            // Four independent sums for each channel, so that additions overlap. Four floats are added in single
-            // precision before they join a sum.
-            double sum[12] = {};
-            const float* p = block.row(y);
-            const int n = 3 * block.width;
-            int i = 0;
-            for (; i + 48 <= n; i += 48)
-                for (int k = 0; k < 12; ++k) sum[k] += (p[i + k] + p[i + 12 + k]) + (p[i + 24 + k] + p[i + 36 + k]);
-            for (int k = 0; i < n; ++i, k = (k + 1) % 3) sum[k] += p[i];
-            sums[std::size_t(y)] = Vec3d{sum[0] + sum[3] + sum[6] + sum[9], sum[1] + sum[4] + sum[7] + sum[10],
-                                         sum[2] + sum[5] + sum[8] + sum[11]} *
+            sums[std::size_t(y)] = row_sum({block.row(y), std::size_t(3) * std::size_t(block.width)}) *
                                    latlong_solid_angle(next_ + y, rows_.width(), rows_.height());
         });
         for (const Vec3d& sum : sums) power_ += sum;
@@ -86,9 +77,8 @@ Result<std::optional<ImageF>> by_rows(const Environment& environment, const Proj
     return std::optional<ImageF>(*std::move(image));
 }
 
-}  // namespace
-
-Result<Conversion> convert(const Environment& environment, const Projection& target, const ConvertOptions& o) {
+/// The conversion, with the power of what was read after its repair as that before.
+Result<Conversion> convert_repaired(const Environment& environment, const Projection& target, const ConvertOptions& o) {
     Conversion result{{target, {}}, {}, {}, "conservative"};
     const Mat3 world_to_source = environment.world_to_source * o.turn.transposed();
     if (environment.storage() == Environment::Storage::rows) {
@@ -126,6 +116,19 @@ Result<Conversion> convert(const Environment& environment, const Projection& tar
     result.image = reproject(source, target, o.width, o.height, o.threads, o.progress);
     result.power_after = radiant_power(result.image, o.threads);
     return result;
+}
+
+/// Undoes in the power of the repaired image what the repair changed.
+Vec3d power_as_stored(const Vec3d& repaired, const Vec3d& share_added) {
+    return {repaired.x / (1 + share_added.x), repaired.y / (1 + share_added.y), repaired.z / (1 + share_added.z)};
+}
+
+}  // namespace
+
+Result<Conversion> convert(const Environment& environment, const Projection& target, const ConvertOptions& o) {
+    auto made = convert_repaired(environment, target, o);
+    if (made) made->power_before = power_as_stored(made->power_before, environment.report().share_added());
+    return made;
 }
 
 int matched_height(const Environment& environment, const Projection& target) {

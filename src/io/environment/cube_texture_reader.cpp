@@ -35,7 +35,7 @@ std::string assumed_curve(const TextureInfo& info) {
 
 }  // namespace
 
-Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_t max_bytes, float scale,
+Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_t max_bytes, RepairOptions repair,
                                   RepairReport& report, Decode decode) {
     const Result<TextureInfo> info = read_texture_info(file);
     if (!info) return info.error().at(file.string());
@@ -53,14 +53,12 @@ Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_
         return Error{"texture has two channels, not a colour", file.string(), ""};
 
     Cubemap cube(texture->width);
-    const RepairOptions repair{.scale = scale, .wraps = false};
+    if (texture->encoding == Encoding::rgba16f || texture->encoding == Encoding::r11g11b10f) repair.largest = 65504;
     for (int f = 0; f < 6; ++f) {
         const ImageF face = decode_texture(*texture, 0, f);
-        for (int y = 0; y < cube.size(); ++y) {
-            float* row = cube.face(f).row(y);
-            for (int x = 0; x < cube.size(); ++x) std::copy_n(face.at(x, y), 3, row + 3 * x);
-            repair_row({row, std::size_t(cube.size()) * 3}, repair, report);
-        }
+        for (int y = 0; y < cube.size(); ++y)
+            for (int x = 0; x < cube.size(); ++x) std::copy_n(face.at(x, y), 3, cube.face(f).at(x, y));
+        repair_image(cube.face(f), repair, report);
     }
     if (info->container.starts_with("Babylon")) {
         const TexelOrder mirrored = TexelOrder::of_cube({{Vec3d{-1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}}});
@@ -73,17 +71,15 @@ Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_
     return cube;
 }
 
-Result<GltfEnvironment> read_gltf_environment(const std::filesystem::path& file, std::int64_t max_bytes, float scale,
-                                              RepairReport& report) {
+Result<GltfEnvironment> read_gltf_environment(const std::filesystem::path& file, std::int64_t max_bytes,
+                                              RepairOptions repair, RepairReport& report) {
     const auto bytes = FileBytes::open(file, max_bytes);
     if (!bytes) return bytes.error();
     auto light = read_gltf_image_light(*bytes, file.parent_path(), max_bytes, 1);
     if (!light) return light.error().at(file.string());
     GltfEnvironment environment{std::move(light->levels.front()), light->rotation};
-    const RepairOptions repair{.scale = scale * float(light->intensity), .wraps = false};
-    for (int f = 0; f < 6; ++f)
-        for (int y = 0; y < environment.cube.size(); ++y)
-            repair_row({environment.cube.face(f).row(y), std::size_t(environment.cube.size()) * 3}, repair, report);
+    repair.scale *= float(light->intensity);
+    for (int f = 0; f < 6; ++f) repair_image(environment.cube.face(f), repair, report);
     if (light->low_dynamic_range)
         report.warnings.push_back("the light's pictures are not HDR: values above 1 are clipped");
     return environment;

@@ -5,6 +5,8 @@
 #include "domelight/image/repair_report.h"
 #include "domelight/io/decode.h"
 
+#include "image/repair.h"
+
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -16,19 +18,18 @@ namespace domelight {
 /// "KTX2", "KTX", "DDS" or "Babylon .env" by a file's first bytes, else empty.
 std::string texture_container(std::span<const std::uint8_t> bytes);
 
-/// The finest level of a cube texture in one of our encodings, mended and times `scale`. The faces are taken to be
+/// The finest level of a cube texture in one of our encodings, repaired. The faces are taken to be
 /// OpenGL's; those of a .env file are turned from Babylon's world into ours. `decode`: what eight bits a channel mean
 /// (screen_texels.h). Errors name the file.
-Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_t max_bytes, float scale,
+Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_t max_bytes, RepairOptions repair,
                                   RepairReport& report, Decode decode = Decode::automatic);
 
-/// The finest level of the light in a glTF file with EXT_lights_image_based, mended and times `scale` and its own
-/// intensity; `rotation`: the environment's, a unit quaternion x, y, z, w. Errors name the file.
+/// The finest level of the light in a glTF file with EXT_lights_image_based, repaired and times its own intensity; `rotation`: the environment's, a unit quaternion x, y, z, w. Errors name the file.
 struct GltfEnvironment {
     Cubemap cube;
     std::array<float, 4> rotation;
 };
-Result<GltfEnvironment> read_gltf_environment(const std::filesystem::path& file, std::int64_t max_bytes, float scale,
-                                              RepairReport& report);
+Result<GltfEnvironment> read_gltf_environment(const std::filesystem::path& file, std::int64_t max_bytes,
+                                              RepairOptions repair, RepairReport& report);
 
 }  // namespace domelight

@@ -255,10 +255,18 @@ Result<std::unique_ptr<ImageReader>> open_file(const std::filesystem::path& file
     return image;
 }
 
+RepairOptions repair_options(const Request& request, bool wraps) {
+    RepairOptions repair;
+    repair.scale = request.scale;
+    repair.wraps = wraps;
+    repair.negatives = request.options.negatives;
+    repair.threads = request.options.threads;
+    return repair;
+}
+
 std::unique_ptr<RowSource> radiance_of(const std::filesystem::path& file, std::unique_ptr<ImageReader> image,
                                        const Request& request, bool wraps, std::shared_ptr<RepairReport> report) {
-    return std::make_unique<RadianceReader>(file, std::move(image), request.scale, wraps, request.options.threads,
-                                            std::move(report));
+    return std::make_unique<RadianceReader>(file, std::move(image), repair_options(request, wraps), std::move(report));
 }
 
 /// Adds the report of one more file. A warning that several files share is kept once.
@@ -424,7 +432,7 @@ Result<Environment> open_texture(const std::filesystem::path& file, const std::s
         if (auto ok = check_no_faces(request.options, "a .env file, which states them"); !ok) return ok.error();
     RepairReport report;
     Result<Cubemap> cube =
-        read_cube_texture(file, request.options.max_bytes, request.scale, report, request.options.decode);
+        read_cube_texture(file, request.options.max_bytes, repair_options(request, false), report, request.options.decode);
     if (!cube) return cube.error();
     const auto orientation = request.options.face_orientation;
     if (!orientation && !babylon)
@@ -447,7 +455,7 @@ Result<Environment> open_gltf_light(const std::filesystem::path& file, const Req
         return Error{"a glTF file's light is a cube: leave " + projection + " out", field_place("projection"), ""};
     if (auto ok = check_no_faces(request.options, "a glTF file, which states them"); !ok) return ok.error();
     RepairReport report;
-    auto light = read_gltf_environment(file, request.options.max_bytes, request.scale, report);
+    auto light = read_gltf_environment(file, request.options.max_bytes, repair_options(request, false), report);
     if (!light) return light.error();
     const int size = light->cube.size();
     Environment environment = with_facts(finish_cube(std::move(light->cube), std::move(report), request), {file},

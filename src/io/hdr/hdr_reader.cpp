@@ -79,6 +79,7 @@ Result<std::unique_ptr<ImageReader>> HdrReader::open(std::shared_ptr<const FileB
     facts.width = header->width;
     facts.height = header->height;
     facts.largest = k_largest_radiance;
+    facts.always_light = true;
     facts.warnings = header->warnings;
     reader->set_scale();
     reader->set_primaries();

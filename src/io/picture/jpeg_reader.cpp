@@ -119,6 +119,7 @@ void JpegReader::set_colour() {
         if (!said) colour_.notes.push_back(said.error().what + ": ignored");
     }
     facts_.high_dynamic_range = colour_.hdr;
+    facts_.always_light = !colour_.profile;
     facts_.largest = colour_.curves[0].back();
     facts_.to_rec709 = colour_.to_rec709;
     facts_.warnings = screen_warnings("JPEG", colour_, assumed);

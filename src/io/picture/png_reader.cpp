@@ -96,6 +96,7 @@ void PngReader::set_colour() {
                                                   : PngColour{colour_of_decode(decode_, levels)};
     colour_ = std::move(said.colour);
     facts_.high_dynamic_range = colour_.hdr;
+    facts_.always_light = !colour_.profile;
     facts_.largest = colour_.curves[0].back();
     facts_.to_rec709 = colour_.to_rec709;
     facts_.warnings = screen_warnings("PNG", colour_, said.assumed);

@@ -19,7 +19,8 @@ struct ConvertOptions {
 
 struct Conversion {
     ProjectedImage image;
-    Vec3d power_before, power_after;  ///< radiant_power of both
+    /// radiant_power of the image made, and of the source as its file has it: before bad texels were repaired.
+    Vec3d power_before, power_after;
     std::string method;  ///< "copy" (the same texels, moved), "exact" (area_resample.h, by rows), "conservative"
                          ///< (reproject.h)
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "domelight/environment/environment.h"
+#include "domelight/image/negatives.h"
 #include "domelight/io/decode.h"
 #include "domelight/io/face_orientation.h"
 
@@ -36,6 +37,7 @@ struct EnvironmentOptions {
     std::string up = "+Y";
     double exposure = 0;                             ///< stops: radiance is multiplied by 2^exposure
     std::int64_t max_bytes = std::int64_t(1) << 30;  ///< images whose decoding would need more memory are refused
+    Negatives negatives = Negatives::balance;        ///< what becomes of negative values in the file
     int threads = 0;                                 ///< for decoding; 0: all
 };
 
