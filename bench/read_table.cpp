@@ -1,7 +1,8 @@
 // The error of each engine's chain as a shader reads it, in the encoding that is stored: between texels and between
 // levels.
 //
-//     accuracy of every engine:   read_table [--for ENGINE]... [--size N] [--levels N] [--roughness r0,r1,...] FILE...
+//     read_table [--for ENGINE]... [--size N] [--levels N] [--roughness r0,r1,...]
+//                               [--texels centre|read] FILE...
 //
 // Prints a line for each engine and file, and the levels of each at their own roughness. Engines that filter by
 // themselves have no chain and are left out.
@@ -43,6 +44,7 @@ std::vector<FilteredMap> filtered(const EnginePlan& plan, const std::vector<Leve
                                   const Environment& environment) {
     FilterOptions filter;
     filter.layout = plan.layout;
+    filter.texels = plan.texels;
     filter.sh_bands = 0;
     for (const LevelPlan& level : levels) filter.specular.push_back(level.spec);
     return take(prefilter(environment, filter)).specular;
@@ -79,6 +81,8 @@ int main(int argc, char** argv) {
             options.size = std::atoi(argv[++i]);
         else if (is("--levels"))
             options.levels = std::atoi(argv[++i]);
+        else if (is("--texels"))
+            options.texels = take(from_name<Texels>(argv[++i]));
         else if (is("--roughness")) {
             std::stringstream words(argv[++i]);
             for (std::string word; std::getline(words, word, ',');) options.roughness.push_back(std::stod(word));

@@ -76,6 +76,11 @@ void declare(Arguments& a, BakeWords& w) {
              "(2 pi) cos^n (ggx)");
     a.numbers("--exponents", "n0,n1,...", w.options.exponents,
               "Phong exponent of each level; inf is the environment itself (inf, 2048, 512, ...)");
+    a.choice(
+        "--texels", w.options.texels,
+        "what the texels of the specular cubes hold: read, the values whose interpolation between texels is nearest "
+        "to the filtered light; or centre, the light in the direction of each texel's centre (read for cubes by the "
+        "exact method, otherwise centre)");
     a.choice("--method", w.options.method, "exact, or one of the plain, slow methods (exact)");
     add_point_options(a, w.points);
     a.text("--riemann-steps", "KxJ", w.riemann_steps,
@@ -115,6 +120,10 @@ void declare(Arguments& a, BakeWords& w) {
     a.flag("--no-zstd", w.no_zstd, "do not compress .ktx2, even where zstd is the engine's default");
     a.flag("--brdf-float", w.options.brdf_float, "32-bit floats in the BRDF table");
     a.flag("--no-preview", w.no_preview, "no preview.png");
+    a.flag(
+        "--as-read", w.options.as_read,
+        "measure what a shader reads, between texels and between levels, against the exact filter, and put the errors "
+        "into the manifest");
     a.flag("--no-hashes", w.no_hashes, "no SHA-256 in the manifest");
     a.flag("--force", w.force, "with several environments: also bake those that are up to date");
     add_environment_options(a, w.environment);

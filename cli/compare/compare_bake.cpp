@@ -12,6 +12,7 @@
 #include "cli/console/field_options.h"
 #include "cli/console/print.h"
 #include "compare/latlong_level.h"
+#include "compare/read_error_json.h"
 #include "io/environment/cube_texture_reader.h"
 #include "io/file/file_reader.h"
 #include "io/file/json.h"
@@ -34,6 +35,7 @@ struct Bake {
     std::string format;
     std::string stated_by;  ///< who says which roughness the levels have
     Lobe lobe = Lobe::ggx;
+    Texels texels = Texels::centre;
     std::function<double(double)> level_of;  ///< by --for; empty: linear between the levels
 };
 
@@ -57,6 +59,7 @@ void read_keys(const std::map<std::string, std::string>& keys, Bake& bake) {
         return key == keys.end() ? std::string() : key->second;
     };
     bake.lobe = from_name<Lobe>(value("domelight.lobe")).value_or(Lobe::ggx);
+    bake.texels = from_name<Texels>(value("domelight.texels")).value_or(Texels::centre);
     const auto roughness = numbers_in(value("domelight.roughness"), bake.levels.size(), 1);
     const auto exponents =
         numbers_in(value("domelight.exponent"), bake.levels.size(), std::numeric_limits<double>::infinity());
@@ -204,19 +207,6 @@ Json level_json(int index, const LevelAudit& l) {
     return json;
 }
 
-Json read_json(const ReadErrorAt& at) {
-    return {
-        {"roughness", at.roughness}, {"level", at.level}, {"relative_rmse", at.relative_rmse}, {"largest", at.largest}};
-}
-
-Json as_read_json(const ReadErrors& errors) {
-    Json levels = Json::array(), between = Json::array();
-    for (const ReadErrorAt& at : errors.levels) levels.push_back(read_json(at));
-    for (const ReadErrorAt& at : errors.between) between.push_back(read_json(at));
-    return {
-        {"relative_rmse", errors.relative_rmse}, {"largest", errors.largest}, {"levels", levels}, {"between", between}};
-}
-
 void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, const std::optional<ReadErrors>& as_read,
                 const std::string& as_convention, std::vector<std::string> warnings) {
     warnings.insert(warnings.end(), audit.notes.begin(), audit.notes.end());
@@ -243,7 +233,7 @@ void print_json(const BakeWords& w, const Bake& bake, const BakeAudit& audit, co
               {"roughness_stated_by", bake.stated_by},
               {"levels", levels},
               {"warnings", with_options(warnings)}};
-    if (as_read) json["as_read"] = as_read_json(*as_read);
+    if (as_read) json["as_read"] = read_errors_json(*as_read);
     print_document(json);
 }
 
@@ -370,6 +360,7 @@ int compare_bake(const BakeWords& w, const CommonOptions& common) {
     AuditOptions audit_options;
     audit_options.threads = threads;
     audit_options.lobe = bake->lobe;
+    audit_options.texels_hold = bake->texels;
     if (!std::isnan(w.within)) audit_options.within = w.within;
     audit_options.texels = w.texels.value_or(audit_options.texels);
     Result<BakeAudit> audit = Error{};

@@ -8,6 +8,7 @@
 #include "domelight/io/file/atomic_file.h"
 #include "domelight/io/write_image.h"
 
+#include "bake/chain_as_read.h"
 #include "bake/filter_job.h"
 #include "bake/manifest.h"
 #include "bake/outputs.h"
@@ -89,6 +90,7 @@ std::map<std::string, std::string> map_metadata(const EnginePlan& plan, const Ba
     metadata["domelight.convention"] = map_convention(plan, map);
     if (map.quantity != Quantity::radiance) return metadata;
     metadata["domelight.lobe"] = name_of(map.lobe);
+    if (plan.texels == Texels::read) metadata["domelight.texels"] = name_of(plan.texels);
     if (map.lobe == Lobe::ggx || map.lobe == Lobe::charlie) {
         metadata["domelight.roughness"] = per_level(levels, [](const LevelPlan& l) { return l.roughness; });
         metadata["domelight.alpha"] = per_level(levels, [](const LevelPlan& l) { return l.alpha; });
@@ -139,6 +141,24 @@ class EngineBake {
         write_light(maps);
         write_sh();
         write_brdf();
+    }
+
+    /// What a shader reads from the chains, where that is asked for.
+    Result<void> measure(const FilterJob::Maps& maps, const Environment& environment, std::vector<StageTime>& stages) {
+        if (!options_.as_read || engine_.environment_only) return {};
+        const StageClock clock(stages, "as-read");
+        ReadErrorOptions options;
+        options.threads = options_.threads;
+        for (BakedMap& map : report_.maps) {
+            const bool sheen = map.role == "sheen";
+            if ((map.role != "specular" && !sheen) || is_phong(map.lobe)) continue;
+            const ReadChain chain = chain_as_read(plan_, map.lobe, sheen ? plan_.sheen : plan_.specular,
+                                                  sheen ? maps.sheen : maps.specular, options_);
+            auto errors = measure_as_read(chain, environment, options);
+            if (!errors) return errors.error();
+            map.as_read = *std::move(errors);
+        }
+        return {};
     }
 
     /// The picture, while the maps are being written.
@@ -402,6 +422,7 @@ Result<BakeReport> bake(const Environment& environment, const BakeOptions& optio
         const FilterJob::Maps maps = job.maps(e);
         bakes[e]->start(maps, job.result(e), report.stages);
         bakes[e]->draw(maps, source.file, report.stages);
+        if (auto ok = bakes[e]->measure(maps, environment, report.stages); !ok) return ok.error();
         if (auto ok = bakes[e]->finish_writing(report.stages); !ok) return ok.error();
     }
     {

@@ -22,7 +22,7 @@ bool same_level(const LevelSpec& a, const LevelSpec& b) {
 
 /// Of two runs over one environment.
 bool same_run(const FilterOptions& a, const FilterOptions& b) {
-    return a.layout == b.layout && a.irradiance_size == b.irradiance_size &&
+    return a.layout == b.layout && a.texels == b.texels && a.irradiance_size == b.irradiance_size &&
            std::equal(a.specular.begin(), a.specular.end(), b.specular.begin(), b.specular.end(), same_level);
 }
 
@@ -30,6 +30,7 @@ FilterOptions filter_options(const EnginePlan& plan, const Environment& environm
     FilterOptions filter;
     if (!plan.engine->environment_only) {
         filter.layout = plan.layout;
+        filter.texels = plan.texels;
         for (const LevelPlan& level : plan.specular) filter.specular.push_back(level.spec);
         for (const LevelPlan& level : plan.sheen) filter.specular.push_back(level.spec);
         filter.specular.insert(filter.specular.end(), plan.gap_probes.begin(), plan.gap_probes.end());

@@ -5,6 +5,7 @@
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/projection/projections.h"
 
+#include "compare/read_error_json.h"
 #include "io/file/json.h"
 #include "io/file/sha256.h"
 #include "projection/convention_text.h"
@@ -73,6 +74,7 @@ Json options_json(const EnginePlan& plan, const BakeOptions& o) {
     for (const LevelPlan& level : plan.specular)
         widths.push_back(phong ? exponent_json(level.exponent) : Json(level.roughness));
     json[phong ? "exponents" : "roughness"] = widths;
+    if (!plan.engine->environment_only) json["texels"] = name_of(plan.texels);
     json["method"] = name_of(o.method);
     if (o.method == BakeMethod::montecarlo) {
         json["samples"] = o.points.count;
@@ -101,6 +103,7 @@ Json options_json(const EnginePlan& plan, const BakeOptions& o) {
     json["brdf_float"] = o.brdf_float;
     json["preview"] = o.preview;
     json["hashes"] = o.hashes;
+    if (o.as_read) json["as_read"] = true;
     json["environment"] = environment_json(o.environment);
     return json;
 }
@@ -146,6 +149,7 @@ Json map_json(const BakedMap& map) {
     json["encoding"] = map.encoding;
     json["zstd"] = map.zstd;
     for (const BakedLevel& level : map.levels) json["levels"].push_back(level_json(map, level));
+    if (map.as_read) json["as_read"] = read_errors_json(*map.as_read);
     for (const PhongGap& gap : map.gaps)
         json["between_levels"].push_back(
             {{"exponent", gap.exponent}, {"median_error", gap.median_error}, {"worst_error", gap.worst_error}});

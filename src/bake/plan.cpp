@@ -294,6 +294,22 @@ Result<void> plan_projection(EnginePlan& plan, const BakeOptions& o) {
     return {};
 }
 
+/// What the texels of the chain hold.
+Result<void> plan_texels(EnginePlan& plan, const BakeOptions& o) {
+    const auto refuse = [&]() -> Result<void> {
+        if (o.method != BakeMethod::exact) return field_error("texels", "read needs `method` exact");
+        if (plan.engine->environment_only)
+            return field_error("texels", "does not apply to `engines` " + plan.engine->name);
+        if (plan.layout != Layout::cube) return field_error("texels", "read needs `layout` cube");
+        if (plan.reprojected)
+            return field_error("texels", "read does not apply to `format` exr-mip, whose samples lie on edges");
+        return {};
+    };
+    const auto possible = refuse();
+    plan.texels = o.texels.value_or(possible ? Texels::read : Texels::centre);
+    return plan.texels == Texels::read ? possible : Result<void>();
+}
+
 /// Plans the bake for one engine, whose options have passed check_values().
 Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& o, const Environment* environment) {
     EnginePlan plan;
@@ -312,6 +328,7 @@ Result<EnginePlan> plan_engine(const Engine& engine, const BakeOptions& o, const
         o.irradiance_size.value_or(engine.irradiance_size) * (plan.layout == Layout::latlong ? 2 : 1);
     if (const auto ok = check_own_container(plan, o); !ok) return ok.error();
     if (const auto ok = plan_projection(plan, o); !ok) return ok.error();
+    if (const auto ok = plan_texels(plan, o); !ok) return ok.error();
     return plan;
 }
 

@@ -16,6 +16,7 @@ struct EnginePlan {
     const Engine* engine = nullptr;
     Layout layout = Layout::cube;
     Lobe lobe = Lobe::ggx;
+    Texels texels = Texels::centre;  ///< of specular and sheen
     std::vector<LevelPlan> specular;
     std::vector<LevelPlan> sheen;
     /// The level that the engine's shader reads for a roughness; empty if the roughness of each level was asked for.

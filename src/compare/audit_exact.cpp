@@ -41,6 +41,7 @@ Result<void> ExactFilter::make(std::span<const ExactLevel> levels, const Progres
 Result<FilterResult> ExactFilter::filter(std::span<const ExactLevel> levels, const Progress& progress) const {
     FilterOptions options;
     options.sh_bands = 0;
+    options.texels = texels_;
     options.threads = threads_;
     options.progress = progress;
     for (const ExactLevel& level : levels)

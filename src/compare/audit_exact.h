@@ -15,7 +15,8 @@ struct ExactLevel {
 
 class ExactFilter {
   public:
-    ExactFilter(const Environment& source, Lobe lobe, int threads) : source_(source), lobe_(lobe), threads_(threads) {}
+    ExactFilter(const Environment& source, Lobe lobe, Texels texels, int threads)
+        : source_(source), lobe_(lobe), texels_(texels), threads_(threads) {}
 
     /// Filters the source once for all levels (several times where they need more than 512 MiB together) and calls
     /// `use(index, cube)` for each, in order. `progress` is passed on to prefilter().
@@ -27,6 +28,7 @@ class ExactFilter {
 
     const Environment& source_;
     Lobe lobe_;
+    Texels texels_;
     int threads_;
 };
 

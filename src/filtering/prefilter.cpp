@@ -11,6 +11,7 @@
 #include "filtering/harmonic/spectrum_evaluate.h"
 #include "filtering/kernel/residual_kernel.h"
 #include "filtering/prefilter_runs.h"
+#include "filtering/read_texels.h"
 
 #include <cmath>
 #include <deque>
@@ -161,8 +162,13 @@ class Synthesis {
             const bool irradiance = levels[i] == FilterPlan::k_irradiance;
             const int size = irradiance ? options_.irradiance_size : options_.specular[levels[i]].size;
             FilteredMap& map = irradiance ? result_.irradiance_over_pi : result_.specular[levels[i]];
+            const bool for_reading = options_.texels == Texels::read && options_.layout == Layout::cube && !irradiance &&
+                                     gains_by_read_texels(kernels[i], size);
             if (!options_.directions.empty())
                 map = {Layout::latlong, grid_at_directions(grids[i], options_.directions, lookup, result_.clamped)};
+            else if (for_reading)
+                map = read_texels(grid_to_cube(grids[i], size * read_texels_factor(size), lookup, result_.clamped), size,
+                                  options_.threads);
             else if (options_.layout == Layout::cube)
                 map = grid_to_cube(grids[i], size, lookup, result_.clamped);
             else

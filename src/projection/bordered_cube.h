@@ -7,6 +7,10 @@
 
 namespace domelight {
 
+/// The texel at column x and row y of a face, or the one across the edge where one of the two is a step outside the face
+/// (-1 or size): its index in the strip of faces, (face * size + row) * size + column.
+int texel_or_across(int size, int face, int x, int y);
+
 /// A cubemap's RGB texels with a border of one texel around each face, taken from across the edges; a corner of the
 /// border is the mean of the three texels that meet there. Bilinear interpolation of a bordered face, up to the face's
 /// edge, is the cube's reconstruction, which is continuous across edges.

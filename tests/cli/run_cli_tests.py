@@ -399,6 +399,15 @@ def test_a_bake_is_measured_as_a_shader_reads_it(folder):
     assert len(between) == 24 and all(0.1 <= b["roughness"] <= 1 and abs(b["level"] - 3 * b["roughness"]) < 1e-6 for b in between)
     assert all(l["relative_rmse"] < audit["as_read"]["relative_rmse"] < 1 for l in levels)
     text = run(*words, "--for", "filament", folder=folder).stdout  # it is not filament's curve
+    assert all(abs(l["error"]) < 1e-3 and l["relative_rmse"] < 1e-3 for l in audit["levels"])  # texels made in the same way
+    run("bake", "studio.hdr", "-o", "centre", *SMALL, "--texels", "centre", "--as-read", folder=folder)
+    run("bake", "studio.hdr", "-o", "read", *SMALL, "--as-read", folder=folder)
+    by = {name: manifest_of(folder / name) for name in ("centre", "read")}
+    assert all(by[name]["options"]["texels"] == name for name in by)
+    errors = {name: [l["relative_rmse"] for l in by[name]["specular"]["as_read"]["levels"]] for name in by}
+    assert all(r < 0.8 * c for r, c in zip(errors["read"], errors["centre"])), errors
+    run("bake", "studio.hdr", "-o", "no", *SMALL, "--texels", "read", "--layout", "latlong", folder=folder, code=2)
+    run("bake", "studio.hdr", "-o", "no", *SMALL, "--texels", "read", "--method", "riemann", folder=folder, code=2)
     assert "as a shader reads it" in text and "0.1 to 1" in text
 
 

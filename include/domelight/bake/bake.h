@@ -1,6 +1,7 @@
 #pragma once
 
 #include "domelight/base/names.h"
+#include "domelight/compare/read_error.h"
 #include "domelight/base/progress.h"
 #include "domelight/base/result.h"
 #include "domelight/engines/engine.h"
@@ -54,6 +55,9 @@ struct BakeOptions {
     std::vector<double> roughness;  ///< of each level, [0, 1]; empty: the engine's curve
     std::optional<Lobe> lobe;
     std::vector<double> exponents;  ///< Phong: of each level; infinity is the environment itself
+    /// Of the specular chain and the sheen's: `read` needs cubes and the exact method, and is the default there. All else
+    /// holds the value at each texel's centre.
+    std::optional<Texels> texels;
     BakeMethod method = BakeMethod::exact;
     PointSet points;         ///< montecarlo: the sample points, 1 .. 2^24 of them, the same for every texel
     RiemannOptions riemann;  ///< 1 .. 65536 steps of each angle
@@ -76,6 +80,8 @@ struct BakeOptions {
     std::optional<int> brdf_size;  ///< width and height, 1 .. 4096
     bool brdf_float = false;       ///< the BRDF table in 32-bit floats instead of 16-bit ones
 
+    /// Measures what a shader reads from the chains of GGX and Charlie (read_error.h), for the manifest.
+    bool as_read = false;
     bool preview = true;  ///< preview.png
     bool hashes = true;   ///< SHA-256 of source and files in the manifest
     int threads = 0;
@@ -131,6 +137,7 @@ struct BakedMap {
     /// Phong by the exact method: one for each pair of neighbouring levels, without the level that is the environment
     /// itself.
     std::vector<PhongGap> gaps;
+    std::optional<ReadErrors> as_read;  ///< where BakeOptions::as_read asks for it
 };
 
 struct ShReport {

@@ -70,7 +70,8 @@ struct BakeAudit {
 };
 
 struct AuditOptions {
-    Lobe lobe = Lobe::ggx;  ///< with which the levels were filtered
+    Lobe lobe = Lobe::ggx;                ///< with which the levels were filtered
+    Texels texels_hold = Texels::centre;  ///< what the levels' texels hold, and so those that they are compared with
     /// Texels compared in each level, at least 96: a quarter are the brightest, the others random. A level with fewer
     /// texels is compared whole.
     int texels = 6144;

@@ -24,6 +24,19 @@ struct EnumNames<Layout> {
     static constexpr NamedValue<Layout> table[] = {{Layout::cube, "cube"}, {Layout::latlong, "latlong"}};
 };
 
+/// What the texels of a filtered cube hold.
+enum class Texels {
+    centre,  ///< the filtered light in the direction of each texel's centre
+    /// For lookups between texels: the values, none negative, whose bilinear interpolation, seamless across the cube's
+    /// edges, is nearest to the filtered light over the sphere in the sense of least squares
+    read,
+};
+template <>
+struct EnumNames<Texels> {
+    static constexpr const char* kind = "a kind of texels";
+    static constexpr NamedValue<Texels> table[] = {{Texels::centre, "centre"}, {Texels::read, "read"}};
+};
+
 /// One level of a specular chain.
 struct LevelSpec {
     int size = 0;         ///< cube: face size; lat-long: height (the width is twice that)
@@ -39,6 +52,9 @@ struct FilterOptions {
     /// then an image one row high with a pixel for each direction, whatever `layout` and the sizes say. No level may be
     /// the environment itself.
     std::vector<Vec3d> directions;
+    /// Of the specular levels of a cube, but for those that are the environment itself or whose lobe is narrower than
+    /// half a texel. All else holds the value at the texel's centre.
+    Texels texels = Texels::centre;
     int irradiance_size = 0;  ///< face size (cube) or height (lat-long); 0: none
     int sh_bands = 3;         ///< spherical harmonics of the radiance, this many bands; 0: none
     /// Where to look in the source for the light from a world direction. An Environment has a world_to_source of its

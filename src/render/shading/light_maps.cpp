@@ -131,6 +131,7 @@ Result<LightMaps> LightMaps::bake(ImageView<const float> latlong, const Mat3& wo
         options.specular.push_back(level.spec);
         maps.impl_->roughness.push_back(is_phong(lobe) ? matching_roughness(level.exponent) : float(level.roughness));
     }
+    options.texels = Texels::read;
     options.irradiance_size = engine.irradiance_size;
     options.sh_bands = 3;
     options.world_to_source = world_to_source;
