@@ -2,7 +2,9 @@
 
 #include "domelight/filtering/resample/area_resample.h"
 
+#include "base/instruction_set.h"
 #include "filtering/resample/area_resample_plain.h"
+#include "filtering/resample/reproject_plain.h"
 #include "test.h"
 
 #include <algorithm>
@@ -167,6 +169,42 @@ TEST_CASE("reproject: agrees with the exact overlap of a smooth picture") {
     for (std::size_t i = 0; i < truth.pixels().size(); ++i)
         worst = std::max(worst, double(std::abs(truth.pixels()[i] - out.pixels.pixels()[i])));
     CHECK(worst < 1e-3);
+}
+
+TEST_CASE("reproject: agrees with its plain form, which integrates every outline in scalar doubles") {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> unit(0, 1);
+    const Mat3 turn = get("latlong/centre=+Y,right=+Z,up=-X").world_to_picture() * rotation_y(0.7);
+    const auto difference = [&](const std::string& from, int from_height, const std::string& name, int height) {
+        ProjectedImage source = picture(from, from_height, [&](const Vec3d& d) {
+            return Vec3d{0.2 + unit(random), unit(random) < 0.01 ? 1000.0 : 1.0, 2 + d.y};
+        });
+        source.projection = source.projection.turned(turn);
+        const Projection p = get(name);
+        const int width = int(height * p.shape().aspect());
+        const ProjectedImage fast = reproject(source, p, width, height, 2),
+                             plain = reproject_detail::reproject_plain(source, p, width, height, 2);
+        const Vec3d power = radiant_power(plain);
+        CHECK(relative(radiant_power(fast), power) < 1e-7);
+        double worst[3] = {};
+        for (std::size_t i = 0; i < plain.pixels.pixels().size(); ++i)
+            worst[i % 3] = std::max(worst[i % 3], std::abs(double(fast.pixels.pixels()[i]) - plain.pixels.pixels()[i]));
+        return std::max({worst[0], worst[1] / 1000, worst[2]});
+    };
+    // The same outlines: floats may round differently.
+    for (const std::string from : {"latlong", "latlong/mitsuba", "cube", "octahedral"})
+        for (const std::string name : {"latlong", "cube"}) {
+            INFO(from, " to ", name);
+            CHECK(difference(from, 24, name, 21) < 1e-6);
+        }
+    // Blocks small enough that corners are interpolated, with errors up to 1e-6 of a texel.
+    CHECK(difference("latlong", 256, "latlong", 192) < 1e-5);
+    for (const char* set : {"AVX2", "SSE4", "SCALAR", ""}) {
+        INFO(set);
+        simd::limit_instruction_set(set);
+        CHECK(difference("latlong", 256, "cube", 64) < 1e-5);
+    }
+    simd::limit_instruction_set("");
 }
 
 TEST_CASE("reproject: partial projections leave black, a mirror ball repeats its rim") {

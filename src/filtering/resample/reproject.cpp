@@ -2,6 +2,9 @@
 
 #include "domelight/base/parallel.h"
 
+#include "filtering/resample/reproject_interpolate.h"
+#include "filtering/resample/reproject_plain.h"
+#include "filtering/resample/reproject_sides.h"
 #include "filtering/resample/reproject_source.h"
 #include "filtering/resample/reproject_tile.h"
 
@@ -17,27 +20,49 @@ namespace reproject_detail {
 
 namespace {
 
-constexpr int k_tile = 16;
 /// The largest distance (in source texels) between a straight line and the curve that it approximates.
 constexpr double k_straight = 0.004;
+/// The largest error of an interpolated position, in source texels.
+constexpr double k_interpolated = 1e-6;
+
+enum class Method { plain, simd };
+
+/// What a thread keeps from one block to the next.
+struct Workspace {
+    TileIntegrator plain;
+    SideIntegrator simd;
+    SideSums sums;
+};
+
+/// Whether the projection is a smooth function within a whole chart.
+bool smooth_charts(const Projection& p) {
+    return p.grid() == SampleGrid::centres && (p.name() == "latlong" || p.name() == "cube");
+}
 
 class Reprojector {
   public:
-    Reprojector(const Source& source, const Projection& target, int width, int height, ImageF& out)
-        : source_(source), target_(target), width_(width), height_(height), out_(out) {}
+    Reprojector(const Source& source, const Projection& target, int width, int height, Method method, ImageF& out)
+        : source_(source),
+          target_(target),
+          width_(width),
+          height_(height),
+          method_(method),
+          // A lat-long source has no regions: a block is within one chart of it if no pole is near.
+          interpolates_(method == Method::simd && source.wraps() && smooth_charts(target)),
+          out_(out) {}
 
     /// Texels [x0, x1) x [y0, y1) of a chart: all together if possible, otherwise in parts, down to a single texel.
-    void block(int chart, int x0, int y0, int x1, int y1, TileIntegrator& integrator) const {
-        if (together(chart, x0, y0, x1, y1, integrator)) return;
+    void block(int chart, int x0, int y0, int x1, int y1, Workspace& work) const {
+        if (together(chart, x0, y0, x1, y1, work)) return;
         const int w = x1 - x0, h = y1 - y0;
         if (w == 1 && h == 1) {
             supersample(chart, x0, y0);
         } else if (w >= h) {
-            block(chart, x0, y0, x0 + w / 2, y1, integrator);
-            block(chart, x0 + w / 2, y0, x1, y1, integrator);
+            block(chart, x0, y0, x0 + w / 2, y1, work);
+            block(chart, x0 + w / 2, y0, x1, y1, work);
         } else {
-            block(chart, x0, y0, x1, y0 + h / 2, integrator);
-            block(chart, x0, y0 + h / 2, x1, y1, integrator);
+            block(chart, x0, y0, x1, y0 + h / 2, work);
+            block(chart, x0, y0 + h / 2, x1, y1, work);
         }
     }
 
@@ -55,12 +80,9 @@ class Reprojector {
         return {x < width_ ? b.u0 : b.u1, y < height_ ? b.v0 : b.v1};
     }
 
-    struct Point {
-        double x = 0, y = 0;
-    };
     /// The position of a target point in the chart and region of `near`, with x shifted by whole turns to be next to
     /// it.
-    Point place(int chart, double x, double y, const Place& near) const {
+    SourcePoint place(int chart, double x, double y, const Place& near) const {
         const Place p = source_.locate_near(direction(chart, x, y), near);
         return {unwrapped(p.x, near.x), p.y};
     }
@@ -71,86 +93,126 @@ class Reprojector {
 
     /// Integrates a block of texels by their outlines. False where a seam, a pole or a rim lies within, or the block is
     /// too large.
-    bool together(int chart, int x0, int y0, int x1, int y1, TileIntegrator& integrator) const {
-        const int nx = x1 - x0 + 1, ny = y1 - y0 + 1;
-        std::array<Point, (k_tile + 1) * (k_tile + 1)> points;
-        Place first;
-        Point least{1e30, 1e30}, most{-1e30, -1e30};
-        for (int j = 0; j < ny; ++j)
-            for (int i = 0; i < nx; ++i) {
-                if (!target_.valid(corner(x0 + i, y0 + j))) return false;
-                const Place p = source_.locate(target_.direction(chart, corner(x0 + i, y0 + j)));
-                if (i == 0 && j == 0) first = p;
-                if (!p.shown || p.chart != first.chart || p.region != first.region) return false;
-                // A pole: the picture's rows end there.
-                if (source_.wraps() && (p.y < 0.5 || p.y > source_.height() - 0.5)) return false;
-                const Point q{unwrapped(p.x, first.x), p.y};
-                points[std::size_t(j * nx + i)] = q;
-                least = {std::min(least.x, q.x), std::min(least.y, q.y)};
-                most = {std::max(most.x, q.x), std::max(most.y, q.y)};
-            }
-        if (most.x - least.x > 0.4 * source_.width() || most.y - least.y > 0.6 * source_.height()) return false;
-        const int parts = segments(chart, x0, y0, nx, ny, points, first);
-        if (parts > 64) return false;
-        const double slack = 0.02 * std::max(most.x - least.x, most.y - least.y) + 1;
-        if (!integrator.prepare(source_, first.chart, int(std::floor(least.x - slack)),
-                                int(std::floor(least.y - slack)), int(std::ceil(most.x + slack)),
-                                int(std::ceil(most.y + slack))))
+    bool together(int chart, int x0, int y0, int x1, int y1, Workspace& work) const {
+        Block block;
+        block.chart = chart, block.x0 = x0, block.y0 = y0;
+        block.nx = x1 - x0 + 1, block.ny = y1 - y0 + 1;
+        if (interpolate_corners(block))
+            block.parts = parts(bend_between_corners(block));
+        else if (find_corners(block))
+            block.parts = parts(bend_of_sides(block));
+        else
             return false;
-        integrate(chart, x0, y0, nx, ny, points, first, parts, integrator);
+        if (block.parts > 64) return false;
+        const PlaceOf place_of = [&](double x, double y) { return place(chart, x, y, block.first); };
+        if (method_ == Method::simd) {
+            if (!work.simd.prepare(source_, block)) return false;
+            work.simd.integrate(block, place_of, work.sums);
+        } else {
+            if (!work.plain.prepare(source_, block.first.chart, source_box(block))) return false;
+            work.plain.integrate(block, place_of, work.sums);
+        }
+        store_means(block, work.sums);
         return true;
     }
 
-    /// Into how many straight parts a texel's side must be cut.
-    int segments(int chart, int x0, int y0, int nx, int ny, const auto& points, const Place& near) const {
-        double bend = 0;
-        const auto test = [&](Point a, Point b, double x, double y) {
-            const Point m = place(chart, x, y, near);
-            bend = std::max({bend, std::abs(m.x - 0.5 * (a.x + b.x)), std::abs(m.y - 0.5 * (a.y + b.y))});
-        };
-        // Checked on the border and the middle lines of the block, where the curvature is largest; it varies slowly.
-        for (const int j : {0, ny / 2, ny - 1})
-            for (int i = 0; i + 1 < nx; i += 4)
-                test(points[std::size_t(j * nx + i)], points[std::size_t(j * nx + i + 1)], x0 + i + 0.5, y0 + j);
-        for (const int i : {0, nx / 2, nx - 1})
-            for (int j = 0; j + 1 < ny; j += 4)
-                test(points[std::size_t(j * nx + i)], points[std::size_t((j + 1) * nx + i)], x0 + i, y0 + j + 0.5);
+    /// Finds the places of all corners. False where they are not together in one region of a chart, or too far apart.
+    bool find_corners(Block& block) const {
+        for (int j = 0; j < block.ny; ++j)
+            for (int i = 0; i < block.nx; ++i) {
+                const UV uv = corner(block.x0 + i, block.y0 + j);
+                if (!target_.valid(uv)) return false;
+                const Place p = source_.locate(target_.direction(block.chart, uv));
+                if (i == 0 && j == 0) block.first = p;
+                if (!p.shown || p.chart != block.first.chart || p.region != block.first.region) return false;
+                block.x[block.corner(i, j)] = unwrapped(p.x, block.first.x);
+                block.y[block.corner(i, j)] = p.y;
+            }
+        return find_extent(block);
+    }
+
+    bool find_extent(Block& block) const {
+        const std::size_t count = std::size_t(block.nx) * block.ny;
+        const auto [left, right] = std::minmax_element(block.x.begin(), block.x.begin() + count);
+        const auto [top, bottom] = std::minmax_element(block.y.begin(), block.y.begin() + count);
+        block.least_x = *left, block.most_x = *right, block.least_y = *top, block.most_y = *bottom;
+        // A pole: the picture's rows end there.
+        if (source_.wraps() && (block.least_y < 0.5 || block.most_y > source_.height() - 0.5)) return false;
+        return block.most_x - block.least_x <= 0.4 * source_.width() &&
+               block.most_y - block.least_y <= 0.6 * source_.height();
+    }
+
+    /// Finds the places of the corners by interpolation between a few. False where that is not exact enough.
+    bool interpolate_corners(Block& block) const {
+        if (!interpolates_ || block.nx != k_tile + 1 || block.ny != k_tile + 1) return false;
+        block.first = source_.locate(target_.direction(block.chart, corner(block.x0, block.y0)));
+        const auto at = [&](double x, double y) { return place(block.chart, block.x0 + x, block.y0 + y, block.first); };
+        NodeGrid x, y;
+        for (int j = 0; j < NodeGrid::k_nodes; ++j)
+            for (int i = 0; i < NodeGrid::k_nodes; ++i) {
+                const SourcePoint p = at(NodeGrid::node(i), NodeGrid::node(j));
+                x.at(i, j) = p.x, y.at(i, j) = p.y;
+            }
+        for (int k = 0; k < NodeGrid::k_tests; ++k) {
+            const SourcePoint test = NodeGrid::test(k), p = at(test.x, test.y);
+            if (std::abs(x.at_test(k) - p.x) > k_interpolated || std::abs(y.at_test(k) - p.y) > k_interpolated)
+                return false;
+        }
+        x.at_corners(block.x);
+        y.at_corners(block.y);
+        return find_extent(block);
+    }
+
+    /// Into how many straight parts a side must be cut that a straight line misses by `bend` in its middle.
+    static int parts(double bend) {
         return bend <= k_straight ? 1 : int(std::min(1000.0, std::ceil(std::sqrt(bend / k_straight))));
     }
 
-    void integrate(int chart, int x0, int y0, int nx, int ny, const auto& points, const Place& near, int parts,
-                   const TileIntegrator& integrator) const {
-        const auto side = [&](int i, int j, int di, int dj) {
-            const Point a = points[std::size_t(j * nx + i)], b = points[std::size_t((j + dj) * nx + i + di)];
-            Flux sum;
-            Point from = a;
-            for (int k = 1; k <= parts; ++k) {
-                const double s = double(k) / parts;
-                const Point to = k == parts ? b : place(chart, x0 + i + s * di, y0 + j + s * dj, near);
-                sum.add(1, integrator.along(from.x, from.y, to.x, to.y));
-                from = to;
-            }
-            return sum;
+    // The bend is looked at on the border and the middle lines of a block, where it is largest; it varies slowly.
+
+    /// The largest distance of a side's middle from the straight line's, in source texels.
+    double bend_of_sides(const Block& block) const {
+        double bend = 0;
+        const auto test = [&](std::size_t a, std::size_t b, double x, double y) {
+            const SourcePoint m = place(block.chart, block.x0 + x, block.y0 + y, block.first);
+            bend = std::max({bend, std::abs(m.x - 0.5 * (block.x[a] + block.x[b])),
+                             std::abs(m.y - 0.5 * (block.y[a] + block.y[b]))});
         };
-        std::array<Flux, k_tile> above, below;
-        for (int i = 0; i + 1 < nx; ++i) above[std::size_t(i)] = side(i, 0, 1, 0);
-        for (int j = 0; j + 1 < ny; ++j) {
-            Flux left = side(0, j, 0, 1);
-            for (int i = 0; i + 1 < nx; ++i) {
-                below[std::size_t(i)] = side(i, j + 1, 1, 0);
-                const Flux right = side(i + 1, j, 0, 1);
-                Flux whole = above[std::size_t(i)];
-                whole.add(1, right);
-                whole.add(-1, below[std::size_t(i)]);
-                whole.add(-1, left);
-                if (std::abs(whole.solid_angle) > 1e-12)
-                    store(chart, x0 + i, y0 + j, whole.light / whole.solid_angle);
+        for (const int j : {0, block.ny / 2, block.ny - 1})
+            for (int i = 0; i + 1 < block.nx; i += 4) test(block.corner(i, j), block.corner(i + 1, j), i + 0.5, j);
+        for (const int i : {0, block.nx / 2, block.nx - 1})
+            for (int j = 0; j + 1 < block.ny; j += 4) test(block.corner(i, j), block.corner(i, j + 1), i, j + 0.5);
+        return bend;
+    }
+
+    /// The same from the corners: their second differences are eight times as large.
+    static double bend_between_corners(const Block& block) {
+        double bend = 0;
+        const auto test = [&](std::size_t middle, std::size_t step) {
+            for (const auto* p : {&block.x, &block.y})
+                bend = std::max(bend, std::abs((*p)[middle - step] + (*p)[middle + step] - 2 * (*p)[middle]) / 8);
+        };
+        for (const int j : {0, block.ny / 2, block.ny - 1})
+            for (int i = 1; i + 1 < block.nx; i += 2) test(block.corner(i, j), 1);
+        for (const int i : {0, block.nx / 2, block.nx - 1})
+            for (int j = 1; j + 1 < block.ny; j += 2) test(block.corner(i, j), std::size_t(block.nx));
+        return bend;
+    }
+
+    /// Each texel's mean: the integral around it by the light, divided by that by solid angle.
+    void store_means(const Block& block, const SideSums& sums) const {
+        for (int j = 0; j + 1 < block.ny; ++j)
+            for (int i = 0; i + 1 < block.nx; ++i) {
+                const SideSum *above = &sums.across[std::size_t(j) * (block.nx - 1) + i],
+                              *below = above + (block.nx - 1), *left = &sums.down[block.corner(i, j)],
+                              *right = left + 1;
+                SideSum whole;
+                for (std::size_t c = 0; c < 4; ++c) whole[c] = (*above)[c] + (*right)[c] - (*below)[c] - (*left)[c];
+                if (std::abs(whole[3]) > 1e-12)
+                    store(block.chart, block.x0 + i, block.y0 + j, Vec3d{whole[0], whole[1], whole[2]} / whole[3]);
                 else
-                    supersample(chart, x0 + i, y0 + j);
-                left = right;
+                    supersample(block.chart, block.x0 + i, block.y0 + j);
             }
-            above = below;
-        }
     }
 
     /// The mean over the texel's own points, each weighted by its solid angle.
@@ -199,6 +261,8 @@ class Reprojector {
     const Source& source_;
     const Projection& target_;
     int width_, height_;
+    Method method_;
+    bool interpolates_;
     ImageF& out_;
 };
 
@@ -238,29 +302,48 @@ ProjectedImage projected_cube(const Cubemap& cube, const Mat3& world_to_cube) {
     return {projection_from_name("cube")->turned(world_to_cube), std::move(pixels)};
 }
 
-ProjectedImage reproject(const ProjectedImage& source, const Projection& target, int width, int height, int threads,
-                         const Progress& progress) {
-    using namespace reproject_detail;
+namespace reproject_detail {
+
+namespace {
+
+ProjectedImage reproject_by(Method method, const ProjectedImage& source, const Projection& target, int width,
+                            int height, int threads, const Progress& progress) {
     const int charts = target.charts();
     const double target_texel = target.shape().coverage() / (double(width) * height * charts);
-    const ProjectedImage reduced = reduce(source, target_texel, threads);
-    const Source from(reduced, threads);
+    std::optional<ProjectedImage> reduced = reduce(source, target_texel, threads);
+    const Source from(reduced ? *reduced : source, threads);
+    reduced.reset();
     ProjectedImage out{target, ImageF(width, height * charts, 3)};
-    const Reprojector work(from, target, width, height, out.pixels);
+    const Reprojector work(from, target, width, height, method, out.pixels);
     const int down = (height + k_tile - 1) / k_tile, across = (width + k_tile - 1) / k_tile;
     std::atomic<int> done = 0;
     std::mutex telling;
     parallel_for(charts * down, threads, [&](int row) {
         const int chart = row / down, y0 = row % down * k_tile, y1 = std::min(height, y0 + k_tile);
-        TileIntegrator integrator;
+        Workspace workspace;
         for (int t = 0; t < across; ++t)
-            work.block(chart, t * k_tile, y0, std::min(width, (t + 1) * k_tile), y1, integrator);
+            work.block(chart, t * k_tile, y0, std::min(width, (t + 1) * k_tile), y1, workspace);
         if (progress) {
             const std::lock_guard lock(telling);
             progress("convert", double(++done) / (charts * down));
         }
     });
     return out;
+}
+
+}  // namespace
+
+ProjectedImage reproject_plain(const ProjectedImage& source, const Projection& target, int width, int height,
+                               int threads) {
+    return reproject_by(Method::plain, source, target, width, height, threads, {});
+}
+
+}  // namespace reproject_detail
+
+ProjectedImage reproject(const ProjectedImage& source, const Projection& target, int width, int height, int threads,
+                         const Progress& progress) {
+    using namespace reproject_detail;
+    return reproject_by(Method::simd, source, target, width, height, threads, progress);
 }
 
 }  // namespace domelight

@@ -51,7 +51,7 @@ Source::Source(const ProjectedImage& image, int threads)
       height_(image.height()),
       rows_alike_(image.projection.shape().wraps() && image.projection.grid() != SampleGrid::both_on_edges),
       black_beyond_(image.projection.shape().coverage() < 3 * k_pi),
-      padded_(width_ + 2 * k_border, projection_.charts() * (height_ + 2 * k_border), 3) {
+      padded_(width_ + 2 * k_border, projection_.charts() * (height_ + 2 * k_border) + k_slack_rows, 3) {
     parallel_for(charts() * height_, threads, [&](int row) {
         const int chart = row / height_, y = row % height_;
         std::copy_n(image.pixels.row(row), 3 * width_,
@@ -126,13 +126,14 @@ Vec3d Source::at(const Place& place) const {
     return cell(place.chart, int(x), int(y)).at(place.x - x - 0.5, place.y - y - 0.5);
 }
 
-ProjectedImage reduce(const ProjectedImage& image, double target_texel, int threads) {
-    ProjectedImage out{image.projection, image.pixels};
+std::optional<ProjectedImage> reduce(const ProjectedImage& image, double target_texel, int threads) {
+    std::optional<ProjectedImage> reduced;
     while (true) {
+        const ProjectedImage& out = reduced ? *reduced : image;
         const int w = out.width(), h = out.height(), charts = out.projection.charts();
         const double texel = out.projection.shape().coverage() / (double(w) * h * charts);
         if (w % 2 || h % 2 || w < 16 || out.projection.grid() != SampleGrid::centres || 36 * 4 * texel > target_texel)
-            return out;
+            return reduced;
         ImageF half(w / 2, h / 2 * charts, 3);
         parallel_for(half.height(), threads, [&](int row) {
             const int y = 2 * (row % (h / 2)), top = row / (h / 2) * h + y;
@@ -154,7 +155,7 @@ ProjectedImage reduce(const ProjectedImage& image, double target_texel, int thre
                 }
             }
         });
-        out.pixels = std::move(half);
+        reduced = ProjectedImage{image.projection, std::move(half)};
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace domelight::reproject_detail {
@@ -41,6 +42,10 @@ class Source {
     Place locate_near(const Vec3d& world, const Place& near) const;
     /// The radiance within a texel as a function. x wraps if the picture does, otherwise it is clamped, as is y.
     Cell cell(int chart, int x, int y) const;
+    /// A texel's three channels; up to two texels outside of its chart, which continue it.
+    const float* texel(int chart, int x, int y) const {
+        return padded_.at(x + k_border, chart * (height_ + 2 * k_border) + y + k_border);
+    }
     double solid_angle(int x, int y) const {
         return rows_alike_ ? solid_angle_[std::size_t(y)] : solid_angle_[std::size_t(y) * width_ + x];
     }
@@ -58,9 +63,8 @@ class Source {
 
   private:
     static constexpr int k_border = 2;
-    const float* texel(int chart, int x, int y) const {  // up to k_border texels outside
-        return padded_.at(x + k_border, chart * (height_ + 2 * k_border) + y + k_border);
-    }
+    /// Rows below the image that SIMD kernels may read.
+    static constexpr int k_slack_rows = 1;
     Place in_texels(int chart, UV uv, int region, bool shown) const;
     void fill_border(const ProjectedImage& image, int chart);
 
@@ -72,7 +76,7 @@ class Source {
 };
 
 /// Halves each chart as long as its texels are narrower than a sixth of the target's. Texels become means by solid
-/// angle.
-ProjectedImage reduce(const ProjectedImage& image, double target_texel, int threads);
+/// angle. Nothing if they are wide enough as they are.
+std::optional<ProjectedImage> reduce(const ProjectedImage& image, double target_texel, int threads);
 
 }  // namespace domelight::reproject_detail

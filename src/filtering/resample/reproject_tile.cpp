@@ -5,9 +5,16 @@
 
 namespace domelight::reproject_detail {
 
-bool TileIntegrator::prepare(const Source& source, int chart, int x0, int y0, int x1, int y1) {
-    x0_ = x0, y0_ = y0, width_ = x1 - x0, height_ = y1 - y0;
-    if (width_ <= 0 || height_ <= 0 || std::int64_t(width_) * height_ > 40000) return false;
+SourceBox source_box(const Block& block) {
+    const double slack = 0.02 * std::max(block.most_x - block.least_x, block.most_y - block.least_y) + 1;
+    return {int(std::floor(block.least_x - slack)), int(std::floor(block.least_y - slack)),
+            int(std::ceil(block.most_x + slack)), int(std::ceil(block.most_y + slack))};
+}
+
+bool TileIntegrator::prepare(const Source& source, int chart, const SourceBox& box) {
+    if (box.too_large()) return false;
+    const int x0 = box.x0, y0 = box.y0;
+    x0_ = x0, y0_ = y0, width_ = box.width(), height_ = box.height();
     columns_.resize(std::size_t(width_) * height_);
     density_slope_.resize(std::size_t(height_));
     is_even_ = true;
@@ -75,6 +82,27 @@ Flux TileIntegrator::along(double ax, double ay, double bx, double by) const {
         if (next_y <= end) j += dy > 0 ? 1 : -1, next_y += step_y;
     }
     return sum;
+}
+
+void TileIntegrator::integrate(const Block& block, const PlaceOf& place, SideSums& sums) const {
+    const auto side = [&](int i, int j, int di, int dj) -> SideSum {
+        const std::size_t a = block.corner(i, j), b = block.corner(i + di, j + dj);
+        Flux sum;
+        SourcePoint from{block.x[a], block.y[a]};
+        for (int k = 1; k <= block.parts; ++k) {
+            const double s = double(k) / block.parts;
+            const SourcePoint to = k == block.parts ? SourcePoint{block.x[b], block.y[b]}
+                                                    : place(block.x0 + i + s * di, block.y0 + j + s * dj);
+            sum.add(1, along(from.x, from.y, to.x, to.y));
+            from = to;
+        }
+        return {sum.light.x, sum.light.y, sum.light.z, sum.solid_angle};
+    };
+    sums.across.clear(), sums.down.clear();
+    for (int j = 0; j < block.ny; ++j)
+        for (int i = 0; i + 1 < block.nx; ++i) sums.across.push_back(side(i, j, 1, 0));
+    for (int j = 0; j + 1 < block.ny; ++j)
+        for (int i = 0; i < block.nx; ++i) sums.down.push_back(side(i, j, 0, 1));
 }
 
 }  // namespace domelight::reproject_detail

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "filtering/resample/reproject_source.h"
+#include "filtering/resample/reproject_block.h"
 
 namespace domelight::reproject_detail {
 
@@ -21,8 +21,11 @@ struct Flux {
 /// area of the picture, quadratic within a texel: G is cubic along a line, and two Gauss nodes a piece are exact.
 class TileIntegrator {
   public:
-    /// False if the rectangle has so many texels that another method is faster.
-    bool prepare(const Source& source, int chart, int x0, int y0, int x1, int y1);
+    /// False if the rectangle is too large.
+    bool prepare(const Source& source, int chart, const SourceBox& box);
+    /// Fills `sums` with the integrals along all sides of a block. `place` as in PlaceOf, called where sides have several
+    /// parts.
+    void integrate(const Block& block, const PlaceOf& place, SideSums& sums) const;
     /// ∫ G dy along the straight line from (ax, ay) to (bx, by), both within the rectangle.
     Flux along(double ax, double ay, double bx, double by) const;
 
