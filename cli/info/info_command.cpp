@@ -98,10 +98,11 @@ void print_environment(const std::string& name, const Environment& e, const Envi
     const Vec3d added = r.share_added() * 100;
     if (r.repaired())
         print(
-            "  bad texels       {} not a number, {} infinite, {} negative (down to {:.4g}){}; repaired on reading, which "
+            "  bad texels       {} not a number, {} infinite, {} negative (down to {:.4g}){}; repaired on reading, "
+            "which "
             "changed the light by {:+.3g} % red, {:+.3g} % green, {:+.3g} % blue\n",
-            r.not_a_number, r.infinite, r.negative, r.negative_radiance, r.negatives_kept ? ", kept" : "", added.x, added.y,
-            added.z);
+            r.not_a_number, r.infinite, r.negative, r.negative_radiance, r.negatives_kept ? ", kept" : "", added.x,
+            added.y, added.z);
     else
         print("  bad texels       none\n");
 }

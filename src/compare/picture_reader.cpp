@@ -9,7 +9,7 @@
 #include "io/exr/exr_layers.h"
 #include "io/file/printable.h"
 #include "io/image_reader.h"
-#include "io/picture/exif_orientation.h"
+#include "io/picture/exif.h"
 #include "io/picture/oriented_reader.h"
 #include "io/picture/png_colour.h"
 #include "io/picture/texture_image.h"

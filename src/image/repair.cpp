@@ -59,7 +59,8 @@ RowRepair::RowRepair(int width, int height, RepairOptions options, Read read)
 Result<void> RowRepair::next(ImageView<float> rows, RepairReport& report) {
     const std::size_t row_floats = std::size_t(width_) * 3;
     if (batch_ == 0) {
-        const auto most = int(std::min<std::size_t>(k_batch_bytes / (row_floats * sizeof(float)), std::size_t(height_)));
+        const auto most =
+            int(std::min<std::size_t>(k_batch_bytes / (row_floats * sizeof(float)), std::size_t(height_)));
         batch_ = std::max(k_least_batch, std::min(rows.height, most));
         capacity_ = batch_ + 3 * k_reach;
         ring_.resize(std::size_t(capacity_) * row_floats);
@@ -341,7 +342,8 @@ Vec3d RepairReport::share_added() const {
 std::vector<std::string> RepairReport::lines() const {
     std::vector<std::string> lines = warnings;
     const std::string lowest = rounded(negative_radiance);
-    if (negatives_kept && negative > 0) lines.push_back(text(negative, " negative texels were kept (down to ", lowest, ")"));
+    if (negatives_kept && negative > 0)
+        lines.push_back(text(negative, " negative texels were kept (down to ", lowest, ")"));
     const std::int64_t changed = negatives_kept ? 0 : negative;
     if (not_a_number + infinite + changed == 0) return lines;
     std::string kinds;
@@ -352,8 +354,8 @@ std::vector<std::string> RepairReport::lines() const {
     kind(infinite, "infinite");
     kind(changed, text("negative (down to ", lowest, ")"));
     const Vec3d share = share_added();
-    lines.push_back(text("bad texels were repaired: ", kinds, "; that changed the light by ", percent(share.x), " red, ",
-                         percent(share.y), " green, ", percent(share.z), " blue"));
+    lines.push_back(text("bad texels were repaired: ", kinds, "; that changed the light by ", percent(share.x),
+                         " red, ", percent(share.y), " green, ", percent(share.z), " blue"));
     return lines;
 }
 

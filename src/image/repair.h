@@ -89,7 +89,7 @@ class RowRepair {
     int width_, height_;
     RepairOptions options_;
     Read read_;
-    std::vector<double> weights_;  // by row
+    std::vector<double> weights_;   // by row
     int batch_ = 0, capacity_ = 0;  // rows that are read at once, and in the ring
     std::vector<float> ring_;
     std::vector<Row> rows_;

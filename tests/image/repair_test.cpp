@@ -28,7 +28,8 @@ ImageF even_image() {
     return ImageF(40, 60, 3, 1.0f);
 }
 
-Vec3d sum_of(const ImageF& image, const std::function<double(int)>& weight = [](int) { return 1.0; }) {
+Vec3d sum_of(
+    const ImageF& image, const std::function<double(int)>& weight = [](int) { return 1.0; }) {
     Vec3d sum;
     for (int y = 0; y < image.height(); ++y)
         for (int x = 0; x < image.width(); ++x)
@@ -133,8 +134,8 @@ TEST_CASE("repair: negative texels are balanced by the light round them") {
     CHECK(report.light.z == doctest::Approx(before.z));
     CHECK(report.share_added() == Vec3d());
     for (const float v : image.pixels()) CHECK(v >= 0);
-    CHECK(image.at(0, 30)[2] > 3500);           // the sun pays
-    CHECK(image.at(30, 30)[2] == 1);            // what is far does not
+    CHECK(image.at(0, 30)[2] > 3500);  // the sun pays
+    CHECK(image.at(30, 30)[2] == 1);   // what is far does not
     CHECK(image.at(5, 32)[2] == 0);
     // By clamping, the light grows by what was negative.
     image = stored;
@@ -200,8 +201,7 @@ TEST_CASE("repair: exposure multiplies, and nothing passes the largest radiance"
     RepairReport report;
     RepairOptions four = k_clamp;
     four.scale = 4;
-    CHECK(repaired({1, 2, 3, 0x1p99f, 5, -2}, report, four) ==
-          std::vector<float>{4, 8, 12, k_largest_radiance, 20, 0});
+    CHECK(repaired({1, 2, 3, 0x1p99f, 5, -2}, report, four) == std::vector<float>{4, 8, 12, k_largest_radiance, 20, 0});
     CHECK(report.negative_radiance == -8);
     CHECK(report.infinite == 1);
     CHECK(repaired({1, 2, 3}, report, {.scale = 0.5f}) == std::vector<float>{0.5f, 1, 1.5f});

@@ -149,8 +149,8 @@ TEST_CASE("hdr reader: PRIMARIES and xyze become Rec. 709") {
 }
 
 TEST_CASE("hdr reader: XYZ as primaries of RGB are CIE XYZ, whose grey is D65") {
-    const auto reader = open_bytes(
-        joined(hdr_header("-Y 1 +X 1", "PRIMARIES=1 0 0 1 0 0 0.3333 0.3333\n"), {1, 2, 3, 129}));
+    const auto reader =
+        open_bytes(joined(hdr_header("-Y 1 +X 1", "PRIMARIES=1 0 0 1 0 0 0.3333 0.3333\n"), {1, 2, 3, 129}));
     REQUIRE(reader);
     REQUIRE((*reader)->facts().to_rec709);
     const Vec3d grey = *(*reader)->facts().to_rec709 * Vec3d{0.95046, 1, 1.08906};
@@ -192,9 +192,9 @@ TEST_CASE("hdr reader: the same light as Radiance's RGBE and XYZE") {
 
 TEST_CASE("hdr reader: GAMMA is undone, by sRGB's curve where it is ImageMagick's 1 / 2.2") {
     const auto read = [](const std::string& gamma, int threads) {
-        return read_bytes(joined(hdr_header("-Y 1 +X 2", "GAMMA=" + gamma + "\nEXPOSURE=2\n"),
-                                 {171, 128, 10, 128, 128, 0, 255, 130}),
-                          {.threads = threads});
+        return read_bytes(
+            joined(hdr_header("-Y 1 +X 2", "GAMMA=" + gamma + "\nEXPOSURE=2\n"), {171, 128, 10, 128, 128, 0, 255, 130}),
+            {.threads = threads});
     };
     for (const int threads : {1, 2}) {
         const auto srgb = read("0.45455", threads), power = read("0.5", threads), linear = read("1", threads);

@@ -1,5 +1,5 @@
 // What PNG and JPEG files say of their colours and of the way that they are to be seen.
-#include "io/picture/exif_orientation.h"
+#include "io/picture/exif.h"
 #include "io/picture/icc_profile.h"
 #include "io/picture/oriented_reader.h"
 #include "io/picture/png_colour.h"
@@ -137,7 +137,8 @@ TEST_CASE("png colour: gAMA and cHRM") {
 }
 
 TEST_CASE("png colour: cICP has PQ, HLG and primaries") {
-    const auto cicp = [](std::uint8_t primaries, std::uint8_t transfer, std::uint8_t matrix = 0, std::uint8_t full = 1) {
+    const auto cicp = [](std::uint8_t primaries, std::uint8_t transfer, std::uint8_t matrix = 0,
+                         std::uint8_t full = 1) {
         return chunk("cICP", {primaries, transfer, matrix, full});
     };
     // A code of 148 is 203 cd/m² by PQ (58 %), 100 % is 10000.
@@ -163,7 +164,8 @@ TEST_CASE("png colour: cICP has PQ, HLG and primaries") {
 }
 
 TEST_CASE("png colour: the order of precedence is cICP, iCCP, sRGB, gAMA") {
-    const Bytes cicp = chunk("cICP", {1, 8, 0, 1}), srgb = chunk("sRGB", {0}), gama = chunk("gAMA", big_endian({50000}));
+    const Bytes cicp = chunk("cICP", {1, 8, 0, 1}), srgb = chunk("sRGB", {0}),
+                gama = chunk("gAMA", big_endian({50000}));
     const Bytes icc = display_profile(k_rec709, 1.5);
     const double by_cicp = k_half, by_icc = std::pow(k_half, 1.5), by_srgb = k_srgb_128, by_gamma = k_half * k_half;
     CHECK(close(opened(png(k_codes, joined(cicp, gama), icc)).at(0), grey(by_cicp)));
@@ -201,8 +203,8 @@ TEST_CASE("icc profiles: curves with a matrix, tables, grey, sRGB, and damaged o
     const Bytes matrix = display_profile(k_p3, 2);
     cmsHPROFILE device = cmsOpenProfileFromMem(matrix.data(), cmsUInt32Number(matrix.size()));
     cmsHPROFILE lab = cmsCreateLab4Profile(nullptr);
-    cmsHTRANSFORM link = cmsCreateTransform(device, TYPE_RGB_16, lab, TYPE_Lab_16, INTENT_RELATIVE_COLORIMETRIC,
-                                            cmsFLAGS_NOOPTIMIZE);
+    cmsHTRANSFORM link =
+        cmsCreateTransform(device, TYPE_RGB_16, lab, TYPE_Lab_16, INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOOPTIMIZE);
     cmsHPROFILE tables = cmsTransform2DeviceLink(link, 4.3, cmsFLAGS_GUESSDEVICECLASS | cmsFLAGS_FORCE_CLUT);
     const auto table = colour_of_icc_profile(profile_of(tables), 256);
     cmsDeleteTransform(link), cmsCloseProfile(lab), cmsCloseProfile(device);
@@ -231,7 +233,7 @@ TEST_CASE("png colour: the 16 bits of linear light") {
 
 TEST_CASE("exif orientation: all eight, and damaged ones") {
     // Stored as 3 x 2; letters are what is seen.
-    const char* const seen[9] = {"",        "abc/def",  "cba/fed",  "fed/cba", "def/abc",
+    const char* const seen[9] = {"",         "abc/def",  "cba/fed",  "fed/cba", "def/abc",
                                  "ad/be/cf", "da/eb/fc", "fc/eb/da", "cf/be/ad"};
     Bytes codes;
     for (int i = 0; i < 6; ++i) codes.insert(codes.end(), 3, std::uint8_t('a' + i));

@@ -431,8 +431,8 @@ Result<Environment> open_texture(const std::filesystem::path& file, const std::s
     if (babylon)
         if (auto ok = check_no_faces(request.options, "a .env file, which states them"); !ok) return ok.error();
     RepairReport report;
-    Result<Cubemap> cube =
-        read_cube_texture(file, request.options.max_bytes, repair_options(request, false), report, request.options.decode);
+    Result<Cubemap> cube = read_cube_texture(file, request.options.max_bytes, repair_options(request, false), report,
+                                             request.options.decode);
     if (!cube) return cube.error();
     const auto orientation = request.options.face_orientation;
     if (!orientation && !babylon)

@@ -17,7 +17,8 @@ struct Magic {
 };
 
 constexpr const char* k_to_png = "Convert it to PNG, for example by ImageMagick: magick IN OUT.png.";
-constexpr const char* k_tiff = "Convert it: of floats to OpenEXR by oiiotool IN -o OUT.exr, otherwise to PNG by magick IN OUT.png.";
+constexpr const char* k_tiff =
+    "Convert it: of floats to OpenEXR by oiiotool IN -o OUT.exr, otherwise to PNG by magick IN OUT.png.";
 constexpr const char* k_avif = "Convert it: avifdec -d 16 IN OUT.png, which keeps PQ and HLG.";
 constexpr const char* k_heic = "Convert it: heif-dec IN OUT.png (before libheif 1.19, heif-convert).";
 constexpr const char* k_jxl = "Convert it: djxl IN OUT.exr, or OUT.png.";

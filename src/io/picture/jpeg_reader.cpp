@@ -1,3 +1,7 @@
+#include "domelight/base/parallel.h"
+
+#include "image/repair.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +10,7 @@
 #include <cstring>
 
 // jpeglib.h requires <cstdio> before it.
+#include "io/picture/gain_map.h"
 #include "io/picture/icc_profile.h"
 #include "io/picture/jpeg_segments.h"
 #include "io/picture/oriented_reader.h"
@@ -28,7 +33,7 @@ constexpr int k_most_scans = 200;
 class JpegReader : public ImageReader {
   public:
     JpegReader(std::shared_ptr<const FileBytes> bytes, const ReaderOptions& options)
-        : bytes_(std::move(bytes)), decode_(options.decode), max_bytes_(options.max_bytes) {}
+        : bytes_(std::move(bytes)), decode_(options.decode), max_bytes_(options.max_bytes), threads_(options.threads) {}
     ~JpegReader() override { jpeg_destroy_decompress(&state_); }
 
     Result<void> open();
@@ -37,6 +42,7 @@ class JpegReader : public ImageReader {
   private:
     bool read_header();
     void set_colour();
+    void add_gain_map(const std::vector<JpegSegment>& segments);
     bool start_rows();
     bool read_row(unsigned char* row);
     Error failure() const {
@@ -50,12 +56,15 @@ class JpegReader : public ImageReader {
     std::shared_ptr<const FileBytes> bytes_;
     Decode decode_;
     std::int64_t max_bytes_;
+    int threads_;
     jpeg_decompress_struct state_{};
     jpeg_error_mgr errors_{};
     jpeg_progress_mgr progress_{};
     std::jmp_buf return_point_;
     char message_[JMSG_LENGTH_MAX] = "";
     ScreenColour colour_;
+    std::optional<GainMap> gain_map_;
+    int next_row_ = 0;
     std::vector<unsigned char> row_;
 };
 
@@ -110,19 +119,33 @@ bool JpegReader::read_row(unsigned char* row) {
 void JpegReader::set_colour() {
     colour_ = colour_of_decode(decode_, 256);
     bool assumed = decode_ == Decode::automatic;
-    const std::vector<std::uint8_t> profile =
-        assumed ? jpeg_icc_profile(jpeg_segments(bytes_->bytes())) : std::vector<std::uint8_t>();
+    const std::vector<JpegSegment> segments = assumed ? jpeg_segments(bytes_->bytes()) : std::vector<JpegSegment>();
+    const std::vector<std::uint8_t> profile = jpeg_icc_profile(segments);
     if (!profile.empty()) {
         auto said = colour_of_icc_profile(profile, 256);
         assumed = !said;
         if (said) colour_ = *std::move(said);
         if (!said) colour_.notes.push_back(said.error().what + ": ignored");
     }
+    add_gain_map(segments);
     facts_.high_dynamic_range = colour_.hdr;
     facts_.always_light = !colour_.profile;
-    facts_.largest = colour_.curves[0].back();
+    facts_.largest = k_largest_radiance;
     facts_.to_rec709 = colour_.to_rec709;
     facts_.warnings = screen_warnings("JPEG", colour_, assumed);
+}
+
+void JpegReader::add_gain_map(const std::vector<JpegSegment>& segments) {
+    std::string note;
+    gain_map_ = find_gain_map(bytes_->bytes(), segments, note);
+    if (gain_map_) {
+        const GainMapFormula& formula = gain_map_->formula();
+        colour_.hdr = true;
+        note = fmt::format("the gain map ({}) was applied: light up to {:.3g} times the white of a screen{}",
+                           formula.kind, gain_map_->largest(),
+                           formula.in_other_colours ? "; it is meant in other colours than the picture's" : "");
+    }
+    if (!note.empty()) colour_.notes.push_back(note);
 }
 
 Result<void> JpegReader::open() {
@@ -148,11 +171,6 @@ Result<void> JpegReader::open() {
     facts_.width = int(width);
     facts_.height = int(height);
     set_colour();
-    // The namespace of Adobe's and Google's gain maps, in the metadata at the start.
-    const auto all = bytes_->bytes().first(std::min<std::size_t>(bytes_->bytes().size(), 1 << 17));
-    constexpr std::string_view gain_map = "http://ns.adobe.com/hdr-gain-map/";
-    if (std::search(all.begin(), all.end(), gain_map.begin(), gain_map.end()) != all.end())
-        facts_.warnings.push_back("the gain map (Ultra HDR) in this JPEG is not read: only its screen picture is");
     return {};
 }
 
@@ -163,6 +181,10 @@ Result<bool> JpegReader::read(ImageView<float> rows) {
         for (std::size_t i = 0; i < row_.size(); ++i) out[i] = colour_.curves[i % 3][row_[i]];
         if (colour_.profile) colour_.profile(out, rows.width);
     }
+    if (gain_map_)
+        parallel_for(rows.height, threads_,
+                     [&](int y) { gain_map_->apply(rows.row(y), rows.width, next_row_ + y, facts_.height); });
+    next_row_ += rows.height;
     return !colour_.profile;
 }
 

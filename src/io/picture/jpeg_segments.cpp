@@ -1,6 +1,6 @@
 #include "io/picture/jpeg_segments.h"
 
-#include "io/picture/exif_orientation.h"
+#include "io/picture/exif.h"
 
 #include <algorithm>
 

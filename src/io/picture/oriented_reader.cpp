@@ -85,10 +85,11 @@ Result<std::unique_ptr<ImageReader>> oriented_reader(std::unique_ptr<ImageReader
     const ImageFacts& facts = reader->facts();
     const std::int64_t bytes = std::int64_t(facts.width) * facts.height * 3 * std::int64_t(sizeof(float));
     if (bytes > max_bytes)
-        return Error{fmt::format("turning {} x {} texels as Exif's orientation says needs {} bytes, more than the limit "
-                                 "of {}",
-                                 facts.width, facts.height, bytes, max_bytes),
-                     "", "Turn the picture before, and store it as it is seen."};
+        return Error{
+            fmt::format("turning {} x {} texels as Exif's orientation says needs {} bytes, more than the limit "
+                        "of {}",
+                        facts.width, facts.height, bytes, max_bytes),
+            "", "Turn the picture before, and store it as it is seen."};
     return std::unique_ptr<ImageReader>(std::make_unique<OrientedReader>(std::move(reader), orientation));
 }
 

@@ -1,4 +1,5 @@
-#include "io/picture/exif_orientation.h"
+#include "image/repair.h"
+#include "io/picture/exif.h"
 #include "io/picture/oriented_reader.h"
 #include "io/picture/png_colour.h"
 
@@ -97,7 +98,7 @@ void PngReader::set_colour() {
     colour_ = std::move(said.colour);
     facts_.high_dynamic_range = colour_.hdr;
     facts_.always_light = !colour_.profile;
-    facts_.largest = colour_.curves[0].back();
+    facts_.largest = k_largest_radiance;
     facts_.to_rec709 = colour_.to_rec709;
     facts_.warnings = screen_warnings("PNG", colour_, said.assumed);
 }

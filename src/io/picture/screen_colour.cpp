@@ -101,9 +101,7 @@ std::vector<float> screen_curve(Decode decode, int levels) {
 ScreenColour colour_of_decode(Decode decode, int levels) {
     ScreenColour colour;
     set_curves(colour, levels, [&](double v) {
-        return decode == Decode::linear    ? v
-               : decode == Decode::gamma22 ? std::pow(v, 2.2)
-                                           : srgb_to_linear(v);
+        return decode == Decode::linear ? v : decode == Decode::gamma22 ? std::pow(v, 2.2) : srgb_to_linear(v);
     });
     return colour;
 }
