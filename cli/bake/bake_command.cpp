@@ -168,6 +168,18 @@ struct Job {
     std::filesystem::path folder;
 };
 
+/// The name of an environment's folder below the folder for all: that of its file without the ending. What would lead
+/// out of that folder or be the folder itself ("...hdr" without its ending is "..") is replaced.
+std::string folder_name(const std::filesystem::path& file) {
+    const auto leads_away = [](const std::string& name) { return name.empty() || name == "." || name == ".."; };
+    std::error_code failure;
+    for (const std::string& name :
+         {file.stem().string(), file.filename().string(),
+          std::filesystem::weakly_canonical(std::filesystem::absolute(file, failure), failure).filename().string()})
+        if (!leads_away(name)) return name;
+    return "environment";
+}
+
 Result<std::vector<Job>> list_jobs(const BakeWords& w) {
     if (w.output.empty()) return Error{"is missing", "--output", "Say where the results go: -o DIR."};
     if (auto ok = check_folder("--output", w.output); !ok) return ok.error();
@@ -179,7 +191,7 @@ Result<std::vector<Job>> list_jobs(const BakeWords& w) {
         const std::filesystem::path path = std::filesystem::path(file).has_filename()
                                                ? std::filesystem::path(file)
                                                : std::filesystem::path(file).parent_path();
-        const std::string stem = path.stem().string();
+        const std::string stem = folder_name(path);
         if (const auto [at, is_new] = stems.emplace(stem, file); !is_new)
             return Error{fmt::format("{} and {} would both go to {}", at->second, file,
                                      (std::filesystem::path(w.output) / stem).string()),
@@ -187,6 +199,39 @@ Result<std::vector<Job>> list_jobs(const BakeWords& w) {
         jobs.push_back({{file}, std::filesystem::path(w.output) / stem});
     }
     return jobs;
+}
+
+void warn_of_idle(const BakeWords& w, const BakeOptions& o, const Arguments& arguments, std::size_t jobs) {
+    bool searched = false, pictures = false, tables = false, maps = false, ktx2 = false;
+    for (const std::string& name : o.engines) {
+        const auto found = find_engine(name);
+        if (!found) continue;
+        const Engine& engine = **found;
+        const Container container = o.format.value_or(engine.container);
+        const Encoding encoding =
+            o.encoding.value_or(container == engine.container ? engine.encoding : Encoding::rgba16f);
+        searched |= encoding == Encoding::bc6h || encoding == Encoding::uastc_hdr ||
+                    encoding == Encoding::astc4x4_hdr || encoding == Encoding::astc6x6_hdr;
+        pictures |= (container == Container::exr || container == Container::hdr) &&
+                    o.layout.value_or(engine.layout) == Layout::cube && !engine.environment_only;
+        tables |= !engine.environment_only && o.brdf_form.value_or(engine.brdf_form) != BrdfForm::none;
+        maps |= !engine.environment_only;
+        ktx2 |= container == Container::ktx2;
+    }
+    const char* const table = "an engine that loads a BRDF table";
+    warn_of_idle_options(arguments,
+                         {{"--riemann-steps", o.method == BakeMethod::riemann, "--method riemann"},
+                          {"--riemann-sum", o.method == BakeMethod::riemann, "--method riemann"},
+                          {"--encoding-quality", searched, "--encoding bc6h, uastc-hdr, astc4x4-hdr or astc6x6-hdr"},
+                          {"--cube-picture", pictures, "cubes in --format exr or hdr"},
+                          {"--no-zstd", ktx2, "--format ktx2"},
+                          {"--brdf-g", tables, table},
+                          {"--brdf-size", tables, table},
+                          {"--brdf-float", tables, table},
+                          {"--brdf-form", tables || o.brdf_form == BrdfForm::none, table},
+                          {"--irradiance-size", maps, "an engine that loads filtered maps"},
+                          {"--force", jobs > 1, "several environments"}},
+                         w.common);
 }
 
 BakeOutcome run_job(const Job& job, bool skip_up_to_date, BakeOptions options, const CommonOptions& common) {
@@ -236,6 +281,7 @@ int run_bake(const std::vector<std::string>& words) {
     if (!options) return print_error(options.error(), exit_usage);
     const auto jobs = list_jobs(w);
     if (!jobs) return print_error(jobs.error(), exit_usage);
+    warn_of_idle(w, *options, arguments, jobs->size());
 
     std::vector<BakeOutcome> outcomes;
     int status = exit_done;

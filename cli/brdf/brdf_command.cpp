@@ -1,6 +1,7 @@
 #include "domelight/bake/bake.h"
 #include "domelight/bake/brdf_file.h"
 #include "domelight/base/version.h"
+#include "domelight/io/file/file_extension.h"
 
 #include "cli/commands.h"
 #include "cli/console/console.h"
@@ -101,6 +102,10 @@ int run_brdf(const std::vector<std::string>& words) {
     if (const auto code = begin_command(arguments, words, w.common)) return *code;
     const auto options = brdf_options(w);
     if (!options) return print_error(options.error(), exit_usage);
+    if (auto ok = check_output_places({w.output}); !ok) return print_error(ok.error());
+    const std::string ending = lower_case_extension(w.output);
+    warn_of_idle_options(arguments, {{"--float", ending != ".hdr" && ending != ".png", "a .ktx2, .ktx, .dds or .exr"}},
+                         w.common);
     if (auto ok = write_brdf_file(w.output, *options); !ok) return print_error(ok.error().at(w.output));
     print_result(w, *options);
     return exit_done;

@@ -29,7 +29,29 @@ int run_compare(const std::vector<std::string>& words) {
     add_bake_options(arguments, bake);
     add_common_options(arguments, common);
     if (const auto code = begin_command(arguments, words, common)) return *code;
-    if (!bake.bake.empty()) {
+    const bool audit = !bake.bake.empty();
+    warn_of_idle_options(arguments,
+                         {{"--env", audit, "--bake"},
+                          {"--for", audit, "--bake"},
+                          {"--lobe", audit, "--bake"},
+                          {"--within", audit, "--bake"},
+                          {"--texels", audit, "--bake"},
+                          {"--layer-b", !audit, "two pictures"},
+                          {"--level", !audit, "two pictures"},
+                          {"--mask", !audit, "two pictures"},
+                          {"--objects", !audit, "two pictures"},
+                          {"--variance", !audit, "two pictures"},
+                          {"--skip-bad", !audit, "two pictures"},
+                          {"--no-flip", !audit, "two pictures"},
+                          {"--heat", !audit, "two pictures"},
+                          {"--sheet", !audit, "two pictures"},
+                          {"--fail-above", !audit, "two pictures"},
+                          {"--fail-below", !audit, "two pictures"},
+                          {"--heat-of", !pictures.heat.empty(), "--heat"},
+                          {"--heat-max", !pictures.heat.empty(), "--heat"},
+                          {"--pixels-per-degree", !audit && !pictures.no_flip, "FLIP, which --no-flip leaves out"}},
+                         common);
+    if (audit) {
         if (!inputs.empty())
             return print_error({"audits a bake: it takes no pictures A and B", "--bake", "Name the source with --env."},
                                exit_usage);

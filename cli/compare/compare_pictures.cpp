@@ -359,6 +359,10 @@ int compare_pictures(const std::string& a, const std::string& b, const PictureWo
     if (auto ok = check_words(w); !ok) return print_error(ok.error(), exit_usage);
     const auto limits = parse_limits(w);
     if (!limits) return print_error(limits.error(), exit_usage);
+    std::vector<std::filesystem::path> inputs;
+    for (const std::string& input : {a, b, w.mask, w.objects})
+        if (!input.empty()) inputs.emplace_back(input);
+    if (auto ok = check_output_places({w.heat, w.sheet}, inputs); !ok) return print_error(ok.error());
     const int threads = common.threads.value_or(0);
     auto read = read_all(a, b, w, threads);
     if (!read) return print_error(read.error(), exit_failed);

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <functional>
 
 namespace domelight::cli {
@@ -162,6 +163,7 @@ void Arguments::number(const std::string& name, const std::string& value_name, d
     parser_->add(group_, name, value_name, help, [&value](const std::string& word) -> Result<void> {
         const auto number = parse_number(word);
         if (!number) return number.error();
+        if (std::isnan(*number) && std::isnan(value)) return Error{fmt::format("\"{}\" is not a number", word), "", ""};
         value = *number;
         return {};
     });

@@ -31,6 +31,8 @@ class Arguments {
                const std::string& help);
     void integer(const std::string& name, const std::string& value_name, std::optional<int>& value,
                  const std::string& help);
+    /// Where `value` is NaN before, which stands for an option that was not given, NaN is refused. What else is in
+    /// range, a command checks itself.
     void number(const std::string& name, const std::string& value_name, double& value, const std::string& help);
     void numbers(const std::string& name, const std::string& value_name, std::vector<double>& values,
                  const std::string& help);
@@ -82,7 +84,7 @@ class Arguments {
     std::vector<std::string> examples_;
 };
 
-/// A decimal number without anything after it; "inf" is one.
+/// A decimal number without anything after it; "inf" and "nan" are some.
 Result<double> parse_number(const std::string& text);
 Result<int> parse_integer(const std::string& text);
 /// Any 64-bit number.

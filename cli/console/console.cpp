@@ -51,6 +51,13 @@ void print_warnings(const std::vector<std::string>& warnings, const CommonOption
                                     escaped(with_options(warning))));
 }
 
+void warn_of_idle_options(const Arguments& arguments, const std::vector<OptionRule>& rules,
+                          const CommonOptions& options) {
+    for (const OptionRule& rule : rules)
+        if (!rule.works && arguments.given(rule.option))
+            print_warnings({fmt::format("{} has no effect here: it goes with {}", rule.option, rule.with)}, options);
+}
+
 std::string clock_text(double seconds) {
     const auto s = std::int64_t(std::clamp(seconds, 0.0, 1e9) + 0.5);
     if (s < 3600) return fmt::format("{}:{:02}", s / 60, s % 60);

@@ -33,6 +33,16 @@ std::optional<int> begin_command(Arguments& arguments, const std::vector<std::st
 void print_warnings(const std::vector<std::string>& warnings, const CommonOptions& options,
                     const std::string& place = "");
 
+/// An option that does something only in some combinations.
+struct OptionRule {
+    const char* option;  ///< its long name: "--heat-max"
+    bool works;          ///< in the combination that was given
+    const char* with;    ///< what it goes with: "--heat"
+};
+/// Warns of each option that was given and does nothing, unless quiet.
+void warn_of_idle_options(const Arguments& arguments, const std::vector<OptionRule>& rules,
+                          const CommonOptions& options);
+
 /// Behind the encoding of an OpenEXR image whose channels became 32-bit floats by the rule of fits_half().
 inline constexpr const char* k_why_float_channels = "halves would clip at 65504";
 

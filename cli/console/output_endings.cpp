@@ -5,6 +5,7 @@
 #include "domelight/io/write_image.h"
 
 #include "cli/console/arguments.h"
+#include "io/file/output_place.h"
 
 #include <fmt/core.h>
 
@@ -50,6 +51,14 @@ Result<void> check_folder(const char* option, const std::string& folder) {
     return Error{
         fmt::format("\"{}\" is the name of a file, and several files are written into a folder", folder), option,
         fmt::format("Name a folder: {} {}.", option, std::filesystem::path(folder).replace_extension().string())};
+}
+
+Result<void> check_output_places(const std::vector<std::string>& outputs,
+                                 const std::vector<std::filesystem::path>& inputs) {
+    std::vector<std::filesystem::path> files;
+    for (const std::string& output : outputs)
+        if (!output.empty()) files.emplace_back(output);
+    return check_output_files(files, inputs);
 }
 
 }  // namespace domelight::cli

@@ -307,6 +307,7 @@ int run_convert(const std::vector<std::string>& words) {
     declare(arguments, w);
     if (const auto code = begin_command(arguments, words, w.common)) return *code;
     if (auto ok = check(w); !ok) return print_error(ok.error(), exit_usage);
+    if (auto ok = check_output_places({w.output.file}); !ok) return print_error(ok.error());
     const auto picture = wants_picture(w, arguments);
     if (!picture) return print_error(picture.error(), exit_usage);
     if (*picture) return run_picture(w);
@@ -314,6 +315,10 @@ int run_convert(const std::vector<std::string>& words) {
     if (!target)
         return print_error({target.error().what, "--to", meant_projection(w.to) + target.error().hint}, exit_usage);
     if (auto ok = check_output(w.output, *target); !ok) return print_error(ok.error(), exit_usage);
+    warn_of_idle_options(
+        arguments,
+        {{"--sharp", target->name() == "cube" || target->name().starts_with("latlong"), "--to cube or latlong"}},
+        w.common);
     const auto turn = light_turn(w);
     if (!turn) return print_error(turn.error(), exit_usage);
 

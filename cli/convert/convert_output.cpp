@@ -1,6 +1,7 @@
 #include "cli/convert/convert_output.h"
 
 #include "domelight/image/cube_layout.h"
+#include "domelight/io/file/atomic_file.h"
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
@@ -154,11 +155,16 @@ Result<WrittenPicture> write_projected(const ProjectedImage& image, const Conver
     for (const Picture& picture : all)
         if (!picture.suffix.empty())
             if (auto ok = check_not_an_input(file_of(picture), output.inputs); !ok) return ok.error();
+    FileGroup group;
     for (const Picture& picture : all) {
         const std::string file = file_of(picture);
-        if (auto ok = write_picture(file, picture.pixels, image, output); !ok) return ok.error().at(file);
+        const auto temporary = group.stage(file);
+        if (!temporary) return temporary.error();
+        if (auto ok = write_picture(temporary->string(), picture.pixels, image, output); !ok)
+            return Error{ok.error().what, file, ok.error().hint};
         written.files.push_back(file);
     }
+    if (auto ok = group.commit(); !ok) return ok.error();
     return written;
 }
 

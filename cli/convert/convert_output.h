@@ -34,7 +34,7 @@ struct WrittenPicture {
     EncodingReport encoding;  ///< what the encoding clipped; textures and half .exr
 };
 
-/// Writes the picture, in one file or one a chart (`name_px.hdr`, `name_front.hdr`). Each appears whole or not at all.
+/// Writes the picture, in one file or one a chart (`name_px.hdr`, `name_front.hdr`). All of them appear whole, or none.
 Result<WrittenPicture> write_projected(const ProjectedImage& image, const ConvertOutput& output);
 
 }  // namespace domelight::cli

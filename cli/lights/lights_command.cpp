@@ -13,6 +13,7 @@
 #include "cli/console/output_endings.h"
 #include "cli/console/print.h"
 #include "io/file/json.h"
+#include "io/file/output_place.h"
 #include "io/file/sha256.h"
 #include "preview/lights_sheet.h"
 #include "scene/gltf/gltf_lights_writer.h"
@@ -272,6 +273,7 @@ int run_lights(const std::vector<std::string>& words) {
     w.options.max_lights = w.max_lights.value_or(w.options.max_lights);
     w.options.threads = w.common.threads.value_or(0);
     if (auto ok = check(w); !ok) return print_error(ok.error(), exit_usage);
+    if (auto ok = check_output_folder(w.output); !ok) return print_error(ok.error());
     return run(w);
 }
 

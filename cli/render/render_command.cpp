@@ -1,14 +1,17 @@
 #include "domelight/base/version.h"
+#include "domelight/io/write_image.h"
 
 #include "cli/commands.h"
 #include "cli/console/environment_options.h"
 #include "cli/console/field_options.h"
 #include "cli/console/interruption.h"
+#include "cli/console/output_endings.h"
 #include "cli/console/print.h"
 #include "cli/render/render_outputs.h"
 #include "cli/render/render_study_command.h"
 #include "cli/render/render_turntable.h"
 #include "io/file/json.h"
+#include "io/file/output_place.h"
 #include "preview/tonemap.h"
 
 #include <fmt/core.h>
@@ -177,6 +180,34 @@ int run_picture(const RenderWords& w, const RayScene& scene, const EnvironmentSa
     return exit_done;
 }
 
+void warn_of_idle(const RenderWords& w, const Arguments& arguments) {
+    const bool screen = std::ranges::any_of(w.outputs, is_screen_picture);
+    const bool from_texture = w.shading == ShadingModel::mirror || w.shading == ShadingModel::refract;
+    const bool from_maps = !w.reference() && !from_texture;
+    warn_of_idle_options(arguments,
+                         {{"--tonemap", screen, "a .png or .jpg"},
+                          {"--ev", screen, "a .png or .jpg"},
+                          {"--fov-deg", !w.camera_position.empty(), "--camera-position"},
+                          {"--strategy", w.reference(), "--shading reference"},
+                          {"--noise", w.reference(), "--shading reference"},
+                          {"--time", w.reference(), "--shading reference"},
+                          {"--bounces", w.reference(), "--shading reference"},
+                          {"--maps", from_maps, "--shading split-sum, stretched or phong"},
+                          {"--irradiance", from_maps, "--shading split-sum, stretched or phong"},
+                          {"--lookup", from_texture, "--shading mirror or refract"},
+                          {"--lookup-size", from_texture, "--shading mirror or refract"},
+                          {"--bent-lookup", w.shading == ShadingModel::split_sum, "--shading split-sum"}},
+                         w.common);
+}
+
+/// Whether the pictures can be written, and are none of the files that are read.
+Result<void> check_places(const RenderWords& w) {
+    if (w.study && !is_screen_picture(w.outputs[0])) return check_output_folder(w.outputs[0]);
+    std::vector<std::filesystem::path> inputs = environment_files(w.environment_files);
+    for (const auto* files : {&w.scenes, &w.light_files}) inputs.insert(inputs.end(), files->begin(), files->end());
+    return check_output_places(w.outputs, inputs);
+}
+
 }  // namespace
 
 Result<RenderResult> draw(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler,
@@ -225,6 +256,8 @@ int run_render(const std::vector<std::string>& words) {
     declare(arguments, w);
     if (const auto code = begin_command(arguments, words, w.common)) return *code;
     if (auto ok = check_words(w, arguments); !ok) return print_error(ok.error(), exit_usage);
+    if (auto ok = check_places(w); !ok) return print_error(ok.error());
+    if (!w.study) warn_of_idle(w, arguments);
 
     SceneOptions scene_options;
     scene_options.threads = w.threads();

@@ -1,5 +1,6 @@
 #include "cli/render/render_outputs.h"
 
+#include "domelight/io/file/atomic_file.h"
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
@@ -83,9 +84,14 @@ Result<void> write_picture(const std::string& file, const FinishedPicture& pictu
 
 Result<void> write_pictures(const std::vector<std::string>& files, const FinishedPicture& picture, const Scene& scene,
                             const RenderWords& w) {
-    for (const std::string& file : files)
-        if (auto ok = write_picture(file, picture, scene, w); !ok) return ok.error().at(file);
-    return {};
+    FileGroup group;
+    for (const std::string& file : files) {
+        const auto temporary = group.stage(file);
+        if (!temporary) return temporary.error();
+        if (auto ok = write_picture(temporary->string(), picture, scene, w); !ok)
+            return Error{ok.error().what, file, ok.error().hint};
+    }
+    return group.commit();
 }
 
 }  // namespace domelight::cli

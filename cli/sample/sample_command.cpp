@@ -4,12 +4,14 @@
 #include "cli/commands.h"
 #include "cli/console/console.h"
 #include "cli/console/environment_options.h"
+#include "cli/console/output_endings.h"
 #include "cli/console/print.h"
 #include "cli/sample/sample_estimate.h"
 #include "cli/sample/sample_explain.h"
 #include "cli/sample/sample_options.h"
 #include "cli/sample/sample_output.h"
 #include "io/file/json.h"
+#include "io/file/output_place.h"
 #include "preview/sample_picture.h"
 
 #include <fmt/core.h>
@@ -112,6 +114,12 @@ int run_sample(const std::vector<std::string>& words) {
     declare_sample_options(arguments, w);
     if (const auto code = begin_command(arguments, words, w.common)) return *code;
     if (auto ok = check_sample_options(arguments, w); !ok) return print_error(ok.error(), exit_usage);
+    if (auto ok =
+            check_output_places({w.output, w.picture, w.heat, w.plot, w.explain_picture}, environment_files(w.inputs));
+        !ok)
+        return print_error(ok.error());
+    if (!w.tables.empty())
+        if (auto ok = check_output_folder(w.tables); !ok) return print_error(ok.error());
 
     auto environment = open_light_to_draw_from(w.inputs, w.environment);
     if (!environment) return print_error(environment.error());

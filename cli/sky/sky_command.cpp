@@ -164,6 +164,15 @@ int run_sky(const std::vector<std::string>& words) {
     declare(arguments, w);
     if (const auto code = begin_command(arguments, words, w.common)) return *code;
     if (auto ok = check(w); !ok) return print_error(ok.error(), exit_usage);
+    if (auto ok = check_output_places({w.output}); !ok) return print_error(ok.error());
+    warn_of_idle_options(arguments,
+                         {{"--exr", is_exr(w), "an .exr"},
+                          {"--sun-elevation-deg", !w.axes, "a sky, not with --axes"},
+                          {"--sun-azimuth-deg", !w.axes, "a sky, not with --axes"},
+                          {"--turbidity", !w.axes, "a sky, not with --axes"},
+                          {"--ground-albedo", !w.axes, "a sky, not with --axes"},
+                          {"--no-sun-disc", !w.axes, "a sky, not with --axes"}},
+                         w.common);
     w.sky.height = w.height.value_or(512);
     w.sky.sun_disc = !w.no_sun_disc;
     w.sky.threads = w.common.threads.value_or(0);

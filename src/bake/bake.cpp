@@ -18,6 +18,7 @@
 #include "bake/preview_sheet.h"
 #include "bake/sh_report.h"
 #include "bake/staging.h"
+#include "io/file/output_place.h"
 #include "io/file/sha256.h"
 #include "projection/convention_text.h"
 
@@ -25,9 +26,9 @@
 
 #include <chrono>
 #include <ctime>
+#include <future>
 #include <map>
 #include <memory>
-#include <thread>
 
 namespace domelight {
 namespace {
@@ -35,27 +36,28 @@ namespace {
 /// Adds the time from its construction to its destruction to a stage.
 class StageClock {
   public:
-    StageClock(std::vector<StageTime>& stages, const char* stage) : stages_(stages), stage_(stage) {}
+    StageClock(std::vector<StageTime>& stages, const char* stage) : stages_(stages), index_(index_of(stages, stage)) {}
     ~StageClock() {
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-        const double cpu = cpu_seconds() - cpu_;
-        for (StageTime& s : stages_)
-            if (s.stage == stage_) {
-                s.seconds += seconds;
-                s.cpu_seconds += cpu;
-                return;
-            }
-        stages_.push_back({stage_, seconds, cpu});
+        StageTime& s = stages_[index_];
+        s.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        s.cpu_seconds += cpu_seconds() - cpu_;
     }
 
   private:
+    /// Where the stage stands in the list. It is added at the start, because the end may be that of a lack of memory.
+    static std::size_t index_of(std::vector<StageTime>& stages, const char* stage) {
+        for (std::size_t i = 0; i < stages.size(); ++i)
+            if (stages[i].stage == stage) return i;
+        stages.push_back({stage, 0, 0});
+        return stages.size() - 1;
+    }
     static double cpu_seconds() {
         timespec t;
         clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
         return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
     }
     std::vector<StageTime>& stages_;
-    const char* stage_;
+    std::size_t index_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     double cpu_ = cpu_seconds();
 };
@@ -387,18 +389,18 @@ Result<BakeReport> bake(const Environment& environment, const BakeOptions& optio
                         const std::filesystem::path& folder) {
     auto plans = plan_bake(options, &environment);
     if (!plans) return plans.error();
-    if (std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
-        return Error{"is a file, not a folder", folder.string(), "Name a folder for the results."};
     BakeReport report;
+    for (const EnginePlan& plan : *plans)
+        if (auto ok = check_output_folder(engine_folder(folder, options, *plan.engine)); !ok) return ok.error();
     const auto files = source_files(environment, options);
     SourceReport source = describe_source(environment, files);
     const std::string stem = stem_of(files);
 
-    Result<std::string> source_hash = std::string();
-    std::jthread hashing;
+    std::future<Result<std::string>> hashing;
     if (options.hashes && !files.empty())
-        hashing = std::jthread(
-            [&] { source_hash = files == environment.files ? environment_sha256(environment) : sha256_files(files); });
+        hashing = std::async(k_in_background, [&] {
+            return files == environment.files ? environment_sha256(environment) : sha256_files(files);
+        });
 
     FilterJob job(*plans, environment, options);
     {
@@ -427,9 +429,9 @@ Result<BakeReport> bake(const Environment& environment, const BakeOptions& optio
     }
     {
         const StageClock clock(report.stages, "hash");
-        if (hashing.joinable()) hashing.join();
-        if (!source_hash) return source_hash.error();
-        source.sha256 = report.source_sha256 = files.empty() ? job.rows_sha256() : *source_hash;
+        auto hash = hashing.valid() ? hashing.get() : Result<std::string>(files.empty() ? job.rows_sha256() : "");
+        if (!hash) return hash.error();
+        source.sha256 = report.source_sha256 = *std::move(hash);
     }
     for (std::size_t e = 0; e < bakes.size(); ++e)
         if (auto ok = bakes[e]->commit(source, job.result(e).mean); !ok) return ok.error();

@@ -10,7 +10,9 @@
 
 #include <fmt/core.h>
 
+#include <exception>
 #include <memory>
+#include <new>
 
 namespace domelight {
 
@@ -18,7 +20,7 @@ void Background::start(std::function<Result<void>()> task) {
     if (at_once_) {
         done(task());
     } else {
-        tasks_.push_back(std::async(std::launch::async, std::move(task)));
+        tasks_.push_back(std::async(k_in_background, std::move(task)));
     }
 }
 
@@ -28,10 +30,25 @@ void Background::done(Result<void> result) {
     promise.set_value(std::move(result));
 }
 
+namespace {
+
+/// What a task returned. A lack of memory in it is an error like any other.
+Result<void> outcome_of(std::future<Result<void>>& task) {
+    try {
+        return task.get();
+    } catch (const std::bad_alloc&) {
+        return Error{"not enough memory", "", ""};
+    } catch (const std::exception& e) {
+        return Error{e.what(), "", ""};
+    }
+}
+
+}  // namespace
+
 Result<void> Background::wait() {
     Result<void> first;
     for (auto& task : tasks_) {
-        Result<void> result = task.get();
+        Result<void> result = outcome_of(task);
         if (first && !result) first = result;
     }
     tasks_.clear();

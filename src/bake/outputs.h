@@ -14,6 +14,9 @@
 
 namespace domelight {
 
+/// In another thread; where none can be started, at the time when the result is asked for.
+inline constexpr std::launch k_in_background = std::launch::async | std::launch::deferred;
+
 /// Writing and hashing in the background of a bake. With one thread each task runs immediately.
 class Background {
   public:

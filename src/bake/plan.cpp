@@ -5,6 +5,7 @@
 #include "bake/panorama.h"
 #include "bake/phong_gaps.h"
 #include "base/field_place.h"
+#include "texture/container/dds_formats.h"
 #include "texture/container/scaled_bytes.h"
 
 #include <fmt/core.h>
@@ -122,6 +123,9 @@ Result<void> plan_encoding(EnginePlan& plan, const BakeOptions& o) {
     if (plan.container == Container::dds && is_scaled_bytes(plan.encoding))
         return field_error("encoding", "dds cannot say that its bytes are " + name_of(plan.encoding),
                            "Use `format` ktx2 or ktx1, where a key says so.");
+    if (plan.container == Container::dds && dxgi_number(plan.encoding) == 0)
+        return field_error("encoding", name_of(plan.encoding) + " cannot be stored as dds",
+                           "DDS holds rgba16f, rgba32f, rgb9e5, r11g11b10f and bc6h; for others use `format` ktx2.");
     if (plan.container == Container::hdr && o.encoding)
         return field_error("encoding", "hdr has only its own encoding (RGBE)", "Leave `encoding` out.");
     return {};

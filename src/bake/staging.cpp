@@ -1,6 +1,7 @@
 #include "bake/staging.h"
 
 #include "io/file/input_guard.h"
+#include "io/file/output_place.h"
 
 #include <unistd.h>
 
@@ -14,12 +15,11 @@ Result<Staging> Staging::open(const fs::path& folder, std::vector<fs::path> inpu
     Staging staging;
     staging.inputs_ = std::move(inputs);
     staging.folder_ = folder.empty() ? fs::path(".") : folder;
+    if (auto ok = check_output_folder(staging.folder_); !ok) return ok.error();
     std::error_code failure;
     const fs::path absolute = fs::absolute(staging.folder_, failure).lexically_normal();
     for (fs::path p = absolute; !p.empty() && !fs::exists(p, failure) && p != p.parent_path(); p = p.parent_path())
         if (p.has_filename()) staging.created_folders_.insert(staging.created_folders_.begin(), p);
-    if (fs::exists(staging.folder_, failure) && !fs::is_directory(staging.folder_, failure))
-        return Error{"is a file, not a folder", folder.string(), "Name a folder for the results."};
     fs::create_directories(staging.folder_, failure);
     if (failure) return Error{"cannot be created: " + failure.message(), folder.string(), ""};
     return staging;
@@ -35,8 +35,7 @@ Staging::~Staging() {
 fs::path Staging::stage(const std::string& name) {
     const std::lock_guard lock(*mutex_);
     // The ending of the name is kept, because some writers depend on it.
-    const fs::path temporary = folder_ / (".domelight-" + std::to_string(::getpid()) + "-" +
-                                          std::to_string(files_.size()) + fs::path(name).extension().string());
+    const fs::path temporary = temporary_name(folder_ / fs::path(name).filename());
     files_.push_back({name, temporary, std::make_unique<TemporaryFileGuard>(temporary.string())});
     return temporary;
 }

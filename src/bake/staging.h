@@ -17,7 +17,8 @@ namespace domelight {
 /// been committed are removed, even on signals that the program handles.
 class Staging {
   public:
-    /// Creates the folder if it is missing. `inputs`: files that commit() must not replace. Errors name the folder.
+    /// Creates the folder if it is missing. `inputs`: files that commit() must not replace. Errors name the folder: those
+    /// of check_output_folder().
     static Result<Staging> open(const std::filesystem::path& folder, std::vector<std::filesystem::path> inputs = {});
     Staging(Staging&&) = default;
     Staging& operator=(Staging&&) = delete;

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <exception>
 #include <memory>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -101,10 +102,15 @@ void parallel_for(int count, int threads, const std::function<void(int)>& task) 
         t_inside = false;
     };
     auto& helpers = helpers_of_this_thread();
-    while (int(helpers.size()) < workers - 1) helpers.push_back(std::make_unique<Helper>());
-    for (int t = 0; t < workers - 1; ++t) helpers[t]->start(work);
+    try {
+        while (int(helpers.size()) < workers - 1) helpers.push_back(std::make_unique<Helper>());
+    } catch (const std::system_error&) {
+        // The system starts no more threads: those that there are do the work.
+    }
+    const std::size_t started = std::min(helpers.size(), std::size_t(workers - 1));
+    for (std::size_t t = 0; t < started; ++t) helpers[t]->start(work);
     work();
-    for (int t = 0; t < workers - 1; ++t) helpers[t]->finish();
+    for (std::size_t t = 0; t < started; ++t) helpers[t]->finish();
     if (failure) std::rethrow_exception(failure);
 }
 

@@ -1,5 +1,7 @@
 #include "domelight/image/row_source.h"
 
+#include "base/text.h"
+
 #include <algorithm>
 #include <cassert>
 
@@ -15,7 +17,12 @@ Result<void> ImageRowSource::read(ImageView<float> rows) {
     return {};
 }
 
-Result<ImageF> read_latlong(RowSource& source) {
+Result<ImageF> read_latlong(RowSource& source, std::int64_t max_bytes) {
+    const std::int64_t bytes = std::int64_t(source.width()) * source.height() * 3 * std::int64_t(sizeof(float));
+    if (bytes > max_bytes)
+        return Error{text("the lat-long image has ", source.width(), " x ", source.height(), " texels and needs ",
+                          bytes, " bytes of memory, more than the limit of ", max_bytes),
+                     "", "Reduce its size first."};
     ImageF image(source.width(), source.height(), 3);
     constexpr int rows_a_read = 64;
     for (int y = 0; y < image.height(); y += rows_a_read) {

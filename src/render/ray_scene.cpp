@@ -1,5 +1,8 @@
 #include "render/ray_scene.h"
 
+#include "domelight/base/large_allocator.h"
+#include "domelight/base/parallel.h"
+
 #include "scene/sound_places.h"
 
 #include <fmt/core.h>
@@ -8,6 +11,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <new>
 
 namespace domelight {
 namespace {
@@ -55,12 +59,30 @@ std::size_t RayScene::memory_bytes() const {
     return impl_->bytes;
 }
 
+namespace {
+
+/// Whether there is room for the stacks of Embree's workers. They are oneTBB's, which ends the program where a thread
+/// cannot be started, so this is asked before.
+bool room_for_workers() {
+    const std::size_t bytes = (std::size_t(32) + std::size_t(8) * std::size_t(resolve_threads(0))) << 20;
+    try {
+        free_large(allocate_large(bytes), bytes);
+        return true;
+    } catch (const std::bad_alloc&) {
+        return false;
+    }
+}
+
+}  // namespace
+
 Result<RayScene> RayScene::build(Scene scene) {
     RayScene out;
     Impl& impl = *out.impl_;
     impl.scene = std::move(scene);
     const Scene& s = impl.scene;
     if (s.triangle_count() == 0) return Error{"the scene has no triangles", "", ""};
+    const Error no_memory{"out of memory for the scene's acceleration structure", "", ""};
+    if (!room_for_workers()) return no_memory;
     // Embree's own worker threads are oneTBB's; "threads=1" would pin all of TBB to one core.
     impl.device = rtcNewDevice(nullptr);
     if (!impl.device) return Error{"Embree cannot start", "", ""};
@@ -104,14 +126,13 @@ Result<RayScene> RayScene::build(Scene scene) {
         if (id >= impl.instance_of.size()) impl.instance_of.resize(id + 1, -1);
         impl.instance_of[id] = i;
     }
+    if (!room_for_workers()) return no_memory;
     rtcCommitScene(impl.world);
     rtcSetDeviceMemoryMonitorFunction(impl.device, nullptr, nullptr);
     impl.bytes = std::size_t(std::max<std::int64_t>(0, bytes));
     if (const RTCError error = rtcGetDeviceError(impl.device); error != RTC_ERROR_NONE)
-        return Error{error == RTC_ERROR_OUT_OF_MEMORY
-                         ? std::string("out of memory for the scene's acceleration structure")
-                         : fmt::format("Embree reports error {}", int(error)),
-                     "", ""};
+        return error == RTC_ERROR_OUT_OF_MEMORY ? no_memory
+                                                : Error{fmt::format("Embree reports error {}", int(error)), "", ""};
     return out;
 }
 

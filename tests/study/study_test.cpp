@@ -62,6 +62,22 @@ TEST_SUITE("study") {
         CHECK(dot(survey->lights[0].direction, at) > std::cos(0.5 * k_pi / 180));
     }
 
+    TEST_CASE("survey_environment: the lamp of a cube lies where it does, turned with the cube") {
+        Cubemap cube(64);
+        std::fill(cube.pixels().begin(), cube.pixels().end(), 0.5F);
+        for (int y = 20; y < 23; ++y)
+            for (int x = 40; x < 43; ++x) std::fill_n(cube.face(4).at(x, y), 3, 500.0F);
+        const Vec3d lamp = normalize(cube_direction(4, {41.5 / 64, 21.5 / 64}));
+        for (const Mat3& turn : {Mat3{}, rotation_y(0.7)}) {
+            const auto survey = survey_environment(Environment::from_cube(cube, turn));
+            REQUIRE(bool(survey));
+            REQUIRE(survey->lights.size() == 1);
+            // Where to look in the cube for the light from world direction d is turn * d.
+            CHECK(dot(survey->lights[0].direction, turn.transposed() * lamp) > std::cos(0.5 * k_pi / 180));
+            CHECK(survey->lights[0].radius_deg == doctest::Approx(1.8).epsilon(0.3));
+        }
+    }
+
     TEST_CASE("explain_sample: the explanation ends where the sampler does") {
         const ImageF image = light_with_lamp(64, 32, 20, 12);
         for (const DistributionMethod method : {DistributionMethod::binary, DistributionMethod::guided,

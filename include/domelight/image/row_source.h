@@ -3,6 +3,8 @@
 #include "domelight/base/result.h"
 #include "domelight/image/image.h"
 
+#include <cstdint>
+
 namespace domelight {
 
 /// A lat-long image in the default convention that is read from the top row down: RGB float radiance, linear Rec. 709,
@@ -29,7 +31,12 @@ class ImageRowSource : public RowSource {
     int next_row_ = 0;
 };
 
-/// Reads all remaining rows of a source into memory.
-Result<ImageF> read_latlong(RowSource& source);
+/// The largest lat-long image that is held in memory, in bytes: 16384 x 8192 texels need 1.6e9. A compressed file of some
+/// hundred kilobytes can truthfully be any size.
+inline constexpr std::int64_t k_most_latlong_bytes = std::int64_t(1) << 31;
+
+/// Reads all remaining rows of a source into memory. Errors: width() x height() texels need more than `max_bytes`; those
+/// of reading.
+Result<ImageF> read_latlong(RowSource& source, std::int64_t max_bytes = k_most_latlong_bytes);
 
 }  // namespace domelight

@@ -9,6 +9,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -87,10 +88,11 @@ class Cursor {
 
 /// What the size of the decoded blocks depends on.
 struct PartShape {
-    std::array<std::int32_t, 4> data_window{0, 0, -1, -1};
+    ExrWindow data_window{0, 0, -1, -1};
     std::int64_t tile_width = 0, tile_height = 0;
     int compression = -1;
     std::int64_t bytes_per_texel = 0;
+    double stored_bytes_per_texel = 0;  ///< on average: subsampled channels have fewer texels
     int channels = 0;
 };
 
@@ -102,6 +104,15 @@ Error damaged(std::string what) {
 int lines_per_block(int compression) {
     constexpr std::array<int, 10> lines{1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
     return compression >= 0 && compression < int(lines.size()) ? lines[std::size_t(compression)] : 1;
+}
+
+/// How many bytes at most one byte of a file becomes, by compression method; infinite where a block of any size may
+/// take some bytes. RLE: 2 bytes for 128. Deflate: 1032 (zlib's documentation), of which PXR24 makes 4/3 as floats lose
+/// a byte. B44: 14 bytes for 32, B44A: 3; both store what is not half as it is.
+double most_expansion(int compression) {
+    constexpr double k_any = std::numeric_limits<double>::infinity();
+    constexpr std::array<double, 10> most{1, 64, 1032, 1032, k_any, 1376, 32. / 14, 32. / 3, k_any, k_any};
+    return compression >= 0 && compression < int(most.size()) ? most[std::size_t(compression)] : k_any;
 }
 
 Result<void> read_channels(std::span<const std::uint8_t> value, PartShape& shape) {
@@ -119,6 +130,7 @@ Result<void> read_channels(std::span<const std::uint8_t> value, PartShape& shape
         const auto x_sampling = cursor.int32(), y_sampling = cursor.int32();
         if (!x_sampling || !y_sampling || *x_sampling < 1 || *y_sampling < 1 || *type < 0 || *type > 2) return broken;
         shape.bytes_per_texel += *type == 1 ? 2 : 4;
+        shape.stored_bytes_per_texel += (*type == 1 ? 2 : 4) / (double(*x_sampling) * *y_sampling);
         if (++shape.channels > 1024) return Error{"image has more than 1024 channels", "", ""};
     }
 }
@@ -155,6 +167,11 @@ Result<void> check_part(const PartShape& shape, std::size_t file_size, std::int6
     if (chunks > std::int64_t(file_size / 16))
         return damaged(
             fmt::format("file ends too early: {} bytes cannot hold {} x {} texels", file_size, width, height));
+    // Tiles at the rim are whole in memory and cut in the file, so only the texels of the window count.
+    if (double(width) * double(height) * shape.stored_bytes_per_texel >
+        most_expansion(shape.compression) * double(file_size))
+        return damaged(fmt::format("file ends too early: {} bytes cannot hold {} x {} texels by its compression",
+                                   file_size, width, height));
     // The library keeps in memory a row of tiles, and a few blocks as stored and as decoded.
     const std::int64_t band = (tiled ? (width + block_width - 1) / block_width * block_width : width) * block_height;
     if (band > max_bytes / 4 / shape.bytes_per_texel)
@@ -166,6 +183,22 @@ Result<void> check_part(const PartShape& shape, std::size_t file_size, std::int6
 }
 
 }  // namespace
+
+Result<void> check_exr_black(const ExrWindow& display, const ExrWindow& data, std::int64_t max_bytes) {
+    static constexpr std::int64_t k_none = 0;
+    const auto texels = [](const ExrWindow& w) {
+        return std::max(k_none, std::int64_t(w[2]) - w[0] + 1) * std::max(k_none, std::int64_t(w[3]) - w[1] + 1);
+    };
+    const ExrWindow seen{std::max(display[0], data[0]), std::max(display[1], data[1]), std::min(display[2], data[2]),
+                         std::min(display[3], data[3])};
+    const std::int64_t black = texels(display) - texels(seen);
+    const std::int64_t most = std::min(k_most_exr_black, max_bytes / std::int64_t(3 * sizeof(float)));
+    if (black <= 4 * texels(seen) || black <= most) return {};
+    return Error{fmt::format("the display window has {} texels, but the data window only {} of them: more than the "
+                             "limit of {} would be black",
+                             texels(display), texels(seen), most),
+                 "", "Crop the picture to its data window, or enlarge the data window to what is to be read."};
+}
 
 Result<ExrPreflight> check_exr_headers(std::span<const std::uint8_t> file, std::int64_t max_bytes) {
     const Error endless = damaged("file ends inside the header");

@@ -2,6 +2,7 @@
 
 #include "domelight/base/result.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -19,7 +20,20 @@ struct ExrPreflight {
 };
 
 /// Errors: no end of the headers, attributes that reach past the end of the file, windows or tiles of impossible size,
-/// more chunks than the file could index, blocks or tiles of more than `max_bytes` when decoded.
+/// more chunks than the file could index, blocks or tiles of more than `max_bytes` when decoded, more texels than the
+/// file's bytes can hold by its compression (PIZ and DWA have no bound: a chunk of any size may take some bytes).
 Result<ExrPreflight> check_exr_headers(std::span<const std::uint8_t> file, std::int64_t max_bytes);
+
+/// A window of texels, with its last ones: x_min, y_min, x_max, y_max.
+using ExrWindow = std::array<std::int32_t, 4>;
+
+/// The most black texels round the data window that a display window may add without regard to the data: a small region
+/// of a picture of 8192 x 4096. A header of some hundred bytes may promise two gigapixels round one texel, and whoever reads
+/// the picture works on all of it.
+inline constexpr std::int64_t k_most_exr_black = std::int64_t(1) << 25;
+
+/// Errors: the display window adds more than four times the texels of the data window that it shows, and more than
+/// k_most_exr_black or than `max_bytes` hold as RGB floats.
+Result<void> check_exr_black(const ExrWindow& display, const ExrWindow& data, std::int64_t max_bytes);
 
 }  // namespace domelight

@@ -51,26 +51,10 @@ class ExrReader : public ImageReader {
     Imath::Box2i window_;  // of the picture that is read
     Imath::Box2i data_;    // of the texels in the file
     int next_row_ = 0;
-    ImageF band_;  // if the data window extends beyond the picture
+    bool fills_rows_ = false;  // every value of the picture is in the file
+    ImageF band_;              // if the data window extends beyond the picture
     std::vector<Imf::Rgba> rgba_band_;
 };
-
-/// A header of some hundred bytes may promise two gigapixels of display window round a data window of one texel. The
-/// black round the data window is made row by row, but whoever reads the picture works on all of it.
-Result<void> check_black(const Imath::Box2i& display, const Imath::Box2i& data, std::int64_t max_bytes) {
-    const auto texels = [](const Imath::Box2i& b) {
-        return (std::int64_t(b.max.x) - b.min.x + 1) * (std::int64_t(b.max.y) - b.min.y + 1);
-    };
-    const Imath::Box2i seen({std::max(display.min.x, data.min.x), std::max(display.min.y, data.min.y)},
-                            {std::min(display.max.x, data.max.x), std::min(display.max.y, data.max.y)});
-    const std::int64_t black = texels(display) - texels(seen);
-    if (black <= 4 * texels(seen) || black <= max_bytes / std::int64_t(3 * sizeof(float))) return {};
-    return Error{
-        fmt::format("the display window has {} texels, but the data window only {} of them: the black round it "
-                    "would need more memory than the limit of {} bytes",
-                    texels(display), texels(seen), max_bytes),
-        "", "Crop the picture to its data window, or enlarge the data window to what is to be read."};
-}
 
 Result<void> ExrReader::open() {
     provide_exr_threads(threads_);
@@ -93,7 +77,8 @@ Result<void> ExrReader::open() {
     if (const auto sized = check_image_size(width, height); !sized) return sized.error();
     if (!window_.intersects(data_))
         return Error{"the data window lies outside the display window: no texel would be seen", "", ""};
-    if (const auto checked = check_black(window_, data_, options_.max_bytes); !checked) return checked.error();
+    if (const auto checked = check_exr_black(exr_window(window_), exr_window(data_), options_.max_bytes); !checked)
+        return checked.error();
     facts_.width = int(width);
     facts_.height = int(height);
 
@@ -115,6 +100,11 @@ Result<void> ExrReader::open() {
     if (colour_.chosen_by_us)
         facts_.warnings.push_back(fmt::format("the layer {} is read, of: {} (`layer` names another)",
                                               printable(colour_.layer), channels.layer_list()));
+    const bool named =
+        colour_.kind != ExrColour::Kind::rgb ||
+        std::none_of(std::begin(colour_.names), std::end(colour_.names), [](const auto& n) { return n.empty(); });
+    fills_rows_ = named && data_.min.x <= window_.min.x && data_.min.y <= window_.min.y &&
+                  data_.max.x >= window_.max.x && data_.max.y >= window_.max.y;
     take_facts(header);
     return {};
 }
@@ -195,7 +185,9 @@ void ExrReader::read_luminance_chroma(ImageView<float> rows, int y) {
 }
 
 Result<bool> ExrReader::read(ImageView<float> rows) {
-    for (int r = 0; r < rows.height; ++r) std::fill_n(rows.row(r), 3 * rows.width, 0.0f);
+    // Where every value is decoded, nothing is written before: a truncated file fails with little memory touched.
+    if (!fills_rows_)
+        for (int r = 0; r < rows.height; ++r) std::fill_n(rows.row(r), 3 * rows.width, 0.0f);
     const int first = std::max(window_.min.y + next_row_, data_.min.y);
     const int last = std::min(window_.min.y + next_row_ + rows.height - 1, data_.max.y);
     try {

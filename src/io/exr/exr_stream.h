@@ -2,8 +2,10 @@
 // Functions shared by the readers of OpenEXR.
 
 #include "io/exr/exr_channels.h"
+#include "io/exr/exr_header_reader.h"
 #include "io/file/file_reader.h"
 
+#include <ImathBox.h>
 #include <ImfIO.h>
 #include <ImfMultiPartInputFile.h>
 
@@ -14,6 +16,10 @@
 #include <vector>
 
 namespace domelight {
+
+inline ExrWindow exr_window(const Imath::Box2i& box) {
+    return {box.min.x, box.min.y, box.max.x, box.max.y};
+}
 
 /// The file's bytes as an OpenEXR stream, with the headers replaced by the checked ones.
 class ExrStream : public Imf::IStream {

@@ -4,16 +4,11 @@
 #include "io/file/output_file.h"
 #include "io/file/temporary_files.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstdio>
-#include <memory>
 #include <string>
-#include <system_error>
 
 namespace domelight {
 
@@ -21,72 +16,61 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Error system_error(const char* doing, int code) {
-    return {std::string("cannot ") + doing + ": " + std::generic_category().message(code), "", ""};
-}
-
-/// An empty file beside the one that it is to replace; removed with this object, or when a signal ends the program.
-struct Neighbour {
-    std::string path;
-    std::unique_ptr<TemporaryFileGuard> guard;
-};
-
-/// Creates it under a name nobody has. The mode is the one an ordinary new file gets, or that of the file which it is
-/// to replace.
-Result<Neighbour> create_neighbour(const fs::path& target) {
-    static std::atomic<unsigned> counter{0};
-    // The leading dot and the ending hide it from globs; the name is shortened so that it stays below NAME_MAX with
-    // both.
-    std::string stem = target.filename().string().substr(0, 200);
-    stem = '.' + stem + '.' + std::to_string(::getpid()) + '-';
-    for (int attempt = 0; attempt < 1000; ++attempt) {
-        const std::string path = (target.parent_path() / (stem + std::to_string(counter++) + ".tmp")).string();
-        const TemporaryFileCreation creation;
-        const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (descriptor < 0 && errno == EEXIST) continue;
-        if (descriptor < 0) return system_error("create a file there", errno);
-        struct stat old = {};
-        if (::stat(target.c_str(), &old) == 0) (void)!::fchmod(descriptor, old.st_mode & 0777);
-        ::close(descriptor);
-        return Neighbour{path, std::make_unique<TemporaryFileGuard>(path)};
-    }
-    return system_error("create a file there", EEXIST);
-}
-
-/// Where a chain of links ends, whether there is a file or not. The last name alone may be a link that leads nowhere.
-Result<fs::path> end_of_links(fs::path file) {
-    constexpr int k_most_links = 40;  // as many as Linux follows
-    std::error_code failure;
-    for (int links = 0; fs::is_symlink(fs::symlink_status(file, failure)); ++links) {
-        if (links == k_most_links) return system_error("follow its links", ELOOP);
-        const fs::path next = fs::read_symlink(file, failure);
-        if (failure) return system_error("follow its links", failure.value());
-        file = file.parent_path() / next;  // `next` alone where that is absolute
-    }
-    return file;
-}
-
 Result<void> replace(const fs::path& file, const std::function<Result<void>(const fs::path&)>& write) {
-    const Result<fs::path> target = end_of_links(file);
-    if (!target) return target.error();
-    const Result<Neighbour> temporary = create_neighbour(*target);
-    if (!temporary) return Error{temporary.error().what, "", "does the folder exist, and may you write to it?"};
-    Result<void> written = write(temporary->path);
-    if (written && ::rename(temporary->path.c_str(), target->c_str()) != 0) written = system_error("replace it", errno);
-    if (!written) ::unlink(temporary->path.c_str());
-    return written;
+    FileGroup group;
+    const auto temporary = group.stage(file);
+    if (!temporary) return temporary.error();
+    if (auto ok = write(*temporary); !ok) return ok;
+    return group.commit();
 }
 
 }  // namespace
+
+struct FileGroup::File {
+    fs::path name, target;
+    TemporaryFile temporary;
+};
+
+FileGroup::FileGroup() = default;
+
+FileGroup::~FileGroup() {
+    for (const File& file : files_) ::unlink(file.temporary.path.c_str());
+}
+
+Result<fs::path> FileGroup::stage(const fs::path& file) {
+    std::error_code failure;
+    if (is_device(fs::status(file, failure))) return file;
+    auto target = end_of_links(file);
+    if (!target) return target.error().at(file.string());
+    auto temporary = create_temporary(*target);
+    if (!temporary)
+        return Error{temporary.error().what, file.string(), "does the folder exist, and may you write to it?"};
+    files_.push_back({file, *std::move(target), *std::move(temporary)});
+    return fs::path(files_.back().temporary.path);
+}
+
+Result<void> FileGroup::commit() {
+    std::error_code ignored;
+    for (const File& file : files_)  // an obstacle that would otherwise stop the moving half way
+        if (fs::is_directory(file.target, ignored))
+            return Error{"is a folder, not a file", file.name.string(), "give the name of a file in it"};
+    while (!files_.empty()) {
+        const File& file = files_.front();
+        if (::rename(file.temporary.path.c_str(), file.target.c_str()) != 0) {
+            const Error failed = system_error("replace it", errno);
+            return failed.at(file.name.string());
+        }
+        files_.erase(files_.begin());
+    }
+    return {};
+}
 
 Result<void> write_file_atomically(const fs::path& file, const std::function<Result<void>(const fs::path&)>& write) {
     std::error_code failure;
     const fs::file_status status = fs::status(file, failure);
     if (fs::is_directory(status))
         return Error{"is a folder, not a file", file.string(), "give the name of a file in it"};
-    // A device or pipe (/dev/stdout, a named pipe) cannot be replaced, only written to.
-    const bool direct =
-        (fs::exists(status) && !fs::is_regular_file(status)) || TemporaryFileGuard::guards(file.string());
+    const bool direct = is_device(status) || TemporaryFileGuard::guards(file.string());
     const Result<void> written = direct ? write(file) : replace(file, write);
     return written ? written : Error{written.error().what, file.string(), written.error().hint};
 }

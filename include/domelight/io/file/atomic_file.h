@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <span>
+#include <vector>
 
 namespace domelight {
 
@@ -20,6 +21,27 @@ namespace domelight {
 Result<void> write_file_atomically(const std::filesystem::path& file,
                                    const std::function<Result<void>(const std::filesystem::path&)>& write);
 Result<void> write_file_atomically(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
+
+/// Several files that appear together: each is written under a temporary name beside its place, and commit() moves all
+/// of them. What has not been committed is removed with the object, or when a signal ends the program.
+class FileGroup {
+  public:
+    FileGroup();
+    ~FileGroup();
+    FileGroup(const FileGroup&) = delete;
+    FileGroup& operator=(const FileGroup&) = delete;
+
+    /// The path at which to write what will be `file`; its ending is that of `file`. Links are followed, as
+    /// write_file_atomically() does. A device or a pipe is returned as it is: what is written there cannot be taken
+    /// back. Errors name `file`: no folder to create it in; links that lead in a circle.
+    Result<std::filesystem::path> stage(const std::filesystem::path& file);
+    /// Moves the files to their places, in the order of stage(). Errors, before anything is moved: a place is a folder.
+    Result<void> commit();
+
+  private:
+    struct File;
+    std::vector<File> files_;
+};
 
 /// To be called once at the start of a program. On SIGINT, SIGTERM and SIGHUP the temporary files of every
 /// write_file_atomically under way are then removed before the program ends, and at a file-size limit (SIGXFSZ) the
