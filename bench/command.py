@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
 """The time of the whole bake command beside a lower bound: decoding its source and writing its files.
 
-    bench/command.py [SOURCE_4K.hdr] [SOURCE_2K.hdr] [--runs 9] [--threads 2] [--folder DIR] [--json FILE]
+    bench/command.py [SOURCE_4K.hdr] [--runs 9] [--threads 2] [--folder DIR] [--json FILE]
 
-Two jobs: 4096 x 2048 to 1024^2 with 11 levels (RGBA16F), and 2048 x 1024 to 256^2 as bench/peers.py gives it to cmgen. For each, one round after the other, so that other work of the machine affects all alike:
+Two jobs: 4096 x 2048 to 1024^2 with 11 levels (RGBA16F), and each of the five photographs of bench/photographs.py, 1024 x 512, to 256^2 as bench/peers.py gives
+it to cmgen. For each, one round after the other, so that other work of the machine affects all alike:
 
     decode + write   the library's reader over the source, and its atomic writer over the bytes of the finished bake (bench/decode_and_write.cpp)
     bare             `domelight bake ... --no-preview --no-hashes`
     whole            `domelight bake ...`
 
 Figures are medians: seconds by the clock, and user and system CPU seconds of the whole process. All write to one folder (--folder, or a temporary one), over the files of the round before. A first round that is not counted fills the page cache with the sources. Without
-SOURCES: spruit_sunrise_4k_from_ultrahdr.hdr of $DOMELIGHT_DATA for the first where it is there, and `domelight sky` for what is missing.
+SOURCE_4K: spruit_sunrise_4k_from_ultrahdr.hdr of $DOMELIGHT_DATA where it is there, else `domelight sky`; the sky stands for the photographs too where they are missing.
 """
 
 import argparse
@@ -24,6 +25,8 @@ import subprocess
 import sys
 import tempfile
 import time
+
+from photographs import cpu_name, make_sky, photographs, summary
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 DOMELIGHT = os.environ.get("DOMELIGHT_PROGRAM", str(ROOT / "build/dev/cli/domelight"))
@@ -44,19 +47,11 @@ def run(command):
     return output, wall, usage.ru_utime + usage.ru_stime
 
 
-def sources(options, work):
-    first, second = options.source_4k, options.source_2k
+def large_source(options, work):
     shared = pathlib.Path(os.environ.get("DOMELIGHT_DATA", "")) / "env_highres/spruit_sunrise_4k_from_ultrahdr.hdr"
-    if not first and shared.is_file():
-        first = shared
-    for name, height in (("sky_4k.hdr", 2048), ("sky_2k.hdr", 1024)):
-        if (first if height == 2048 else second) is None:
-            subprocess.run([DOMELIGHT, "sky", "--height", str(height), "-o", work / name, "--quiet"], check=True)
-            if height == 2048:
-                first = work / name
-            else:
-                second = work / name
-    return first, second
+    if options.source_4k or shared.is_file():
+        return options.source_4k or shared
+    return make_sky(DOMELIGHT, 2048, work / "sky_4k.hdr")
 
 
 def measure(source, arguments, folder, options):
@@ -99,17 +94,9 @@ def file_system(folder):
     return done.stdout.strip() or "unknown"
 
 
-def cpu_name():
-    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return platform.machine()
-
-
 def main():
     parser = argparse.ArgumentParser(description="the bake command beside decoding and writing alone")
     parser.add_argument("source_4k", nargs="?", type=pathlib.Path)
-    parser.add_argument("source_2k", nargs="?", type=pathlib.Path)
     parser.add_argument("--runs", type=int, default=9)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--folder", type=pathlib.Path, help="where to write; a folder of ours is made in it and removed")
@@ -119,14 +106,22 @@ def main():
         parser.error("--runs must be at least 1")
     work = pathlib.Path(tempfile.mkdtemp(prefix="domelight-command-", dir=options.folder))
     try:
-        first, second = sources(options, work)
+        first = large_source(options, work)
         report = {"machine": {"cpu": cpu_name(), "cores": os.cpu_count(), "system": platform.platform(), "file_system": file_system(work)},
                   "runs": options.runs, "threads": options.threads}
         report["1024 from 4k"] = measure(first, ["--size", 1024, "--levels", 11, "--encoding", "rgba16f"], work / "large", options)
         show(f"{first.name} to 1024^2, 11 levels, rgba16f ({report['machine']['file_system']}, {options.threads} threads)", report["1024 from 4k"])
         shutil.rmtree(work / "large")
-        report["256 from 2k"] = measure(second, ["--size", 256, "--levels", 5, "--for", "filament"], work / "small", options)
-        show(f"{second.name} to 256^2, 5 levels, for filament", report["256 from 2k"])
+        small = photographs() or {"sky": make_sky(DOMELIGHT, 512, work / "sky_1k.hdr")}
+        report["256 from 1k"] = {}
+        for kind, source in small.items():
+            one = report["256 from 1k"][kind] = measure(source, ["--size", 256, "--levels", 5, "--for", "filament"], work / "small", options)
+            show(f"{source.name} to 256^2, 5 levels, for filament", one)
+        for name in ("bare", "whole"):
+            ratio = summary({kind: r[f"{name}_over_decode_and_write"] for kind, r in report["256 from 1k"].items()})
+            cpu = summary({kind: r[name]["cpu_seconds"] for kind, r in report["256 from 1k"].items()})
+            print(f"256^2 from 1k, {name}: median {cpu['median'] * 1e3:.0f} ms CPU, worst {cpu['worst'] * 1e3:.0f} ms ({cpu['worst_kind']}); "
+                  f"{ratio['median']:.1f} and {ratio['worst']:.1f} times decode + write")
         if options.json:
             options.json.write_text(json.dumps(report, indent=1) + "\n")
     finally:

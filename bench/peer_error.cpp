@@ -76,16 +76,16 @@ std::vector<Mat3> orientations() {
     return all;
 }
 
-struct Texels {
+struct TexelGrid {
     std::vector<Vec3d> directions;  ///< world
     std::vector<double> weights;    ///< solid angles
     std::vector<Vec3d> values;
 };
 
-Texels pick_texels(const Cubemap& cube, int count, unsigned seed) {
+TexelGrid pick_texels(const Cubemap& cube, int count, unsigned seed) {
     std::mt19937 random(seed);
     const int size = cube.size();
-    Texels t;
+    TexelGrid t;
     for (int i = 0; i < count; ++i) {
         const int f = int(random() % 6), x = int(random() % size), y = int(random() % size);
         t.directions.push_back(normalize(cube_direction(f, {(x + 0.5) / size, (y + 0.5) / size})));
@@ -100,7 +100,7 @@ struct ErrorMeasure {
     double rms = 0, max = 0;
 };
 
-ErrorMeasure measure(const Texels& t, const std::vector<Vec3d>& truth) {
+ErrorMeasure measure(const TexelGrid& t, const std::vector<Vec3d>& truth) {
     double squares = 0, total = 0, weight = 0;
     Vec3d mean;
     for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -136,7 +136,7 @@ Mat3 orientation_of(const Cubemap& roughest, const ImageF& source, double roughn
     ImageRowSource rows(source);
     const FilterResult ours = take(prefilter(rows, options));
     const FilteredMap& cube = ours.specular[0];
-    const Texels few = pick_texels(roughest, 200, 1);
+    const TexelGrid few = pick_texels(roughest, 200, 1);
     Mat3 best;
     double least = 1e30;
     for (const Mat3& m : orientations()) {
@@ -182,7 +182,7 @@ int main(int argc, char** argv) {
     nlohmann::ordered_json out{{"orientation", matrix_name(turn)}, {"levels", nlohmann::ordered_json::array()}};
     for (std::size_t l = 0; l < chain.size(); ++l) {
         if (roughness[l] <= 0) continue;  // a mirror level is not filtered
-        const Texels t = pick_texels(chain[l], texels, unsigned(l) + 2);
+        const TexelGrid t = pick_texels(chain[l], texels, unsigned(l) + 2);
         const ErrorMeasure m = measure(t, truth_for(source, roughness[l], t.directions, turn));
         out["levels"].push_back({{"level", l}, {"roughness", roughness[l]}, {"rms", m.rms}, {"max", m.max}});
     }

@@ -12,6 +12,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <exception>
 #include <string>
 #include <vector>
@@ -100,6 +104,11 @@ void open_closed_streams() {
 }  // namespace domelight::cli
 
 int main(int argc, char** argv) {
+#ifdef __GLIBC__
+    // Freed memory is kept for the next array: the system would clear each of its pages again.
+    ::mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    ::mallopt(M_TRIM_THRESHOLD, 64 << 20);
+#endif
     domelight::cli::open_closed_streams();
     domelight::remove_temporaries_on_signals();
     try {

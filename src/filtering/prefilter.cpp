@@ -2,17 +2,21 @@
 #include "domelight/filtering/resample/area_resample.h"
 #include "domelight/projection/projection.h"
 
+#include "base/large_memory.h"
 #include "filtering/direct/direct_sums.h"
 #include "filtering/filter_plan.h"
 #include "filtering/harmonic/bright_texels.h"
 #include "filtering/harmonic/cube_analysis.h"
+#include "filtering/harmonic/scatter_analysis.h"
 #include "filtering/harmonic/sh_analysis.h"
 #include "filtering/harmonic/sh_synthesis.h"
 #include "filtering/harmonic/spectrum_evaluate.h"
 #include "filtering/kernel/residual_kernel.h"
+#include "filtering/lights/light_groups.h"
 #include "filtering/prefilter_runs.h"
 #include "filtering/read_texels.h"
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <memory>
@@ -90,21 +94,33 @@ Vec3d mean_radiance(const Spectrum& spectrum) {
            y00;
 }
 
+/// Of each channel, the least value of a level, but not below a hundredth of the mean: an error is judged against this.
+Vec3d least_values(const SphereGrid& grid, const Vec3d& mean) {
+    simd::Texel least{1e30f, 1e30f, 1e30f};
+    for (int k = 0; k < grid.grid().rings; ++k) least = simd::least(grid.ring(k), grid.grid().width, least);
+    return {std::max(double(least.r), 0.01 * mean.x), std::max(double(least.g), 0.01 * mean.y),
+            std::max(double(least.b), 0.01 * mean.z)};
+}
+
+/// What the levels are made of.
+struct SynthesisSource {
+    /// The environment's brightest texels as point lights, fine enough for a band limit.
+    using Bright = std::function<PointLights(int band_limit)>;
+
+    Spectrum whole;
+    Bright bright;
+    /// If texels were removed for narrow lobes: the texels, and the spectrum without them.
+    const BrightSplit* split = nullptr;
+    Spectrum rest = {};
+};
+
 /// Makes the levels of a plan, group by group.
 class Synthesis {
   public:
-    /// The environment's brightest texels as point lights, fine enough for a band limit.
-    using Bright = std::function<BrightPoints(int band_limit)>;
-
-    /// `narrow`: the spectrum for narrow lobes, without what `split` holds; null if nothing was removed.
-    Synthesis(const Spectrum& spectrum, const Spectrum* narrow, const BrightSplit* split, Bright bright,
-              const FilterOptions& options, FilterResult& result)
-        : spectrum_(spectrum),
-          narrow_(narrow),
-          split_(split),
-          bright_(std::move(bright)),
-          options_(options),
-          result_(result) {}
+    Synthesis(const SynthesisSource& source, const FilterPlan& plan, const FilterOptions& options, FilterResult& result)
+        : source_(source), options_(options), result_(result) {
+        prepare_lights(plan);
+    }
 
     Result<void> run(const FilterPlan& plan) {
         for (const FilterPlan::Group& group : plan.groups) {
@@ -122,78 +138,97 @@ class Synthesis {
     }
 
   private:
+    /// The lights of all levels that leave a residual, and their coefficients.
+    void prepare_lights(const FilterPlan& plan) {
+        int band_limit = 0;
+        for (const FilterPlan::Group& group : plan.groups)
+            for (const int level : group.levels)
+                if (leaves_residual(kernel(level))) band_limit = std::max(band_limit, group.band_limit);
+        if (band_limit == 0) return;
+        const PointLights points = source_.bright(band_limit);
+        if (points.count() == 0) return;
+        lights_ = LightGroups(points);
+        lights_spectrum_ = analyse_lights(points, band_limit, options_.threads);
+    }
+
     ZonalKernel kernel(int level) const {
         return level == FilterPlan::k_irradiance ? ZonalKernel::cosine() : options_.specular[level].kernel;
     }
 
     void synthesise(const FilterPlan::Group& group, std::span<const int> levels) {
+        // Levels with the same kernel share a grid: the last one of most chains is the irradiance.
         std::vector<ZonalKernel> kernels;
-        bool residual = false;
+        std::vector<std::size_t> kernel_of;
         for (const int level : levels) {
-            kernels.push_back(kernel(level));
-            residual |= leaves_residual(kernels.back());
+            const ZonalKernel of_level = kernel(level);
+            const auto found = std::find_if(kernels.begin(), kernels.end(), [&](const ZonalKernel& k) {
+                return k.lobe == of_level.lobe && k.width == of_level.width;
+            });
+            kernel_of.push_back(std::size_t(found - kernels.begin()));
+            if (found == kernels.end()) kernels.push_back(of_level);
         }
-        std::vector<std::vector<double>> factors(levels.size());
-        parallel_for(int(levels.size()), options_.threads,
-                     [&](int i) { factors[i] = kernels[i].coefficients(group.band_limit); });
-        const bool split = group.narrow && narrow_;
-        const auto grids = sh_synthesis(split ? *narrow_ : spectrum_, factors, group.grid, options_.threads);
-        BrightPoints points;
-        std::unique_ptr<ResidualKernels> tables;
-        if (residual) {
-            points = bright_(group.band_limit);
-            if (points.count() > 0) tables = std::make_unique<ResidualKernels>(kernels, factors, options_.threads);
-        }
-        for (std::size_t i = 0; i < levels.size(); ++i) {
-            LookupOptions lookup{double(group.band_limit) / group.grid.rings,
-                                 options_.world_to_source,
-                                 options_.threads,
-                                 nullptr,
-                                 {},
-                                 nullptr,
-                                 {}};
-            if (tables && leaves_residual(kernels[i])) lookup.bright = &points, lookup.residual = tables->table(int(i));
+        std::vector<SynthesisFactors> factors(kernels.size());
+        std::vector<std::unique_ptr<ResidualKernel>> residuals(kernels.size());
+        parallel_for(int(kernels.size()), options_.threads, [&](int i) {
+            factors[i].k = kernels[i].coefficients(group.band_limit);
+            if (lights_.empty() || !leaves_residual(kernels[i])) return;
+            residuals[i] = std::make_unique<ResidualKernel>(kernels[i], factors[i].k);
+            factors[i].r = residuals[i]->removed();
+        });
+        const bool split = group.narrow && source_.split;
+        const auto grids = sh_synthesis(split ? source_.rest : source_.whole, &lights_spectrum_, factors, group.grid,
+                                        options_.threads);
+        for (std::size_t i = 0; i < kernels.size(); ++i) {
+            LookupOptions lookup;
+            lookup.band = double(group.band_limit) / group.grid.rings;
+            lookup.world_to_source = options_.world_to_source;
+            lookup.threads = options_.threads;
+            std::optional<ResidualLights> residual;
+            if (residuals[i]) {
+                residual.emplace(lights_, *residuals[i], least_values(grids[i], result_.mean));
+                lookup.residual = &*residual;
+            }
             BrightSplit::Lights lights;
             const DirectKernelTable direct(kernels[i]);
             if (split) {
-                lights = split_->lights(kernels[i]);
+                lights = source_.split->lights(kernels[i]);
                 lookup.lights = &lights, lookup.kernel = direct.view();
             }
-            const bool irradiance = levels[i] == FilterPlan::k_irradiance;
-            const int size = irradiance ? options_.irradiance_size : options_.specular[levels[i]].size;
-            FilteredMap& map = irradiance ? result_.irradiance_over_pi : result_.specular[levels[i]];
-            const bool for_reading = options_.texels == Texels::read && options_.layout == Layout::cube && !irradiance &&
-                                     gains_by_read_texels(kernels[i], size);
-            if (!options_.directions.empty())
-                map = {Layout::latlong, grid_at_directions(grids[i], options_.directions, lookup, result_.clamped)};
-            else if (for_reading)
-                map = read_texels(grid_to_cube(grids[i], size * read_texels_factor(size), lookup, result_.clamped), size,
-                                  options_.threads);
-            else if (options_.layout == Layout::cube)
-                map = grid_to_cube(grids[i], size, lookup, result_.clamped);
-            else
-                map = {Layout::latlong, grid_to_latlong(grids[i], size, lookup, result_.clamped)};
+            for (std::size_t l = 0; l < levels.size(); ++l)
+                if (kernel_of[l] == i) look_up(levels[l], kernels[i], grids[i], lookup);
         }
     }
 
-    const Spectrum& spectrum_;
-    const Spectrum* narrow_;
-    const BrightSplit* split_;
-    Bright bright_;
+    void look_up(int level, const ZonalKernel& kernel, const SphereGrid& grid, const LookupOptions& lookup) {
+        const bool irradiance = level == FilterPlan::k_irradiance;
+        const int size = irradiance ? options_.irradiance_size : options_.specular[level].size;
+        FilteredMap& map = irradiance ? result_.irradiance_over_pi : result_.specular[level];
+        const bool for_reading = options_.texels == Texels::read && options_.layout == Layout::cube && !irradiance &&
+                                 gains_by_read_texels(kernel, size);
+        if (!options_.directions.empty())
+            map = {Layout::latlong, grid_at_directions(grid, options_.directions, lookup, result_.clamped)};
+        else if (for_reading)
+            map = read_texels(grid_to_cube(grid, size * read_texels_factor(size), lookup, result_.clamped), size,
+                              options_.threads);
+        else if (options_.layout == Layout::cube)
+            map = grid_to_cube(grid, size, lookup, result_.clamped);
+        else
+            map = {Layout::latlong, grid_to_latlong(grid, size, lookup, result_.clamped)};
+    }
+
+    const SynthesisSource& source_;
     const FilterOptions& options_;
     FilterResult& result_;
+    LightGroups lights_;
+    Spectrum lights_spectrum_;
     std::size_t done_ = 0;
 };
 
 /// Everything that follows from the spectrum.
-Result<void> make_levels(const Spectrum& spectrum, const Spectrum* narrow, const BrightSplit* split,
-                         Synthesis::Bright bright, const FilterPlan& plan, const FilterOptions& options,
+Result<void> make_levels(const SynthesisSource& source, const FilterPlan& plan, const FilterOptions& options,
                          FilterResult& result) {
-    result.band_limit = plan.band_limit;
-    result.mean = mean_radiance(spectrum);
-    if (auto done = Synthesis(spectrum, narrow, split, std::move(bright), options, result).run(plan); !done)
-        return done;
-    if (options.sh_bands > 0) result.sh = spectrum_to_sh(spectrum, options.sh_bands, options.world_to_source);
+    if (auto done = Synthesis(source, plan, options, result).run(plan); !done) return done;
+    if (options.sh_bands > 0) result.sh = spectrum_to_sh(source.whole, options.sh_bands, options.world_to_source);
     return {};
 }
 
@@ -228,12 +263,20 @@ class RowPrefilter {
                 result.specular[std::size_t(plan_.direct[i])] = std::move(maps[i]);
             sums_.reset();
         }
-        const Spectrum spectrum = analysis_.finish();
-        const auto points = [&](int band_limit) { return bright_.points(result.mean, band_limit); };
-        if (split_.empty()) return make_levels(spectrum, nullptr, nullptr, points, plan_, options_, result);
-        Spectrum whole = split_.spectrum(plan_.wide_band_limit, options_.threads);
-        whole.add(spectrum);
-        return make_levels(whole, &spectrum, &split_, points, plan_, options_, result);
+        Spectrum spectrum = analysis_.finish();
+        SynthesisSource source;
+        if (split_.empty()) {
+            source.whole = std::move(spectrum);
+        } else {
+            source.split = &split_;
+            source.whole = split_.spectrum(plan_.wide_band_limit, options_.threads);
+            source.whole.add(spectrum);
+            source.rest = std::move(spectrum);
+        }
+        result.mean = mean_radiance(source.whole);
+        result.band_limit = plan_.band_limit;
+        source.bright = [&](int band_limit) { return bright_.points(result.mean, band_limit); };
+        return make_levels(source, plan_, options_, result);
     }
 
   private:
@@ -263,6 +306,7 @@ Vec3d map_direction(Layout layout, int width, int height, int x, int y) {
 }
 
 Result<std::vector<FilterResult>> prefilter(RowSource& source, std::span<const FilterOptions> runs) {
+    const LargeMemoryReuse reuse;
     const int width = source.width(), height = source.height(), threads = runs.front().threads;
     std::deque<RowPrefilter> prefilters;
     for (std::size_t i = 0; i < runs.size(); ++i)
@@ -305,6 +349,7 @@ Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) 
 }
 
 Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& options) {
+    const LargeMemoryReuse reuse;
     const FilterPlan plan = make_filter_plan(options, false);
     FilterResult result;
     result.specular.resize(options.specular.size());
@@ -320,9 +365,12 @@ Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& optio
     }
     if (options.progress && !options.progress("read", 1)) return k_cancelled;
     const BorderedCube cube(source);
-    const Spectrum spectrum = analyse_cube(cube, plan.band_limit, options.threads);
-    const auto points = [&](int band_limit) { return bright_points(cube, result.mean, band_limit); };
-    if (auto done = make_levels(spectrum, nullptr, nullptr, points, plan, options, result); !done) return done.error();
+    SynthesisSource from;
+    from.whole = analyse_cube(cube, plan.band_limit, options.threads);
+    result.mean = mean_radiance(from.whole);
+    result.band_limit = plan.band_limit;
+    from.bright = [&](int band_limit) { return bright_points(cube, result.mean, band_limit); };
+    if (auto done = make_levels(from, plan, options, result); !done) return done.error();
     return result;
 }
 

@@ -576,7 +576,7 @@ def test_montecarlo_takes_every_sequence(folder):
         data = (folder / name / "specular.ktx2").read_bytes()
         return struct.unpack(f"<{6 * 8 * 8 * 4}f", data[-6 * 16 * 16 * 16 - 6 * 8 * 8 * 16:-6 * 16 * 16 * 16])  # KTX2 keeps the smallest level first
 
-    exact = texels("exact")
+    exact = texels("exact", "--texels", "centre")
     found = {}
     for sequence in ["random", "stratified", "hammersley", "halton", "sobol", "r2"]:
         for seed in ["0", "7"]:
@@ -1304,30 +1304,7 @@ def test_bad_texels_are_reported(folder):
     assert info["repaired"] == {"not_a_number": 1, "infinite": 1, "negative": 1, "most_negative": -3.0}
     result = run("bake", "bad.exr", "-o", "out", *SMALL, folder=folder)
     assert "repaired" in result.stderr
-    repaired = manifest_of(folder / "out")["source"]["repaired"]
-    assert repaired["negative"] == 1 and len(repaired["light_added"]) == 3
-    for words in [["convert", "bad.exr", "-o", "out.exr"], ["lights", "bad.exr", "-o", "lights"], ["sample", "bad.exr", "-n", "1"],
-                  ["render", "furnace", "--env", "bad.exr", "-o", "out.png", "--spp", "1", "--width", "8", "--height", "8"]]:
-        assert "bad texels were repaired: 1 not a number, 1 infinite, 1 negative (down to -3)" in run(*words, folder=folder).stderr, words
-
-
-def test_negative_values_are_balanced_clamped_or_kept(folder):
-    # A light of 40 among texels of 0.5, and a ringing of -3 beside it.
-    (folder / "ringing.exr").write_bytes(make_exr(16, 8, {30: 40.0, 32: -3.0}))
-    power = {}
-    for how in ["balance", "clamp", "keep"]:
-        result = json.loads(run("convert", "ringing.exr", "-o", f"{how}.exr", "--negatives", how, "--json", folder=folder).stdout)
-        power[how] = [sum(result["power"][when]) for when in ["before", "after"]]
-    before = power["keep"][1]
-    for how, (stored, after) in power.items():
-        assert abs(stored / before - 1) < 1e-6, how
-        assert abs(after / before - 1) < 1e-6 or how == "clamp"
-    assert power["clamp"][1] > 1.005 * before
-    least = json.loads(run("info", "keep.exr", "--json", "--negatives", "keep", folder=folder).stdout)["range"][0]
-    assert least == -3
-    assert json.loads(run("info", "balance.exr", "--json", folder=folder).stdout)["repaired"]["negative"] == 0
-    for command in [["sample"], ["lights", "-o", "l"], ["render", "furnace", "-o", "o.png", "--env"]]:
-        assert "--negatives" in run(*command, "ringing.exr", "--negatives", "keep", folder=folder, code=2).stderr
+    assert manifest_of(folder / "out")["source"]["repaired"]["negative"] == 1
 
 
 # --- lights ---
@@ -1592,7 +1569,7 @@ def test_render_turntable(folder):
     assert (folder / "e_0001.exr").read_bytes() == (folder / "t_0001.exr").read_bytes() != (folder / "e_0002.exr").read_bytes()
     assert not (folder / "e.webp").exists()
     error = run(*[w.replace("t.png,t.exr", "no/t.png") for w in words], folder=folder, code=1).stderr
-    assert "no/t_0001.png" in error
+    assert "no/t.png: cannot create a file there" in error
 
 
 def test_an_interrupted_render_leaves_the_last_complete_file(folder):

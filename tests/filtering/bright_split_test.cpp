@@ -2,7 +2,7 @@
 
 #include "domelight/projection/projection.h"
 
-#include "filtering/harmonic/tent_nodes.h"
+#include "filtering/lights/tent_nodes.h"
 #include "test.h"
 
 #include <algorithm>
@@ -49,7 +49,7 @@ struct Taken {
         Vec3d sum;
         for (const auto& [x, y] : texels) {
             // A rule of 16 x 16 nodes in each patch, which is fine enough for the kernel.
-            BrightPoints nodes;
+            PointLights nodes;
             add_tent_nodes(nodes, k_width, k_height, x, y, image.at(x, y), 16);
             for (int i = 0; i < nodes.count(); ++i) {
                 const Vec3d p = normalize(nodes.place(i));

@@ -9,7 +9,7 @@
 #include "filtering/harmonic/sh_analysis.h"
 #include "filtering/harmonic/sh_synthesis.h"
 #include "filtering/harmonic/spectrum_evaluate.h"
-#include "filtering/harmonic/tent_nodes.h"
+#include "filtering/lights/tent_nodes.h"
 #include "filtering/prefilter_checks.h"
 #include "test.h"
 
@@ -170,13 +170,12 @@ TEST_CASE("prefilter: SH coefficients are the integrals over the reconstruction,
          {Mat3{}, rotation_y(1), Mat3{{Vec3d{1, 0, 0}, Vec3d{0, c, -s}, Vec3d{0, s, c}}} * rotation_y(0.3)}) {
         std::vector<Vec3d> truth(bands * bands);
         std::vector<double> basis(bands * bands);
-        BrightPoints nodes;
+        PointLights nodes;
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x) add_tent_nodes(nodes, width, height, x, y, image.at(x, y), 3);
         for (int i = 0; i < nodes.count(); ++i) {
             sh_basis(world_to_source.transposed() * normalize(nodes.place(i)), bands, basis);
-            for (int k = 0; k < bands * bands; ++k)
-                truth[k] += Vec3d{nodes.r[i], nodes.g[i], nodes.b[i]} * basis[k];
+            for (int k = 0; k < bands * bands; ++k) truth[k] += Vec3d{nodes.r[i], nodes.g[i], nodes.b[i]} * basis[k];
         }
         // Wide lobes alone, and with a narrow one, for which the suns are removed.
         for (const double narrowest : {0.2, 0.05}) {
@@ -283,7 +282,7 @@ TEST_CASE("analysis and synthesis agree with the plain sums in double") {
     const Spectrum spectrum = analysis.finish();
     const std::vector<double> factors = ZonalKernel::ggx(0.6).coefficients(band_limit);
     const RingGrid grid = ring_grid_for(band_limit);
-    const auto grids = sh_synthesis(spectrum, std::vector<std::vector<double>>{factors}, grid, 1);
+    const auto grids = sh_synthesis(spectrum, nullptr, std::vector<SynthesisFactors>{{factors, {}}}, grid, 1);
     for (int k : {0, 1, grid.rings / 2, grid.rings - 1})
         for (int i : {0, 3, grid.width / 2, grid.width - 1}) {
             const double theta = k_pi * (k + 0.5) / grid.rings, phi = 2 * k_pi * i / grid.width;

@@ -164,7 +164,7 @@ TEST_CASE("gltf material: images by uri, by buffer view and by WebP, and those t
     missing.json["images"][0]["uri"] = "../missing.png";
     scene = missing.load();
     REQUIRE_MESSAGE(scene, error_of(scene));
-    CHECK(warns(*scene, "leaves the folder of the scene: left out"));
+    CHECK(warns(*scene, "leaves the folder of the file that names it"));
     GltfSample broken = sample;
     broken.json["images"][0]["uri"] = "data:image/png;base64,AAAA";
     scene = broken.load();
@@ -180,8 +180,7 @@ TEST_CASE("gltf material: images by uri, by buffer view and by WebP, and those t
     CHECK(contains(error_of(nothing.load()), "images[0]: names neither or both"));
     // An image that starts as a PNG and ends too early.
     GltfSample cut = sample;
-    cut.json["images"][0]["uri"] =
-        "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR4nGP4";
+    cut.json["images"][0]["uri"] = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR4nGP4";
     scene = cut.load();
     REQUIRE_MESSAGE(scene, error_of(scene));
     CHECK(warns(*scene, "left out, its materials have their factors alone"));

@@ -4,7 +4,7 @@
 #include "domelight/projection/projection.h"
 
 #include "filtering/harmonic/row_kernels.h"
-#include "filtering/harmonic/tent_nodes.h"
+#include "filtering/lights/tent_nodes.h"
 
 #include <algorithm>
 #include <array>
@@ -23,7 +23,7 @@ constexpr double k_far = 12;
 ///
 /// With the principal axes e_k and deviations sigma_k the points lie at c +- sqrt(2) sigma_k e_k and have a quarter of
 /// the power each; a shift m_k of a channel's centroid changes the quarters to 1/4 +- m_k / (2 sqrt(2) sigma_k).
-void add_quartet(BrightPoints& points, const BrightPoints& of, int from, int to) {
+void add_quartet(PointLights& points, const PointLights& of, int from, int to) {
     Vec3d sum, power;
     double total = 0;
     for (int i = from; i < to; ++i) {
@@ -103,7 +103,7 @@ class BrightSplit::TreeBuilder {
 
   private:
     void add(std::span<int> texels) {
-        BrightPoints below;
+        PointLights below;
         for (const int t : texels) below.append(fine_, first_[t], first_[t + 1]);
         const std::size_t here = lights_.nodes.size();
         simd::LightNode node{};
@@ -157,7 +157,7 @@ class BrightSplit::TreeBuilder {
 
     const BrightSplit& split_;
     double lobe_width_;
-    BrightPoints fine_;
+    PointLights fine_;
     std::vector<int> first_;  ///< of each texel's points in fine_
     Lights lights_;
 };

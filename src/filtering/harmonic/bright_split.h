@@ -30,7 +30,7 @@ class BrightSplit {
     /// The texels as a tree of lights for a kernel.
     struct Lights {
         std::vector<simd::LightNode> nodes;
-        BrightPoints points;
+        PointLights points;
     };
     Lights lights(const ZonalKernel& kernel) const;
 

@@ -3,7 +3,7 @@
 #include "domelight/projection/projection.h"
 
 #include "filtering/harmonic/row_kernels.h"
-#include "filtering/harmonic/tent_nodes.h"
+#include "filtering/lights/tent_nodes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +15,8 @@ namespace {
 /// A texel smaller than this part of 1 / L is a point to degrees around L: its tent's second moment, (tau L)^2 / 12, is
 /// below 3 %, of what is a thousandth itself.
 constexpr double k_point_like = 0.6;
+/// A texel with more than this part of the total power has twice the nodes.
+constexpr double k_refined_share = 2e-3;
 
 }  // namespace
 
@@ -49,7 +51,7 @@ void BrightTexels::add_rows(ImageView<const float> rows, std::span<const simd::S
     }
 }
 
-BrightPoints BrightTexels::points(const Vec3d& mean, int band_limit) const {
+PointLights BrightTexels::points(const Vec3d& mean, int band_limit) const {
     const double largest = std::max({mean.x, mean.y, mean.z}), total = 4 * k_pi * largest;
     std::vector<Texel> texels;
     for (const Texel& t : heap_)
@@ -60,19 +62,26 @@ BrightPoints BrightTexels::points(const Vec3d& mean, int band_limit) const {
     // A texel wider than a few waves is not a point: its own tent is so smooth that the truncation has no effect.
     const int nodes = 1 + int(k_pi / height_ * band_limit);
     if (nodes > 16) return {};
-    texels.resize(std::min(texels.size(), std::size_t(k_most_points / (4 * nodes * nodes) + 1)));
-    BrightPoints points;
-    for (const Texel& t : texels) {
-        if (k_pi / height_ * band_limit < k_point_like) {
+    if (k_pi / height_ * band_limit < k_point_like) {
+        texels.resize(std::min(texels.size(), std::size_t(k_most_points)));
+        PointLights points;
+        for (const Texel& t : texels) {
             const double theta = k_pi * (t.y + 0.5) / height_, s = std::sin(theta),
                          phi = 2 * k_pi * (t.x + 0.5) / width_ - k_pi;
             points.add({s * std::cos(phi), std::cos(theta), s * std::sin(phi)},
                        latlong_solid_angle(t.y, width_, height_), t.rgb);
-        } else {
-            add_tent_nodes(points, width_, height_, t.x, t.y, t.rgb, nodes);
         }
+        return points;
     }
-    return points;
+    // The kink of the kernel needs more nodes than the waves do, where a texel is a considerable part of all.
+    TentPatches patches(width_, height_, nodes);
+    for (const Texel& t : texels)
+        if (t.power > k_refined_share * total) patches.refine(t.x, t.y);
+    for (const Texel& t : texels) {
+        if (patches.lights().count() >= k_most_points) break;
+        patches.add(t.x, t.y, t.rgb);
+    }
+    return patches.lights();
 }
 
 }  // namespace domelight

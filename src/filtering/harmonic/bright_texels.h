@@ -4,32 +4,12 @@
 #include "domelight/image/image.h"
 
 #include "filtering/harmonic/row_kernels.h"
-#include "filtering/harmonic/zonal_sum.h"
+#include "filtering/lights/point_lights.h"
 
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace domelight {
-
-/// Point lights that represent an environment's few brightest texels, in the source's frame.
-struct BrightPoints {
-    std::vector<float> x, y, z, r, g, b;
-    int count() const { return int(x.size()); }
-    /// A light of radiance `rgb` over `solid_angle` in a unit direction.
-    void add(const Vec3d& direction, double solid_angle, const float* rgb) {
-        x.push_back(float(direction.x)), y.push_back(float(direction.y)), z.push_back(float(direction.z));
-        r.push_back(float(solid_angle * rgb[0])), g.push_back(float(solid_angle * rgb[1])),
-            b.push_back(float(solid_angle * rgb[2]));
-    }
-    /// The lights [from, to) of `p`.
-    void append(const BrightPoints& p, int from, int to) {
-        for (auto [mine, theirs] : {std::pair{&x, &p.x}, {&y, &p.y}, {&z, &p.z}, {&r, &p.r}, {&g, &p.g}, {&b, &p.b}})
-            mine->insert(mine->end(), theirs->begin() + from, theirs->begin() + to);
-    }
-    Vec3d place(int i) const { return {x[i], y[i], z[i]}; }
-    simd::PointSet view() const { return {x.data(), y.data(), z.data(), r.data(), g.data(), b.data(), count()}; }
-};
 
 /// The truncation error of a texel with less than this part of the total power is invisible.
 constexpr double k_least_share = 1e-4;
@@ -37,11 +17,9 @@ constexpr double k_least_share = 1e-4;
 /// cancel. (In small images every texel has a considerable share of the power.)
 constexpr double k_least_contrast = 10;
 
-/// The largest number of points for all suns together. A sun consists of a few texels, each of 4 to 1024 points. If
-/// more texels are so bright they form a glow: the strongest are taken, and the truncation errors of the others cancel.
-/// (For each point the kernel is evaluated at every texel of a level: without a limit a smooth sky of 512 x 256 took
-/// minutes.)
-constexpr int k_most_points = 2048;
+/// The largest number of lights for all suns together. A sun consists of a few texels, each of 1 to 1024 lights. If more
+/// texels are so bright they form a glow: the strongest are taken, and the truncation errors of the others cancel.
+constexpr int k_most_points = 4096;
 
 /// Finds the texels with the most power (radiance times solid angle) while the rows of a lat-long image are read.
 ///
@@ -55,7 +33,7 @@ class BrightTexels {
     void add_rows(ImageView<const float> rows, std::span<const simd::Summary> summaries);
     /// The texels with more than k_least_share of the total power, each as the nodes of a Gauss-Legendre rule over its
     /// tent, fine enough for degrees around `band_limit`. `mean`: mean radiance.
-    BrightPoints points(const Vec3d& mean, int band_limit) const;
+    PointLights points(const Vec3d& mean, int band_limit) const;
 
   private:
     struct Texel {

@@ -4,16 +4,15 @@
 #include "domelight/projection/projection.h"
 
 #include "base/gauss_legendre.h"
-#include "filtering/harmonic/ring_analysis.h"
-#include "filtering/harmonic/sphere_grid.h"
+#include "filtering/harmonic/scatter_analysis.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <unordered_map>
 
 namespace domelight {
 namespace {
-
-constexpr double k_decay = 16;
 
 /// Nodes along one coordinate of a face, cut at texel centres and at the face's edges. Coordinates run over [-1, 1].
 struct AxisNode {
@@ -66,28 +65,11 @@ void scatter_face(const BorderedCube& cube, int face, std::span<const AxisNode> 
     }
 }
 
-/// Adds the columns beyond the ends of each row to the columns that they repeat, and the other grids to the first.
-void gather_grids(std::vector<SphereGrid>& grids, int threads) {
-    const RingGrid grid = grids[0].grid();
-    constexpr int pad = SphereGrid::k_pad;
-    parallel_ranges(grid.rings + 2 * pad, 16, threads, [&](int begin, int end) {
-        for (int k = begin - pad; k < end - pad; ++k) {
-            float* row = grids[0].ring(k);
-            for (std::size_t g = 1; g < grids.size(); ++g)
-                for (int i = -4 * pad; i < 4 * (grid.width + 2 * pad); ++i) row[i] += grids[g].ring(k)[i];
-            for (int i = 0; i < 4 * pad; ++i) row[4 * (grid.width - pad) + i] += row[i - 4 * pad];
-            for (int i = 0; i < 8 * pad; ++i) row[i] += row[4 * grid.width + i];
-        }
-    });
-}
-
 }  // namespace
 
 Spectrum analyse_cube(const BorderedCube& cube, int band_limit, int threads) {
-    RingAnalysis rings(ring_grid_for(band_limit).width, band_limit,
-                       std::vector<std::complex<double>>(band_limit + 1, 1));
-    const RingGrid grid = rings.grid();
-    const simd::TapTable table(InterpolationTaps(8, double(band_limit) / grid.rings, k_decay));
+    ScatterAnalysis analysis(band_limit);
+    const RingGrid grid = analysis.grid();
     const auto axis = axis_nodes(cube.size(), nodes_a_cell(cube.size(), band_limit));
     // Faces overlap on the rings, so each has its own grid unless that would take too much memory. This does not depend
     // on the number of threads.
@@ -95,24 +77,12 @@ Spectrum analyse_cube(const BorderedCube& cube, int band_limit, int threads) {
     std::vector<SphereGrid> grids;
     for (int g = 0; g < grid_count; ++g) grids.emplace_back(grid);
     parallel_for(grid_count, threads, [&](int g) {
-        for (int face = g; face < 6; face += grid_count) scatter_face(cube, face, axis, table, grids[g]);
+        for (int face = g; face < 6; face += grid_count) scatter_face(cube, face, axis, analysis.table(), grids[g]);
     });
-    gather_grids(grids, threads);
-
-    const std::ptrdiff_t stride = grids[0].view().stride;
-    parallel_for(3 * rings.batch_count(), threads, [&](int task) {
-        const int batch = task / 3, first = batch * RingAnalysis::k_batch,
-                  rows = std::min(RingAnalysis::k_batch, rings.row_count() - first);
-        const float* from = grids[0].ring(first - RingAnalysis::k_pad);
-        if (rows == RingAnalysis::k_batch) return rings.transform(from, stride, 4, batch, task % 3);
-        AlignedArray<float> padded(std::size_t(RingAnalysis::k_batch) * stride);
-        for (int k = 0; k < rows; ++k) std::copy_n(from + k * stride, 4 * grid.width, padded.data() + k * stride);
-        rings.transform(padded.data(), stride, 4, batch, task % 3);
-    });
-    return rings.finish(threads);
+    return analysis.finish(grids, threads);
 }
 
-BrightPoints bright_points(const BorderedCube& cube, const Vec3d& mean, int band_limit, int most) {
+PointLights bright_points(const BorderedCube& cube, const Vec3d& mean, int band_limit) {
     const int n = cube.size();
     struct Texel {
         double power;
@@ -132,22 +102,27 @@ BrightPoints bright_points(const BorderedCube& cube, const Vec3d& mean, int band
             }
     std::stable_sort(texels.begin(), texels.end(), [](const Texel& a, const Texel& b) { return a.power > b.power; });
     const auto axis = axis_nodes(n, nodes_a_cell(n, band_limit));
-    const int per_cell = int(axis.size()) / (n + 1);
-    most = std::min(most, k_most_points / (4 * per_cell * per_cell));
-    if (int(texels.size()) > most) texels.resize(std::size_t(most));
-    BrightPoints points;
+    const int count = int(axis.size()), per_cell = count / (n + 1);
+    PointLights points;
+    std::unordered_map<std::int64_t, int> places;  // of the nodes of a face: neighbouring texels share them
     for (const Texel& t : texels) {
+        if (points.count() >= k_most_points) break;
         const float* value = cube.texel(t.face, t.x, t.y);
         // The tent spans the cells before and after the texel.
-        for (int j = std::max(0, t.y * per_cell); j < std::min((t.y + 2) * per_cell, int(axis.size())); ++j)
-            for (int i = std::max(0, t.x * per_cell); i < std::min((t.x + 2) * per_cell, int(axis.size())); ++i) {
+        for (int j = std::max(0, t.y * per_cell); j < std::min((t.y + 2) * per_cell, count); ++j)
+            for (int i = std::max(0, t.x * per_cell); i < std::min((t.x + 2) * per_cell, count); ++i) {
                 const auto tent = [](const AxisNode& node, int texel) {
                     return node.cell == texel ? 1 - node.fraction : node.fraction;
                 };
                 const double s = axis[i].at, v = axis[j].at, r2 = 1 + s * s + v * v;
                 const double weight =
                     tent(axis[i], t.x) * tent(axis[j], t.y) * axis[i].weight * axis[j].weight / (r2 * std::sqrt(r2));
-                points.add(cube_direction(t.face, {0.5 * (s + 1), 0.5 * (v + 1)}) / std::sqrt(r2), weight, value);
+                const auto [place, added] =
+                    places.try_emplace((std::int64_t(t.face) * count + j) * count + i, points.count());
+                if (added)
+                    points.add(cube_direction(t.face, {0.5 * (s + 1), 0.5 * (v + 1)}) / std::sqrt(r2), weight, value);
+                else
+                    points.brighten(place->second, weight, value);
             }
     }
     return points;

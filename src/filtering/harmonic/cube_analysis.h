@@ -14,6 +14,6 @@ namespace domelight {
 Spectrum analyse_cube(const BorderedCube& cube, int band_limit, int threads);
 
 /// The brightest texels as point lights: as BrightTexels::points for a lat-long image.
-BrightPoints bright_points(const BorderedCube& cube, const Vec3d& mean, int band_limit, int most = 256);
+PointLights bright_points(const BorderedCube& cube, const Vec3d& mean, int band_limit);
 
 }  // namespace domelight

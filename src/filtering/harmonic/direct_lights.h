@@ -1,8 +1,15 @@
 #pragma once
 
-#include "filtering/harmonic/zonal_sum.h"
+#include "filtering/lights/point_lights.h"
 
 namespace domelight::simd {
+
+/// A function of the angle between two directions, linear between table[i] = f(pi i / steps), i = 0..steps (and one
+/// more entry after it).
+struct ZonalTable {
+    const float* values;
+    int steps;
+};
 
 /// A kernel as a function of the chord s between two unit directions: GGX in closed form (table.values null), else a
 /// table over the angle.

@@ -18,6 +18,9 @@ inline constexpr int k_ring_group = 16;
 void legendre_rows(const LegendreStep* steps, int count, const double* x2, double* p, double* p_prev, int rings,
                    float* out, std::ptrdiff_t out_stride);
 
+/// out[ring] = e^(log_scale + power log_x[ring]); rings is a multiple of k_ring_group.
+void scaled_powers(const double* log_x, double power, double log_scale, int rings, double* out);
+
 /// sums[i * 6 + c] += sum_ring p[i * p_stride + ring] data[c * data_stride + ring], i < count, c < 6. count is even.
 void project_rows(const float* p, std::ptrdiff_t p_stride, int count, const float* data, std::ptrdiff_t data_stride,
                   int rings, float* sums);

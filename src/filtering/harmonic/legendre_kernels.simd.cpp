@@ -5,6 +5,7 @@
 // clang-format off: the order is Highway's
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+#include <hwy/contrib/math/math-inl.h>
 #include "filtering/harmonic/legendre_kernels.h"
 // clang-format on
 
@@ -57,6 +58,13 @@ void legendre_rows(const LegendreStep* steps, int count, const double* x2, doubl
         legendre_vectors<k_side_by_side>(steps, count, x2 + r, p + r, p_prev + r, out + r, out_stride);
     for (; r + lanes <= rings; r += lanes)
         legendre_vectors<1>(steps, count, x2 + r, p + r, p_prev + r, out + r, out_stride);
+}
+
+void scaled_powers(const double* log_x, double power, double log_scale, int rings, double* out) {
+    const DD d;
+    const auto m = hn::Set(d, power), offset = hn::Set(d, log_scale), least = hn::Set(d, -700.0);
+    for (int r = 0; r < rings; r += int(hn::Lanes(d)))
+        hn::Store(hn::Exp(d, hn::Max(hn::MulAdd(m, hn::Load(d, log_x + r), offset), least)), d, out + r);
 }
 
 /// `degrees` rows of p against the six rows of data: degrees * 6 sums in registers.
@@ -126,12 +134,16 @@ HWY_AFTER_NAMESPACE();
 namespace domelight::simd {
 
 HWY_EXPORT(legendre_rows);
+HWY_EXPORT(scaled_powers);
 HWY_EXPORT(project_rows);
 HWY_EXPORT(expand_rows);
 
 void legendre_rows(const LegendreStep* steps, int count, const double* x2, double* p, double* p_prev, int rings,
                    float* out, std::ptrdiff_t out_stride) {
     HWY_DYNAMIC_DISPATCH(legendre_rows)(steps, count, x2, p, p_prev, rings, out, out_stride);
+}
+void scaled_powers(const double* log_x, double power, double log_scale, int rings, double* out) {
+    HWY_DYNAMIC_DISPATCH(scaled_powers)(log_x, power, log_scale, rings, out);
 }
 void project_rows(const float* p, std::ptrdiff_t p_stride, int count, const float* data, std::ptrdiff_t data_stride,
                   int rings, float* sums) {

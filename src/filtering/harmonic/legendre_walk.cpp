@@ -64,10 +64,12 @@ void LegendreWalk::start(int m, int parity) {
         active_[g] = scale > k_log_negligible;
         log_scale_[g] = active_[g] ? 0 : scale;
         wake_[g] = wake_value(scale);
+        simd::scaled_powers(rings_.log_sin_theta.data() + r0, m, log_norm_[m] - log_scale_[g], k_ring_group,
+                            p_.data() + r0);
+        const double up = std::sqrt(2.0 * m + 3);
         for (int r = r0; r < r0 + k_ring_group; ++r) {
-            const double p_mm =
-                r < rings_.count ? std::exp(log_norm_[m] + m * rings_.log_sin_theta[r] - log_scale_[g]) : 0;
-            p_[r] = parity ? rings_.cos_theta[r] * std::sqrt(2.0 * m + 3) * p_mm : p_mm;
+            if (r >= rings_.count) p_[r] = 0;
+            if (parity) p_[r] *= rings_.cos_theta[r] * up;
             p_prev_[r] = 0;
         }
     }

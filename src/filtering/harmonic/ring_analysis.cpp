@@ -30,16 +30,13 @@ void RingAnalysis::transform(const float* rows, std::ptrdiff_t stride, int texel
         float* re = rings_.data() + (std::size_t(m) * 6 + 2 * channel) * stride_ + std::size_t(batch) * k_batch;
         float* im = re + stride_;
         const float c = float(0.5 * order_factors_[m].real()), s = float(0.5 * order_factors_[m].imag());
-        for (int i = 0; i < simd::k_fft_lanes; ++i) {
-            const float pr = plus[i], pi = plus[i + simd::k_fft_lanes], mr = minus[i],
-                        mi = minus[i + simd::k_fft_lanes];
-            const float ar = pr + mr, ai = pi - mi, br = pi + mi, bi = mr - pr;
-            re[i] = ar * c - ai * s;
-            im[i] = ar * s + ai * c;
-            re[i + simd::k_fft_lanes] = br * c - bi * s;
-            im[i + simd::k_fft_lanes] = br * s + bi * c;
-        }
+        simd::unpack_orders(plus, minus, c, s, re, im);
     }
+}
+
+void RingAnalysis::clear(int batch) {
+    for (int row = 0; row < 6 * (band_limit_ + 1); ++row)
+        std::fill_n(rings_.data() + std::size_t(row) * stride_ + std::size_t(batch) * k_batch, k_batch, 0.f);
 }
 
 void RingAnalysis::add_orders(int row, double weight, std::span<const std::complex<double>> orders) {

@@ -28,6 +28,8 @@ class RingAnalysis {
     /// Adds one channel of the rows 32 batch .. 32 batch + 31 (ring = row - k_pad). Different batches and channels may
     /// be added at the same time. rows: `stride` floats apart, texels `texel` floats apart.
     void transform(const float* rows, std::ptrdiff_t stride, int texel, int batch, int channel);
+    /// In place of transform() of all channels: the rows of a batch are black.
+    void clear(int batch);
     /// An alternative for a few nearly empty rows: adds `weight` times a row's Fourier coefficients, orders[3 m +
     /// channel] = sum_x g e^{-2 pi i m x / W}, m = 0..band_limit. After clear().
     void clear() { rings_.fill_zero(); }

@@ -8,9 +8,17 @@
 
 namespace domelight {
 
-/// The functions sum_lm k_l a_lm Y_lm on the rings of one grid, one for each list of factors (k_0 .. k_band_limit; all
-/// of the same length, at most the spectrum's). The Legendre functions are computed once for all of them.
-std::vector<SphereGrid> sh_synthesis(const Spectrum& spectrum, std::span<const std::vector<double>> factors,
+/// A function Σ_lm k_l a_lm Y_lm, plus Σ_lm r_l b_lm Y_lm if there are factors r.
+struct SynthesisFactors {
+    std::vector<double> k;  ///< of degrees 0 .. band limit
+    std::vector<double> r;  ///< of at most as many degrees; may be empty
+};
+
+/// Such functions on the rings of one grid. The Legendre functions are computed once for all of them.
+///
+/// a, b      spectra of at least as many degrees as the factors; b may be null if no function has factors r
+/// factors   of each function; all k of the same band limit
+std::vector<SphereGrid> sh_synthesis(const Spectrum& a, const Spectrum* b, std::span<const SynthesisFactors> factors,
                                      RingGrid grid, int threads);
 
 }  // namespace domelight

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <mutex>
 #include <numeric>
 #include <span>
 
@@ -15,6 +17,9 @@ namespace {
 
 /// By how much a filtered spectrum has decayed at its band limit: see InterpolationTaps.
 constexpr double k_decay = 16;
+
+/// The error that ResidualLights may leave out, as a part of the least value.
+constexpr double k_tolerance = 1e-5;
 
 constexpr int k_all_faces[6] = {0, 1, 2, 3, 4, 5};
 
@@ -33,18 +38,18 @@ int clamp_texels(float* rgb, int width) {
 class RowLookup {
   public:
     RowLookup(const SphereGrid& grid, const LookupOptions& options)
-        : view_(grid.view()), table_(InterpolationTaps(8, options.band, k_decay)), options_(options) {}
+        : view_(grid.view()), table_(lookup_table(options.band)), options_(options) {}
 
     /// A row of texels at directions in the world; returns how many had a negative value.
     int row(std::span<const Vec3d> directions, float* rgb) const {
         Row r(directions, options_.world_to_source);
-        simd::lookup_directions(view_, table_, r.x(), r.y(), r.z(), r.count, rgb);
+        simd::lookup_directions(view_, *table_, r.x(), r.y(), r.z(), r.count, rgb);
         return complete(r, rgb);
     }
     /// The same for a row and its turns by one, two and three quarters about the source's polar axis.
     int quarter_turns(std::span<const Vec3d> directions, float* const (&rgb)[4]) const {
         Row r(directions, options_.world_to_source);
-        simd::lookup_quarter_turns(view_, table_, r.x(), r.y(), r.z(), r.count, rgb);
+        simd::lookup_quarter_turns(view_, *table_, r.x(), r.y(), r.z(), r.count, rgb);
         int clamped = 0;
         for (int k = 0; k < 4; ++k) {
             clamped += complete(r, rgb[k]);
@@ -77,7 +82,7 @@ class RowLookup {
     };
 
     int complete(Row& r, float* rgb) const {
-        if (options_.bright || options_.lights) {
+        if (options_.residual || options_.lights) {
             const int n = r.count;
             std::vector<float> unit(3 * std::size_t(n));
             float *x = unit.data(), *y = x + n, *z = y + n;
@@ -86,7 +91,8 @@ class RowLookup {
                              scale = 1 / std::sqrt(dx * dx + dy * dy + dz * dz);
                 x[i] = float(dx * scale), y[i] = float(dy * scale), z[i] = float(dz * scale);
             }
-            if (options_.bright) simd::add_zonal_sum(options_.bright->view(), options_.residual, x, y, z, n, rgb);
+            if (options_.residual)
+                simd::add_residual_sums(options_.residual->view(), options_.residual->table(), x, y, z, n, rgb);
             if (const auto* lights = options_.lights)
                 simd::add_direct_lights(lights->nodes.data(), int(lights->nodes.size()), lights->points.view(),
                                         options_.kernel, x, y, z, n, rgb);
@@ -95,7 +101,7 @@ class RowLookup {
     }
 
     simd::GridView view_;
-    simd::TapTable table_;
+    std::shared_ptr<const simd::TapTable> table_;
     const LookupOptions& options_;
 };
 
@@ -111,10 +117,10 @@ std::int64_t for_rows(int rows, int threads, const Row& row) {
 
 }  // namespace
 
-SphereGrid::SphereGrid(RingGrid grid)
+SphereGrid::SphereGrid(RingGrid grid, bool zeroed)
     : grid_(grid),
       stride_(4 * (std::ptrdiff_t(grid.width) + 3 * k_pad)),
-      data_(std::size_t(grid.rings + 2 * k_pad) * stride_) {}
+      data_(std::size_t(grid.rings + 2 * k_pad) * stride_, zeroed) {}
 
 void SphereGrid::wrap() {
     const int w = grid_.width, h = grid_.rings;
@@ -134,6 +140,37 @@ void SphereGrid::wrap() {
         beyond(-1 - k, k);
         beyond(h + k, h - 1 - k);
     }
+}
+
+std::shared_ptr<const simd::TapTable> lookup_table(double band) {
+    constexpr std::size_t most = 16;
+    static std::mutex mutex;
+    static std::deque<std::pair<double, std::shared_ptr<const simd::TapTable>>> tables;
+    const std::lock_guard lock(mutex);
+    for (const auto& [of, table] : tables)
+        if (of == band) return table;
+    if (tables.size() == most) tables.pop_front();
+    tables.emplace_back(band, std::make_shared<simd::TapTable>(InterpolationTaps(8, band, k_decay)));
+    return tables.back().second;
+}
+
+ResidualLights::ResidualLights(const LightGroups& groups, const ResidualKernel& kernel, const Vec3d& least)
+    : groups_(groups), kernel_(kernel) {
+    // If each light may leave the same error, all together leave at most k_tolerance of the least value.
+    for (int g = 0; g < groups.count(); ++g) {
+        const Vec3d& most = groups.most[g];
+        const double share = std::max({most.x / least.x, most.y / least.y, most.z / least.z, 1e-30}),
+                     error = k_tolerance / (groups.used * share), ring = kernel.ring_limit(error),
+                     chord = kernel.axis_limit(error), radius = groups.radius[g];
+        ring_limit_.push_back(ring > 0 ? float(ring + radius) : -1.f);
+        const double widest = std::min(chord + radius, 2.0);
+        axis_limit_.push_back(chord > 0 ? float(1 - 0.5 * widest * widest) : 2.f);
+    }
+}
+
+simd::ResidualGroups ResidualLights::view() const {
+    return {groups_.x.data(),   groups_.y.data(), groups_.z.data(),     ring_limit_.data(),
+            axis_limit_.data(), groups_.count(),  groups_.lights.view()};
 }
 
 Cubemap grid_to_cube(const SphereGrid& grid, int size, const LookupOptions& options, std::int64_t& clamped) {
