@@ -10,6 +10,7 @@
 #include "cli/render/render_outputs.h"
 #include "cli/render/render_study_command.h"
 #include "cli/render/render_turntable.h"
+#include "io/file/input_guard.h"
 #include "io/file/json.h"
 #include "io/file/output_place.h"
 #include "preview/tonemap.h"
@@ -205,7 +206,14 @@ Result<void> check_places(const RenderWords& w) {
     if (w.study && !is_screen_picture(w.outputs[0])) return check_output_folder(w.outputs[0]);
     std::vector<std::filesystem::path> inputs = environment_files(w.environment_files);
     for (const auto* files : {&w.scenes, &w.light_files}) inputs.insert(inputs.end(), files->begin(), files->end());
-    return check_output_places(w.outputs, inputs);
+    if (!w.frames) return check_output_places(w.outputs, inputs);
+    std::vector<std::string> first;
+    for (const std::string& output : w.outputs) {
+        first.push_back(frame_file(output, 1));
+        for (int frame = 1; frame <= *w.frames; ++frame)
+            if (auto ok = check_not_an_input(frame_file(output, frame), inputs); !ok) return ok;
+    }
+    return check_output_places(first);
 }
 
 }  // namespace

@@ -335,6 +335,8 @@ def test_outputs_are_no_inputs_and_none_twice(folder):
     refused("compare", "a.png", "a.png", "--heat", "h.png", "--sheet", "./h.png", folder=folder, what="named for two outputs")
     refused("render", "ball", "-o", "r.png,r.png", *TINY, folder=folder, what="named for two outputs")
     refused("sample", "a.png", "--picture", "a.png", folder=folder, what="is read here")
+    shutil.copy(folder / "studio.hdr", folder / "t_0002.hdr")
+    refused("render", "ball", "--env", "t_0002.hdr", "-o", "t.hdr", "--frames", "2", *TINY, folder=folder, what="is read here")
     run("bake", "studio.hdr", "-o", ".", *SMALL, folder=folder)
     run("lights", "studio.hdr", "-o", ".", folder=folder)
     assert (folder / "studio.hdr").read_bytes() == before and (folder / "a.png").read_bytes() == picture
@@ -360,7 +362,7 @@ def test_outputs_of_one_command_appear_all_or_none(folder):
 def test_what_a_killed_run_left_is_removed_by_the_next_one(folder):
     out = folder / "out"
     out.mkdir()
-    process = subprocess.Popen([PROGRAM, "bake", "studio.hdr", "-o", "out", "--size", "2048", "--encoding", "bc6h"], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    process = subprocess.Popen([PROGRAM, "bake", "studio.hdr", "-o", "out", "--size", "1024", "--encoding", "bc6h"], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     end = time.monotonic() + SECONDS
     while not any(".domelight-" in name for name in os.listdir(out)) and process.poll() is None and time.monotonic() < end:
         time.sleep(0.01)
@@ -419,8 +421,10 @@ def test_options_that_do_nothing_are_named(folder):
         said = run(*words, *options, folder=folder).stderr
         for option in options:
             assert f"warning: {option.split('=')[0]} has no effect here" in said, (option, said)
-        assert "has no effect" not in run(*words, folder=folder).stderr
-        assert run(*words, *options, "--quiet", folder=folder).stderr == ""
+
+    words = ["sky", "-o", "s.hdr", "--height", "16"]
+    assert "has no effect" not in run(*words, "--turbidity", "3", folder=folder).stderr
+    assert run(*words, "--axes", "--turbidity", "3", "--quiet", folder=folder).stderr == ""
 
 
 def test_numbers_that_are_none_are_refused(folder):
