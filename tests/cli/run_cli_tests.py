@@ -1569,7 +1569,7 @@ def test_render_turntable(folder):
     assert (folder / "e_0001.exr").read_bytes() == (folder / "t_0001.exr").read_bytes() != (folder / "e_0002.exr").read_bytes()
     assert not (folder / "e.webp").exists()
     error = run(*[w.replace("t.png,t.exr", "no/t.png") for w in words], folder=folder, code=1).stderr
-    assert "no/t.png: cannot create a file there" in error
+    assert "no/t_0001.png" in error
 
 
 def test_an_interrupted_render_leaves_the_last_complete_file(folder):
