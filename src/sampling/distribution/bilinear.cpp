@@ -60,10 +60,31 @@ void BilinearRows::fill_uniform(int row) {
     fill(row, ones, ones);
 }
 
-void BilinearRows::copy(int from, int to) {
-    std::copy_n(edges_of(from), items + 1, edges.data() + std::size_t(to) * (items + 1));
-    std::copy_n(shape_of(from), items, shape.data() + std::size_t(to) * items);
-    std::copy_n(guide_of(from), cells() + 8, guide.data() + std::size_t(to) * (cells() + 8));
+BilinearColumns::BilinearColumns(int count_, int items_) : count(count_), items(items_) {
+    lines_per_row = (items + BilinearLine::k_segments - 1) / BilinearLine::k_segments;
+    const int bits = std::max(0, int(std::bit_width(unsigned(items))) - 3);
+    shift = 32 - bits;
+    lines.resize(std::size_t(count) * lines_per_row);
+    guides.resize(std::size_t(count - 1) * guide_stride());
+}
+
+void BilinearColumns::set(int r, const BilinearRows& from) {
+    const std::int32_t* edges = from.edges_of(0);
+    const std::uint16_t *shape = from.shape_of(0), *guide = from.guide_of(0);
+    for (int n = 0; n < lines_per_row; ++n) {
+        BilinearLine& line = lines[std::size_t(r) * lines_per_row + n];
+        const int first = n * BilinearLine::k_segments;
+        for (int k = 0; k <= BilinearLine::k_segments; ++k) line.edges[k] = edges[std::min(first + k, items)];
+        for (int k = 0; k < BilinearLine::k_segments; ++k)
+            line.shape[k] = first + k < items ? shape[first + k] : std::uint16_t(0);
+    }
+    const int step = from.cells() / cells();
+    for (const int side : {0, 1}) {  // as the upper and as the lower row of a pair
+        const int s = r - side;
+        if (s < 0 || s >= count - 1) continue;
+        std::uint16_t* to = guides.data() + std::size_t(s) * guide_stride() + side;
+        for (int c = 0; c <= cells(); ++c) to[2 * c] = guide[std::size_t(c) * step];
+    }
 }
 
 // ---- the density
@@ -78,15 +99,21 @@ double table_mass(std::uint32_t xi) {
 
 /// The mixture of two rows at some v, on the tables' scale.
 struct Mixture {
-    const std::int32_t *above_edges, *below_edges;
-    const std::uint16_t *above_shape, *below_shape;
+    const BilinearLine *above_lines, *below_lines;
     double above, below;  // shares, together 1
 
-    double edge(int i) const { return above * above_edges[i] + below * below_edges[i]; }
+    /// The value at the beginning (0) or the end (1) of segment i.
+    double edge(int i, int end) const {
+        const int line = i / BilinearLine::k_segments, k = i % BilinearLine::k_segments + end;
+        return above * above_lines[line].edges[k] + below * below_lines[line].edges[k];
+    }
     LinearSegment segment(int i) const {
-        const double a = above * (double(above_edges[i + 1]) - above_edges[i]),
-                     b = below * (double(below_edges[i + 1]) - below_edges[i]);
-        const double begin = (a * above_shape[i] + b * below_shape[i]) * (2.0 / 65535);
+        const int k = i % BilinearLine::k_segments;
+        const BilinearLine &x = above_lines[i / BilinearLine::k_segments],
+                           &y = below_lines[i / BilinearLine::k_segments];
+        const double a = above * (double(x.edges[k + 1]) - x.edges[k]),
+                     b = below * (double(y.edges[k + 1]) - y.edges[k]);
+        const double begin = (a * x.shape[k] + b * y.shape[k]) * (2.0 / 65535);
         return {begin, 2 * (a + b) - begin};
     }
 };
@@ -99,7 +126,8 @@ struct Row {
 };
 
 struct Tables {
-    const BilinearRows &rows, &columns;
+    const BilinearRows& rows;
+    const BilinearColumns& columns;
     const std::vector<double>& begins;
     int height() const { return columns.count - 2; }
 
@@ -114,8 +142,7 @@ struct Tables {
         const double pdf_v = value * (1 / place.length) * (height() * (1 / k_total));
         return {(place.start + t * place.length) * (1.0 / height()),
                 pdf_v,
-                {columns.edges_of(s), columns.edges_of(s + 1), columns.shape_of(s), columns.shape_of(s + 1), 1 - below,
-                 below},
+                {columns.row(s), columns.row(s + 1), 1 - below, below},
                 s};
     }
 
@@ -130,13 +157,11 @@ struct Tables {
 
     /// The segment of the mixture in which `mass` is reached.
     int find(const Row& row, std::uint32_t xi, double mass) const {
-        const std::size_t cell = std::uint64_t(xi) >> columns.shift;
-        const std::uint16_t *above = columns.guide_of(row.above) + cell,
-                            *below = columns.guide_of(row.above + 1) + cell;
-        int first = std::min(above[0], below[0]), last = std::max(above[1], below[1]);
+        const std::uint16_t* cell = columns.guide_of(row.above, xi);
+        int first = std::min(cell[0], cell[1]), last = std::max(cell[2], cell[3]);
         while (first < last) {
             const int middle = (first + last) / 2;
-            if (row.mixture.edge(middle + 1) > mass)
+            if (row.mixture.edge(middle, 1) > mass)
                 last = middle;
             else
                 first = middle + 1;
@@ -173,21 +198,26 @@ std::pair<int, double> column_place(double u, int items) {
 Result<BilinearDistribution> BilinearDistribution::build(const Weights& weights, int threads) {
     BilinearDistribution d;
     const int w = std::max(0, weights.width), h = std::max(0, weights.height);
-    if (w > 0 && h > 0 && w <= 65535 && h <= 65535) d.columns_ = BilinearRows(h + 2, w);
+    if (w > 0 && h > 0 && w <= 65535 && h <= 65535) d.columns_ = BilinearColumns(h + 2, w);
     std::vector<double> row_sums(h + 2);
     const auto add = [&](int y, std::span<const float> row, std::span<const double> sums) {
         row_sums[y + 1] = sums.back();
-        if (sums.back() == 0) return d.columns_.fill_uniform(y + 1);
-        std::vector<double> nodes(w + 1);
-        std::copy(row.begin(), row.end(), nodes.begin());
-        nodes[w] = nodes[0];
-        d.columns_.fill(y + 1, std::span(nodes).first(w), std::span(nodes).last(w));
+        BilinearRows filled(1, w);
+        if (sums.back() == 0) {
+            filled.fill_uniform(0);
+        } else {
+            std::vector<double> nodes(w + 1);
+            std::copy(row.begin(), row.end(), nodes.begin());
+            nodes[w] = nodes[0];
+            filled.fill(0, std::span(nodes).first(w), std::span(nodes).last(w));
+        }
+        // The first and the last row twice.
+        d.columns_.set(y + 1, filled);
+        if (y == 0) d.columns_.set(0, filled);
+        if (y == h - 1) d.columns_.set(h + 1, filled);
     };
     if (auto read = for_each_weight_row(weights, threads, add); !read) return read.error();
-    for (auto [from, to] : {std::pair{1, 0}, {h, h + 1}}) {
-        row_sums[to] = row_sums[from];
-        d.columns_.copy(from, to);
-    }
+    for (auto [from, to] : {std::pair{1, 0}, {h, h + 1}}) row_sums[to] = row_sums[from];
 
     std::vector<double> begins(h + 1), ends(h + 1);
     double total = 0;
@@ -214,7 +244,7 @@ DistributionSample BilinearDistribution::sample(UnitPoint point) const {
     const double mass = table_mass(point.x);
     const int i = tables.find(row, point.x, mass);
     const LinearSegment segment = row.mixture.segment(i);
-    const double t = segment.invert(std::max(mass - row.mixture.edge(i), 0.0));
+    const double t = segment.invert(std::max(mass - row.mixture.edge(i, 0), 0.0));
     double u = (i + 0.5 + t) * (1.0 / width());
     if (u >= 1) u -= 1;
     const double pdf_u = segment.at(t) * (width() * (1 / k_total));
@@ -250,10 +280,7 @@ void BilinearDistribution::pdfs_uv(std::span<const float> u, std::span<const flo
             const auto [s, t] = tables.place(v[first + k]);
             const auto [i, r] = column_place(u[first + k], width());
             places[k] = {s, i, t, r};
-            for (int row = s; row <= s + 1; ++row) {
-                prefetch(columns_.edges_of(row) + i);
-                prefetch(columns_.shape_of(row) + i);
-            }
+            for (int row = s; row <= s + 1; ++row) prefetch(columns_.row(row) + i / BilinearLine::k_segments);
         }
         for (std::size_t k = 0; k < n; ++k) {
             const Row row = tables.at(places[k].s, places[k].t);
@@ -270,7 +297,7 @@ std::optional<UnitPoint> BilinearDistribution::invert(double u, double v) const 
     const auto [i, r] = column_place(u, width());
     const Mixture mixture = tables.at(s, t).mixture;
     const auto quantum = [](double mass) { return unit_fixed((mass + 0x1p31) * (1 / k_total)); };
-    return UnitPoint{quantum(mixture.edge(i) + mixture.segment(i).before(r)),
+    return UnitPoint{quantum(mixture.edge(i, 0) + mixture.segment(i).before(r)),
                      quantum(rows_.edges_of(0)[s] + tables.marginal_segment(s).before(t))};
 }
 

@@ -7,7 +7,7 @@
 namespace domelight::simd {
 
 /// BilinearDistribution::sample for many points: the same bits as the scalar form, rounded to float.
-void sample_bilinear(const BilinearRows& rows, const BilinearRows& columns, const double* row_begins,
+void sample_bilinear(const BilinearRows& rows, const BilinearColumns& columns, const double* row_begins,
                      std::span<const UnitPoint> points, float* u, float* v, float* pdf_uv);
 
 }  // namespace domelight::simd

@@ -29,16 +29,17 @@ HWY_INLINE auto texel_floats(D d, V quotient, V item, V n, V one) {
 constexpr int k_batch = 64;  ///< the number of points that are processed together
 
 /// The output of a batch of `n` draws in whole vectors. The last batch, which may be short, goes through a buffer.
+template <int size = k_batch>
 struct BatchOutput {
-    alignas(64) float buffer[3][k_batch];
+    alignas(64) float buffer[3][size];
     float* target[3];
-    float* to[3];  ///< u, v, pdf_uv: k_batch of each
+    float* to[3];  ///< u, v, pdf_uv: `size` of each
     int n;
     BatchOutput(float* u, float* v, float* pdf_uv, int n_) : target{u, v, pdf_uv}, n(n_) {
-        for (int i = 0; i < 3; ++i) to[i] = n == k_batch ? target[i] : buffer[i];
+        for (int i = 0; i < 3; ++i) to[i] = n == size ? target[i] : buffer[i];
     }
     HWY_INLINE void finish() const {
-        for (int i = 0; n < k_batch && i < 3; ++i) std::copy_n(buffer[i], n, target[i]);
+        for (int i = 0; n < size && i < 3; ++i) std::copy_n(buffer[i], n, target[i]);
     }
 };
 
@@ -49,7 +50,7 @@ struct ItemDraws {
 };
 
 /// Points and densities of draws of a column and a row, both piecewise constant.
-HWY_INLINE void store_texel_draws(const ItemDraws& columns, const ItemDraws& rows, const BatchOutput& out) {
+HWY_INLINE void store_texel_draws(const ItemDraws& columns, const ItemDraws& rows, const BatchOutput<>& out) {
     namespace hn = hwy::HWY_NAMESPACE;
     const hn::ScalableTag<double> d;
     const hn::Rebind<float, decltype(d)> df;

@@ -31,7 +31,6 @@ struct BilinearRows {
     void fill(int row, std::span<const double> begins, std::span<const double> ends);
     /// Makes a row of zeros uniform, in case it is ever drawn from.
     void fill_uniform(int row);
-    void copy(int from, int to);
 
     int cells() const { return int((std::uint64_t(1) << 32) >> shift); }
     const std::int32_t* edges_of(int row) const { return edges.data() + std::size_t(row) * (items + 1); }
@@ -42,6 +41,39 @@ struct BilinearRows {
     std::size_t memory_bytes() const {
         return edges.size() * sizeof(edges[0]) + (shape.size() + guide.size()) * sizeof(shape[0]);
     }
+};
+
+/// Ten consecutive segments of a row of BilinearColumns, in one cache line.
+struct alignas(64) BilinearLine {
+    static constexpr int k_segments = 10;
+    std::int32_t edges[k_segments + 1];  ///< as BilinearRows::edges; k_total beyond the row's end
+    std::uint16_t shape[k_segments];     ///< as BilinearRows::shape
+};
+
+/// The rows of BilinearRows laid out for drawing from a mixture of two neighbouring rows: a draw takes a cache line from
+/// the guide and nearly always one from each row.
+struct BilinearColumns {
+    int count = 0, items = 0;
+    int lines_per_row = 0;
+    int shift = 0;  ///< guide cell of xi: xi >> shift. A cell is four times as wide as in BilinearRows.
+    std::vector<BilinearLine, LargeAllocator<BilinearLine>> lines;  ///< [count][lines_per_row]
+    /// [count - 1][cells + 1][2]: the guides of rows s and s + 1 side by side.
+    std::vector<std::uint16_t, LargeAllocator<std::uint16_t>> guides;
+
+    BilinearColumns() = default;
+    BilinearColumns(int count, int items);
+    /// Row `row` becomes the only row of `from`. Different rows may be set at the same time.
+    void set(int row, const BilinearRows& from);
+
+    int cells() const { return int((std::uint64_t(1) << 32) >> shift); }
+    std::size_t guide_stride() const { return 2 * (std::size_t(cells()) + 1); }
+    /// The cell of xi in the guides of rows s and s + 1: first segments of row s and of row s + 1, then those of the next
+    /// cell.
+    const std::uint16_t* guide_of(int s, std::uint32_t xi) const {
+        return guides.data() + std::size_t(s) * guide_stride() + 2 * (std::uint64_t(xi) >> shift);
+    }
+    const BilinearLine* row(int r) const { return lines.data() + std::size_t(r) * lines_per_row; }
+    std::size_t memory_bytes() const { return lines.size() * sizeof(lines[0]) + guides.size() * sizeof(guides[0]); }
 };
 
 /// p(u, v) = bilinear interpolation of the weights between texel centres / mean weight; u wraps around, v is clamped in
@@ -55,7 +87,7 @@ struct BilinearRows {
 ///
 /// Monotone in both directions (u starts at the first texel centre, 1 / (2 W), and continues across the seam).
 /// invert(sample(p)) == p exactly, except where a row outweighs its neighbour by 10^4 or more: there (u, v) in double
-/// are not precise enough, and the result is off by a few quanta of 2^-32. 8 bytes a texel.
+/// are not precise enough, and the result is off by a few quanta of 2^-32. 7.4 bytes a texel.
 class BilinearDistribution final : public Distribution2D {
   public:
     /// Errors: as make_distribution.
@@ -79,7 +111,7 @@ class BilinearDistribution final : public Distribution2D {
     BilinearRows rows_;
     // For each row, the segments from centre to centre; the last one crosses the seam. The first and the last row are
     // stored twice, so that segment s of v always lies between rows s and s + 1 of the table.
-    BilinearRows columns_;
+    BilinearColumns columns_;
     // [height + 1]: the marginal's value at the beginning of each segment, in quanta a segment.
     std::vector<double> row_begins_;
 };
