@@ -80,7 +80,7 @@ def compare(source, options, work):
 
     cpu_seconds([*cmgen, "--format=exr", f"--ibl-ld={work / 'faces'}", source])
     faces = next((work / "faces").rglob("m1_px.exr")).parent
-    cpu_seconds([*bake, "--roughness", ",".join(f"{r:.17g}" for r in roughness), "--encoding", "rgba32f", "-o", work / "exact"])
+    cpu_seconds([*bake, "--roughness", ",".join(f"{r:.17g}" for r in roughness), "--encoding", "rgba32f", "--texels", "centre", "-o", work / "exact"])
     for name, chain in (("cmgen", faces), ("domelight", work / "exact" / "specular.ktx2")):
         report[name]["error"] = error_of(source, roughness, chain, options.texels)
     print("  error against the truth (relative RMS, largest)\n    level roughness          cmgen               domelight")

@@ -36,7 +36,7 @@ struct Bake {
     std::string stated_by;  ///< who says which roughness the levels have
     Lobe lobe = Lobe::ggx;
     Texels texels = Texels::centre;
-    std::function<double(double)> level_of;  ///< by --for; empty: linear between the levels
+    std::function<double(double)> level_of;  ///< by the engine's curve; empty: linear between the levels
 };
 
 /// "0 0.25 0.5" or "0,0.25,0.5": one number from 0 to `most` a level, else nothing.
@@ -133,10 +133,28 @@ Result<Bake> read_pictures(const std::vector<std::string>& words, int threads) {
     return bake;
 }
 
+/// The level that an engine's shader reads for a roughness.
+std::function<double(double)> curve_of(const Engine& engine, const Bake& bake) {
+    return [&engine, count = int(bake.levels.size()), size = bake.levels[0].cube.size()](double roughness) {
+        return level_of_roughness(engine, roughness, count, size);
+    };
+}
+
+/// The same for the engine whose curve has the roughnesses that the file states.
+std::function<double(double)> curve_of_stated(const Bake& bake) {
+    std::vector<double> roughness;
+    for (const CubeLevel& level : bake.levels) roughness.push_back(level.roughness.value_or(-1));
+    const Engine* engine = engine_with_curve(roughness, bake.levels[0].cube.size());
+    return engine ? curve_of(*engine, bake) : nullptr;
+}
+
 Result<Bake> read_bake(const BakeWords& w, int threads) {
     auto bake = w.bake.size() == 1 && is_texture_file(w.bake[0]) ? read_chain(w.bake[0], threads)
                                                                  : read_pictures(w.bake, threads);
-    if (bake) bake->lobe = w.lobe.value_or(bake->lobe);
+    if (bake) {
+        bake->lobe = w.lobe.value_or(bake->lobe);
+        bake->level_of = curve_of_stated(*bake);
+    }
     if (!bake || w.engine.empty()) return bake;
     const auto engine = find_engine(w.engine);
     if (!engine) return engine.error();
@@ -145,9 +163,7 @@ Result<Bake> read_bake(const BakeWords& w, int threads) {
     for (int l = 0; l < count; ++l)
         bake->levels[std::size_t(l)].roughness = (*engine)->roughness(l, count, bake->levels[0].cube.size());
     bake->stated_by = w.engine + "'s curve";
-    bake->level_of = [engine = *engine, count, size = bake->levels[0].cube.size()](double roughness) {
-        return level_of_roughness(*engine, roughness, count, size);
-    };
+    bake->level_of = curve_of(**engine, *bake);
     return bake;
 }
 
@@ -338,7 +354,9 @@ void add_bake_options(Arguments& a, BakeWords& w) {
               "texels compared in each level, 96 to 10000000, a quarter of them the brightest (6144)");
     a.flag("--as-read", w.as_read,
            "also measure what a shader reads, between texels and between levels, in random directions for random "
-           "roughnesses from 0.1 to 1; between levels by the curve of --for, otherwise linearly in the roughness");
+           "roughnesses from 0.1 to 1; between levels by the curve of --for, or of the engine whose curve has the "
+           "roughnesses that "
+           "the file states, otherwise linearly in the roughness");
     add_environment_options(a, w.environment);
 }
 

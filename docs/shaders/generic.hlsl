@@ -1,6 +1,6 @@
 // Reads what `domelight bake` writes for an engine of one's own (--for generic). HLSL, shader model 5 and later.
 //
-//   specular.ktx2      g_specular      cube; roughness = level / (levels - 1), level 0 is the environment itself
+//   specular.ktx2      g_specular      cube; roughness = 0.6^(last level - level), level 0 is the environment itself
 //   irradiance.ktx2    g_irradiance    cube of the irradiance E
 //   brdf.ktx2          g_brdf          u = NdotV, v = roughness with row 0 the smoothest; (scale, bias)
 //   sh.json            g_sh            its nine "irradiance" coefficients, where the cube is too much
@@ -26,9 +26,15 @@ float3 domelight_direction(float3 d) {
     return float3(dot(g_environment[0].xyz, d), dot(g_environment[1].xyz, d), dot(g_environment[2].xyz, d));
 }
 
+/// The level to read for a roughness: a straight line up to the roughness of level 1, its logarithm from there on.
+float domelight_level(float roughness) {
+    float first = pow(0.6, g_last_level - 1.0);
+    return roughness < first ? roughness / first : g_last_level - log(roughness) / log(0.6);
+}
+
 /// Radiance mirrored by a surface of that roughness, filtered over its lobe. `r`: reflect(-v, n).
 float3 domelight_specular(float3 r, float roughness) {
-    return g_specular.SampleLevel(g_linear_clamp, domelight_direction(r), roughness * g_last_level).rgb;
+    return g_specular.SampleLevel(g_linear_clamp, domelight_direction(r), domelight_level(roughness)).rgb;
 }
 
 /// Radiance that leaves a white diffuse surface: E / pi.

@@ -1,6 +1,6 @@
 // Reads what `domelight bake` writes for an engine of one's own (--for generic). WGSL.
 //
-//   specular.ktx2      specular      cube; roughness = level / (levels - 1), level 0 is the environment itself
+//   specular.ktx2      specular      cube; roughness = 0.6^(last level - level), level 0 is the environment itself
 //   irradiance.ktx2    irradiance    cube of the irradiance E
 //   brdf.ktx2          brdf          u = NdotV, v = roughness with row 0 the smoothest; (scale, bias)
 //   sh.json            light.sh      its nine "irradiance" coefficients, where the cube is too much
@@ -22,9 +22,18 @@ struct Light {
 
 const k_pi = 3.14159265358979;
 
+/// The level to read for a roughness: a straight line up to the roughness of level 1, its logarithm from there on.
+fn domelight_level(roughness: f32) -> f32 {
+    let first = pow(0.6, light.last_level - 1.0);
+    if (roughness < first) {
+        return roughness / first;
+    }
+    return light.last_level - log(roughness) / log(0.6);
+}
+
 /// Radiance mirrored by a surface of that roughness, filtered over its lobe. `r`: reflect(-v, n).
 fn domelight_specular(r: vec3f, roughness: f32) -> vec3f {
-    return textureSampleLevel(specular, linear_clamp, light.environment * r, roughness * light.last_level).rgb;
+    return textureSampleLevel(specular, linear_clamp, light.environment * r, domelight_level(roughness)).rgb;
 }
 
 /// Radiance that leaves a white diffuse surface: E / pi.

@@ -1,7 +1,7 @@
 // Split-sum shading with lat-long maps. GLSL 3.30 and later, and ES 3.00; behind spherical_envmap.glsl.
 // Reads what `domelight bake studio.hdr -o out --layout latlong` writes:
 //
-//   specular.ktx2      u_specular      lat-long; roughness = level / (levels - 1), level 0 is the environment itself
+//   specular.ktx2      u_specular      lat-long; roughness = 0.6^(last level - level), level 0 is the environment itself
 //   irradiance.ktx2    u_irradiance    lat-long map of the irradiance E
 //   brdf.ktx2          u_brdf          u = NdotV, v = roughness with row 0 the smoothest; (scale, bias)
 //
@@ -12,6 +12,12 @@ uniform sampler2D u_specular;
 uniform sampler2D u_irradiance;
 uniform sampler2D u_brdf;
 uniform float u_last_level;  // levels - 1
+
+/// The level to read for a roughness: a straight line up to the roughness of level 1, its logarithm from there on.
+float domelight_level(float roughness) {
+    float first = pow(0.6, u_last_level - 1.0);
+    return roughness < first ? roughness / first : u_last_level - log(roughness) / log(0.6);
+}
 
 /// What is left for the diffuse layer, so that a white surface in an even light reflects all of it.
 vec3 domelight_diffuse_weight_energy(vec3 f0, vec2 scale_bias) {
@@ -29,7 +35,7 @@ vec3 domelight_shade_latlong(vec3 n, vec3 v, vec3 base_color, float metallic, fl
     float NdotV = clamp(dot(n, v), 0.0, 1.0);
     vec3 f0 = mix(vec3(0.16 * reflectance * reflectance), base_color, metallic);
 
-    vec3 prefiltered = textureLod(u_specular, domelight_latlong_point(reflect(-v, n)), roughness * u_last_level).rgb;
+    vec3 prefiltered = textureLod(u_specular, domelight_latlong_point(reflect(-v, n)), domelight_level(roughness)).rgb;
     vec2 scale_bias = textureLod(u_brdf, vec2(NdotV, roughness), 0.0).rg;
     vec3 specular = prefiltered * (f0 * scale_bias.x + scale_bias.y);
 

@@ -228,6 +228,8 @@ class EngineBake {
         map.layout = plan_.layout;
         if (map.layout == Layout::latlong) map.projection = plan_.projection;
         map.levels = baked_levels(levels, plan_.layout);
+        if (quantity == Quantity::radiance && levels.size() > 1 && plan_.level_of && !is_phong(lobe))
+            map.level_text = engine_.level_text;
         MapFormat format = map_format(name, encoding);
         format.order = plan_.order;
         format.envmap = envmap_of(plan_.projection);

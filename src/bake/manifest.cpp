@@ -149,6 +149,7 @@ Json map_json(const BakedMap& map) {
     json["encoding"] = map.encoding;
     json["zstd"] = map.zstd;
     for (const BakedLevel& level : map.levels) json["levels"].push_back(level_json(map, level));
+    if (!map.level_text.empty()) json["level_for_roughness"] = map.level_text;
     if (map.as_read) json["as_read"] = read_errors_json(*map.as_read);
     for (const PhongGap& gap : map.gaps)
         json["between_levels"].push_back(

@@ -84,12 +84,13 @@ bool own_container(Container container) {
 
 /// Number of levels from the options, or from the engine's smallest size. `chain`: they go into one texture.
 Result<int> level_count(const Engine& engine, const BakeOptions& o, int size, Layout layout, bool chain) {
+    const Lobe lobe = o.lobe.value_or(Lobe::ggx);
     const std::size_t listed = std::max(o.roughness.size(), o.exponents.size());
     const char* list = o.exponents.empty() ? "roughness" : "exponents";
     if (listed && o.levels && std::size_t(*o.levels) != listed)
         return field_error("levels", fmt::format("{} levels, but `{}` names {}", *o.levels, list, listed));
     const int most = layout == Layout::latlong && chain ? most_texture_levels(size) : most_levels(size);
-    const int levels = listed ? int(listed) : o.levels ? *o.levels : std::min(most, default_levels(engine, size));
+    const int levels = listed ? int(listed) : o.levels ? *o.levels : std::min(most, default_levels(engine, size, lobe));
     if (levels < 1 || levels > most_levels(size))
         return field_error(listed ? list : "levels", fmt::format("{} levels, but a map of size {} has from 1 to {}",
                                                                  levels, size, most_levels(size)));

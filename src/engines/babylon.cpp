@@ -24,6 +24,7 @@ Engine babylon_engine() {
     e.size = 256;
     e.smallest = 1;
     e.roughness = babylon_roughness;
+    e.level_text = "0.8 log2(N r^2), N the faces' size";
     e.mirror = CubeMirror::x;
     e.encoding = Encoding::rgbd;
     e.container = Container::env;

@@ -10,6 +10,7 @@ Engine bevy_engine() {
     e.name = "bevy";
     e.loads = "Bevy: KTX2 cubes, RGB9E5 with zstd (EnvironmentMapLight)";
     e.roughness = linear_roughness;
+    e.level_text = "M r";
     e.mirror = CubeMirror::z;
     e.encoding = Encoding::rgb9e5;
     e.zstd = true;

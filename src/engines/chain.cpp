@@ -28,7 +28,7 @@ LevelPlan phong_level(Lobe lobe, int size, double exponent) {
 }
 
 std::vector<LevelPlan> default_chain(const Engine& engine, Lobe lobe) {
-    const int count = default_levels(engine, engine.size);
+    const int count = default_levels(engine, engine.size, lobe);
     const auto exponents = default_phong_exponents(count);
     std::vector<LevelPlan> levels;
     for (int l = 0; l < count; ++l)

@@ -75,9 +75,23 @@ double level_of_roughness(const Engine& engine, double roughness, int levels, in
     return above;
 }
 
-int default_levels(const Engine& engine, int size) {
+const Engine* engine_with_curve(std::span<const double> roughness, int size) {
+    const auto gives = [&](const Engine& engine) {
+        if (engine.environment_only || !engine.roughness) return false;
+        for (int l = 0; l < int(roughness.size()); ++l)
+            if (std::abs(engine.roughness(l, int(roughness.size()), size) - roughness[std::size_t(l)]) > 1e-6)
+                return false;
+        return true;
+    };
+    for (const Engine& engine : engines())
+        if (gives(engine)) return &engine;
+    return nullptr;
+}
+
+int default_levels(const Engine& engine, int size, Lobe lobe) {
+    const int smallest = is_phong(lobe) && engine.smallest_phong ? engine.smallest_phong : engine.smallest;
     int levels = 1;
-    while ((size >> levels) >= std::max(1, engine.smallest)) ++levels;
+    while ((size >> levels) >= std::max(1, smallest)) ++levels;
     return levels;
 }
 

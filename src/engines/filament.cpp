@@ -15,6 +15,7 @@ Engine filament_engine() {
     e.size = 256;
     e.smallest = 16;
     e.roughness = quadratic_roughness;
+    e.level_text = "M r (2 - r)";
     e.encoding = Encoding::r11g11b10f;
     e.container = Container::ktx1;
     e.specular_file = "{stem}_ibl";

@@ -12,6 +12,7 @@ Engine gltf_engine() {
     e.size = 256;
     e.smallest = 16;
     e.roughness = linear_roughness;
+    e.level_text = "M r";
     e.encoding = Encoding::rgbd;
     e.container = Container::gltf;
     e.specular_file = "{stem}";

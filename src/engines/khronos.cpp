@@ -13,6 +13,7 @@ Engine khronos_engine() {
     e.size = 256;
     e.smallest = 16;
     e.roughness = linear_roughness;
+    e.level_text = "M r";
     e.specular_file = "ggx/specular";
     e.sheen_file = "charlie/sheen";
     e.irradiance_file = "lambertian/diffuse";

@@ -25,6 +25,7 @@ Engine materialx_engine() {
     e.size = 256;
     e.smallest = 8;
     e.roughness = materialx_roughness;
+    e.level_text = "M (r < 1/2 ? r : r^2 / 2 + 3/8)";
     e.layout = Layout::latlong;
     e.latlong = "materialx";
     e.container = Container::exr_mip;

@@ -23,6 +23,7 @@ Engine playcanvas_engine() {
     e.size = 256;
     e.smallest = 8;
     e.roughness = playcanvas_roughness;
+    e.level_text = "5 r";
     e.layout = Layout::latlong;
     e.latlong = "usd";
     e.encoding = Encoding::rgbp;

@@ -13,6 +13,7 @@ Engine three_engine() {
     e.loads = "three.js: prefiltered cube in UASTC HDR with zstd, .pmrem.ktx2 (KTX2Loader)";
     e.note = "set texture.isPMREMTexture = true; versions before r187 want the engine three-latlong";
     e.roughness = quadratic_roughness;
+    e.level_text = "M r (2 - r)";
     e.mirror = CubeMirror::x;
     e.encoding = Encoding::uastc_hdr;
     e.zstd = true;

@@ -26,6 +26,7 @@ Engine unity_engine() {
     e.size = 256;
     e.smallest = 4;  // 256^2 to 4^2: seven
     e.roughness = unity_roughness;
+    e.level_text = "M r (1.7 - 0.7 r)";
     e.mirror = CubeMirror::x;
     e.container = Container::dds;
     e.specular_file = "{stem}";

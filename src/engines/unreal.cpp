@@ -27,6 +27,7 @@ Engine unreal_engine() {
     e.size = 256;
     e.smallest = 1;
     e.roughness = unreal_roughness;
+    e.level_text = "M - 1 + 1.2 log2(r)";
     e.mirror = CubeMirror::swap_yz;
     e.container = Container::dds;
     e.specular_file = "{stem}";

@@ -335,8 +335,9 @@ def test_bake_writes_what_its_manifest_says(folder):
     assert source["sha256"] == hashlib.sha256((folder / "studio.hdr").read_bytes()).hexdigest()
     assert set(source["repaired"]) >= {"not_a_number", "infinite", "negative"}
     levels = manifest["specular"]["levels"]
-    assert [l["size"] for l in levels] == [32, 16, 8] and [l["roughness"] for l in levels] == [0, 0.5, 1] and [l["alpha"] for l in levels] == [0, 0.25, 1]
+    assert [l["size"] for l in levels] == [32, 16, 8] and [l["roughness"] for l in levels] == [0, 0.6, 1] and [l["alpha"] for l in levels] == [0, 0.36, 1]
     assert all("clipped_energy" in l for l in levels)
+    assert manifest["specular"]["level_for_roughness"].startswith("r < 0.6^(M - 1)")
     assert manifest["specular"]["lobe"] == "ggx" and manifest["specular"]["encoding"] == "rgba16f"
     assert manifest["specular"]["quantity"] == "radiance" and manifest["irradiance"]["quantity"] == "irradiance"
     assert manifest["options"]["size"] == 32 and "version" in manifest

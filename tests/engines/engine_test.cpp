@@ -34,12 +34,13 @@ std::vector<int> sizes(const EnginePlan& plan) {
 }  // namespace
 
 TEST_CASE(
-    "engine: generic is a cube of 512^2 down to 8^2 with roughness level / (levels - 1), half floats, irradiance E") {
+    "engine: generic is a cube of 512^2 down to 16^2 with roughness 0.6^(last - level), half floats, irradiance E") {
     const EnginePlan plan = plan_of("generic");
-    CHECK(sizes(plan) == std::vector{512, 256, 128, 64, 32, 16, 8});
-    for (int l = 0; l < 7; ++l) {
-        CHECK(plan.specular[l].roughness == doctest::Approx(l / 6.0));
-        CHECK(plan.specular[l].alpha == doctest::Approx(l * l / 36.0));
+    CHECK(sizes(plan) == std::vector{512, 256, 128, 64, 32, 16});
+    const double roughness[] = {0, 0.1296, 0.216, 0.36, 0.6, 1};
+    for (int l = 0; l < 6; ++l) {
+        CHECK(plan.specular[l].roughness == doctest::Approx(roughness[l]));
+        CHECK(plan.specular[l].alpha == doctest::Approx(roughness[l] * roughness[l]));
         CHECK(plan.specular[l].spec.mirror == (l == 0));
     }
     CHECK(plan.encoding == Encoding::rgba16f);
@@ -196,17 +197,17 @@ TEST_CASE("plan: options override the engine, level by level") {
     options = {};
     options.layout = Layout::latlong;
     CHECK(sizes(plan_of("generic", options)).front() == 1024);  // as fine as a cube of 512^2
-    CHECK(sizes(plan_of("generic", options)).size() == 8);      // to 8 rows
+    CHECK(sizes(plan_of("generic", options)).size() == 7);      // to 16 rows
 
-    // One texture holds 200 x 100, 100 x 50, 50 x 25, but then 25 x 12: an engine that takes a file for each level may
-    // go on.
-    options.size = 100;
-    CHECK(sizes(plan_of("generic", options)) == std::vector{100, 50, 25});
+    // One texture holds 132 x 66 and 66 x 33, but then 33 x 16: an engine that takes a file for each level may go on.
+    options.size = 66;
+    CHECK(sizes(plan_of("generic", options)) == std::vector{66, 33});
     options.format = Container::exr;
-    CHECK(sizes(plan_of("generic", options)) == std::vector{100, 50, 25, 12});
+    CHECK(sizes(plan_of("generic", options)) == std::vector{66, 33, 16});
 
     options = {};
     options.lobe = Lobe::phong_brdf;
+    CHECK(sizes(plan_of("generic", options)) == std::vector{512, 256, 128, 64, 32, 16, 8});  // exponents inf to 2
     options.exponents = {std::numeric_limits<double>::infinity(), 64, 0};
     const EnginePlan phong = plan_of("generic", options);
     CHECK(phong.specular[0].spec.mirror);

@@ -9,8 +9,8 @@
 #include "shaders/shader_test.h"
 #include "test.h"
 
-#include <nlohmann/json.hpp>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #define uniform static
 namespace shading_language::generic_glsl {
@@ -46,10 +46,10 @@ struct Shader {
                  const std::vector<Vec3f>& sh, const Mat3& environment, float last_level);
 };
 
-#define DOMELIGHT_FUNCTIONS(space)                                                                                    \
-    sl::space::domelight_shade, sl::space::domelight_shade_multiple_scattering, sl::space::domelight_diffuse,         \
-        sl::space::domelight_diffuse_sh, sl::space::domelight_diffuse_weight_energy,                                  \
-        sl::space::domelight_diffuse_weight_fresnel, sl::space::domelight_multiple_scattering,                        \
+#define DOMELIGHT_FUNCTIONS(space)                                                                            \
+    sl::space::domelight_shade, sl::space::domelight_shade_multiple_scattering, sl::space::domelight_diffuse, \
+        sl::space::domelight_diffuse_sh, sl::space::domelight_diffuse_weight_energy,                          \
+        sl::space::domelight_diffuse_weight_fresnel, sl::space::domelight_multiple_scattering,                \
         sl::space::domelight_f0_of_reflectance
 
 void bind_glsl(const sl::Cube& specular, const sl::Cube& irradiance, const sl::Plane& brdf,
@@ -81,10 +81,12 @@ const Shader k_shaders[] = {{"GLSL", DOMELIGHT_FUNCTIONS(generic_glsl), bind_gls
                             {"WGSL", DOMELIGHT_FUNCTIONS(generic_wgsl), bind_wgsl}};
 
 /// Lets a shader read the maps of a bake.
-void bind_maps(const Shader& shader, const LightMaps& maps, const std::vector<Vec3f>& sh, const Mat3& environment = {}) {
-    const float last_level = 6;
-    const sl::Cube specular{[&maps, last_level](const sl::vec3& d, float level) {
-        return to_shader4(maps.specular(from_shader(d), level / last_level));
+void bind_maps(const Shader& shader, const LightMaps& maps, const std::vector<Vec3f>& sh,
+               const Mat3& environment = {}) {
+    const int last_level = 5;
+    const sl::Cube specular{[&maps](const sl::vec3& d, float level) {
+        const double roughness = engines().front().roughness(level, last_level + 1, 512);
+        return to_shader4(maps.specular(from_shader(d), float(roughness)));
     }};
     const sl::Cube irradiance{[&maps](const sl::vec3& d, float) {
         return to_shader4(maps.irradiance_over_pi(from_shader(d)) * float(k_pi));
@@ -134,21 +136,20 @@ TEST_CASE("shaders: in GLSL, HLSL and WGSL the surface is split-sum's, also wher
         for (const Mat3& environment : {Mat3{}, turn * rotation_y(0.4)}) {
             bind_maps(shader, *bake.maps, bake.sh, environment);
             const auto turned = [&](const Vec3f& d) { return Vec3f(environment * Vec3d(d)); };
-            for (const Paint& m : {Paint{{0.9f, 0.5f, 0.2f}, 0, 0.3f}, {{0.9f, 0.5f, 0.2f}, 1, 0.6f},
-                                      {{0.1f, 1, 0.7f}, 0.4f, 0.9f}})
+            for (const Paint& m :
+                 {Paint{{0.9f, 0.5f, 0.2f}, 0, 0.3f}, {{0.9f, 0.5f, 0.2f}, 1, 0.6f}, {{0.1f, 1, 0.7f}, 0.4f, 0.9f}})
                 for (const float slant : {0.f, 0.8f, 1.45f}) {
                     const Vec3f n = normalize(Vec3f{0.3f, 0.8f, -0.5f}), side = normalize(cross(n, Vec3f{0, 0, 1})),
                                 v = n * std::cos(slant) + side * std::sin(slant);
                     INFO(shader.language << ", metallic " << m.metallic << ", slant " << slant);
-                    CHECK(near(from_shader(shader.shade(to_shader(n), to_shader(v), to_shader(m.base_color),
-                                                        m.metallic, m.roughness)),
+                    CHECK(near(from_shader(shader.shade(to_shader(n), to_shader(v), to_shader(m.base_color), m.metallic,
+                                                        m.roughness)),
                                shade_split_sum(m, turned(n), turned(v), *bake.maps, {}), k_rounding));
-                    CHECK(near(from_shader(shader.shade_multiple_scattering(to_shader(n), to_shader(v),
-                                                                            to_shader(m.base_color), m.metallic,
-                                                                            m.roughness)),
+                    CHECK(near(from_shader(shader.shade_multiple_scattering(
+                                   to_shader(n), to_shader(v), to_shader(m.base_color), m.metallic, m.roughness)),
                                shade_split_sum(m, turned(n), turned(v), *bake.maps, multiple), k_rounding));
-                    CHECK(near(from_shader(shader.diffuse(to_shader(n))),
-                               bake.maps->irradiance_over_pi(turned(n)), k_rounding));
+                    CHECK(near(from_shader(shader.diffuse(to_shader(n))), bake.maps->irradiance_over_pi(turned(n)),
+                               k_rounding));
                     // The coefficients of sh.json are written with nine digits, those in the shader with six.
                     CHECK(near(from_shader(shader.diffuse_sh(to_shader(n))),
                                bake.maps->irradiance_over_pi_sh(turned(n)), k_rounding));
@@ -173,7 +174,8 @@ TEST_CASE("shaders: the diffuse weights and F0 are those of the C++ functions of
     }
 }
 
-TEST_CASE("shaders: a white surface in an even light shows the light, and with the courses' weight at worst 0.28 of it") {
+TEST_CASE(
+    "shaders: a white surface in an even light shows the light, and with the courses' weight at worst 0.28 of it") {
     auto maps = LightMaps::bake(ImageF(64, 32, 3, 1.f), {});
     REQUIRE(maps);
     const sl::vec3 n(0, 0, 1), white(1.f);

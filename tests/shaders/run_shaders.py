@@ -15,9 +15,9 @@ MAIN = {
     "glsl": [
         (["generic.glsl"], VARYING + "void main() { colour = vec4(domelight_shade(normalize(n), normalize(v), vec3(0.5), 0.2, 0.3) "
                            "+ domelight_shade_multiple_scattering(normalize(n), normalize(v), vec3(0.5), 0.2, 0.3) + domelight_diffuse_sh(normalize(n)), 1.0); }\n",
-         ("roughness *", "rough *")),
+         ("roughness /", "rough /")),
         (["spherical_envmap.glsl", "latlong_split_sum.glsl"],
-         VARYING + "void main() { colour = vec4(domelight_shade_latlong(normalize(n), normalize(v), vec3(0.5), 0.2, 0.3, 0.5), 1.0); }\n", ("roughness *", "rough *")),
+         VARYING + "void main() { colour = vec4(domelight_shade_latlong(normalize(n), normalize(v), vec3(0.5), 0.2, 0.3, 0.5), 1.0); }\n", ("roughness /", "rough /")),
         (["spherical_envmap.glsl", "latlong_phong.glsl"],
          VARYING + "void main() { colour = vec4(domelight_shade_phong(normalize(n), normalize(v), vec3(0.5), vec3(0.2), domelight_phong_exponent(2.5)), 1.0); }\n",
          ("rho_s *", "rho_t *")),
@@ -27,13 +27,13 @@ MAIN = {
     "hlsl": [
         (["generic.hlsl"], "float4 main(float3 n : NORMAL, float3 v : VIEW) : SV_Target { return float4(domelight_shade(normalize(n), normalize(v), 0.5, 0.2, 0.3) "
                            "+ domelight_shade_multiple_scattering(normalize(n), normalize(v), 0.5, 0.2, 0.3) + domelight_diffuse_sh(normalize(n)), 1.0); }\n",
-         ("roughness *", "rough *")),
+         ("roughness /", "rough /")),
     ],
     "wgsl": [
         (["generic.wgsl"], "@fragment fn main(@location(0) n: vec3f, @location(1) v: vec3f) -> @location(0) vec4f { return "
                            "vec4f(domelight_shade(normalize(n), normalize(v), vec3f(0.5), 0.2, 0.3) "
                            "+ domelight_shade_multiple_scattering(normalize(n), normalize(v), vec3f(0.5), 0.2, 0.3) + domelight_diffuse_sh(normalize(n)), 1.0); }\n",
-         ("roughness *", "rough *")),
+         ("roughness /", "rough /")),
     ],
 }
 

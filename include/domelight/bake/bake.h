@@ -1,9 +1,9 @@
 #pragma once
 
 #include "domelight/base/names.h"
-#include "domelight/compare/read_error.h"
 #include "domelight/base/progress.h"
 #include "domelight/base/result.h"
+#include "domelight/compare/read_error.h"
 #include "domelight/engines/engine.h"
 #include "domelight/environment/environment.h"
 #include "domelight/filtering/brdf/brdf_table.h"
@@ -137,6 +137,7 @@ struct BakedMap {
     /// Phong by the exact method: one for each pair of neighbouring levels, without the level that is the environment
     /// itself.
     std::vector<PhongGap> gaps;
+    std::string level_text;  ///< the level that a shader reads for a roughness (Engine::level_text), or empty
     std::optional<ReadErrors> as_read;  ///< where BakeOptions::as_read asks for it
 };
 

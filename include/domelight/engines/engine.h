@@ -80,7 +80,9 @@ struct Engine {
 
     int size = 512;    ///< face size of level 0; 0 (only with `environment_only`): the image is as fine as the source
     int smallest = 8;  ///< by default levels go down to this face size
+    int smallest_phong = 0;  ///< the same for Phong lobes, whose exponents are fixed for each level; 0: `smallest`
     RoughnessCurve roughness = nullptr;
+    std::string level_text;  ///< for manifests: the level that a shader reads for a roughness r; M is the last level
     Layout layout = Layout::cube;  ///< the default layout of the maps
     CubeMirror mirror = CubeMirror::none;
     /// Convention of lat-long maps, by its name (docs/conventions.md). One that differs from the default by quarter
@@ -126,8 +128,12 @@ double linear_roughness(double level, int levels, int size);
 /// Engine::roughness, which must not be null. The least level where several have the roughness.
 double level_of_roughness(const Engine& engine, double roughness, int levels, int size);
 
+/// The first engine whose curve gives these roughnesses, one a level, in a chain whose level 0 has `size`^2 texels a
+/// face; null where there is none.
+const Engine* engine_with_curve(std::span<const double> roughness, int size);
+
 /// The number of levels of an engine's cube chain from `size`^2 texels a face down to its smallest.
-int default_levels(const Engine& engine, int size);
+int default_levels(const Engine& engine, int size, Lobe lobe = Lobe::ggx);
 
 /// The default Phong exponent n_s of a level >= 0, a continuous function of `level`:
 ///

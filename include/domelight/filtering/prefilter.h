@@ -110,7 +110,7 @@ struct FilterResult {
 };
 
 /// The exact prefilter: every level is the environment convolved with its kernel. The relative RMS error is at most
-/// 5e-4 for the chains that README.md lists under "How exact". The source is the bilinear reconstruction of the texels
+/// 7e-4 for the chains that README.md lists under "How exact". The source is the bilinear reconstruction of the texels
 /// (u wraps, v clamps in the half rows at the poles). docs/math/prefilter.md. Errors: those of reading the source;
 /// "cancelled".
 Result<FilterResult> prefilter(const Environment& environment, const FilterOptions& options);

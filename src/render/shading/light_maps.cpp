@@ -21,6 +21,8 @@ struct LightMaps::Impl {
     std::vector<BorderedCube> specular;
     std::vector<float> roughness;  ///< of each level, rising; for a Phong chain the roughness that corresponds to the
                                    ///< exponent
+    bool geometric = false;        ///< between levels with roughness above 0: linear in its logarithm, as generic's
+                                   ///< shader reads; otherwise linear in the roughness
     std::vector<BorderedCube> irradiance_over_pi;
     std::vector<Vec3d> sh_irradiance;
     ImageF brdf;
@@ -98,6 +100,9 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
                                  impl.lobe == Lobe::ggx ? "rise" : "fall"),
                      name, ""};
     for (const Cubemap& c : *specular) impl.specular.emplace_back(c);
+    const std::vector<double> roughness(impl.roughness.begin(), impl.roughness.end());
+    impl.geometric =
+        impl.lobe == Lobe::ggx && engine_with_curve(roughness, specular->front().size()) == &engines().front();
 
     // The generic engine stores irradiance E, others E / pi.
     const bool over_pi =
@@ -126,6 +131,7 @@ Result<LightMaps> LightMaps::bake(ImageView<const float> latlong, const Mat3& wo
     const Engine& engine = engines().front();  // generic
     LightMaps maps;
     maps.impl_->lobe = lobe;
+    maps.impl_->geometric = !is_phong(lobe);
     FilterOptions options;
     for (const LevelPlan& level : default_chain(engine, lobe)) {
         options.specular.push_back(level.spec);
@@ -156,7 +162,8 @@ Vec3f LightMaps::specular(const Vec3f& direction, float roughness) const {
     if (above == r.begin()) return look_up(impl_->specular.front(), direction);
     if (above == r.end()) return look_up(impl_->specular.back(), direction);
     const std::size_t i = std::size_t(above - r.begin());
-    const float t = (roughness - r[i - 1]) / (r[i] - r[i - 1]);
+    const float t = impl_->geometric && r[i - 1] > 0 ? std::log(roughness / r[i - 1]) / std::log(r[i] / r[i - 1])
+                                                     : (roughness - r[i - 1]) / (r[i] - r[i - 1]);
     const Vec3f low = look_up(impl_->specular[i - 1], direction);
     return t > 0 ? low + (look_up(impl_->specular[i], direction) - low) * t : low;
 }
