@@ -61,7 +61,7 @@ def compare(source, options, work):
     peer = cpu_seconds([*cmgen, "--format=ktx", f"--deploy={work / 'cmgen'}", source])
     if peer[0] < 5:
         peer = min(peer, best([*cmgen, "--format=ktx", f"--deploy={work / 'cmgen'}", source], options.runs - 1))
-    bake = [DOMELIGHT, "bake", source, "--size", str(options.size), "--levels", str(levels), "--quiet", "--force", "--threads", "1"]
+    bake = [DOMELIGHT, "bake", source, "--size", str(options.size), "--levels", str(levels), "--quiet", "--threads", "1"]
     ours = best([*bake, "--for", "filament", "-o", work / "ours"], options.runs)
     bare = best([*bake, "--for", "filament", "--no-preview", "--no-hashes", "-o", work / "bare"], options.runs)
 

@@ -18,7 +18,7 @@ inline int read_image(OpenReader open, const std::uint8_t* data, std::size_t siz
     auto image = open(FileBytes::from_memory({data, data + size}), {.max_bytes = 32 << 20, .threads = 1});
     if (!image) return 0;
     const auto report = std::make_shared<RepairReport>();
-    RadianceReader reader("fuzz", std::move(*image), 1, true, 1, report);
+    RadianceReader reader("fuzz", std::move(*image), RepairOptions{.threads = 1}, report);
     constexpr int rows_a_read = 16, most_rows = 256;  // enough to meet every kind of block
     ImageF rows(reader.width(), rows_a_read, 3);
     for (int y = 0; y < std::min(reader.height(), most_rows); y += rows_a_read) {

@@ -17,9 +17,9 @@ constexpr double k_least_share = 1e-4;
 /// cancel. (In small images every texel has a considerable share of the power.)
 constexpr double k_least_contrast = 10;
 
-/// The largest number of lights for all suns together. A sun consists of a few texels, each of 1 to 1024 lights. If more
-/// texels are so bright they form a glow: the strongest are taken, and the truncation errors of the others cancel.
-constexpr int k_most_points = 4096;
+/// The largest number of patches between texels that may hold lights. A sun consists of a few texels. If more texels are
+/// so bright they form a glow: the strongest are taken, and the truncation errors of the others cancel.
+constexpr int k_most_patches = 1024;
 
 /// Finds the texels with the most power (radiance times solid angle) while the rows of a lat-long image are read.
 ///

@@ -106,7 +106,7 @@ PointLights bright_points(const BorderedCube& cube, const Vec3d& mean, int band_
     PointLights points;
     std::unordered_map<std::int64_t, int> places;  // of the nodes of a face: neighbouring texels share them
     for (const Texel& t : texels) {
-        if (points.count() >= k_most_points) break;
+        if (points.count() >= k_most_patches * per_cell * per_cell) break;
         const float* value = cube.texel(t.face, t.x, t.y);
         // The tent spans the cells before and after the texel.
         for (int j = std::max(0, t.y * per_cell); j < std::min((t.y + 2) * per_cell, count); ++j)
