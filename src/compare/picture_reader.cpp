@@ -185,6 +185,7 @@ Result<Picture> read_picture(const std::filesystem::path& file, const PictureOpt
     reader.threads = options.threads;
     reader.decode = options.decode;
     reader.layer = options.layer;
+    reader.max_black = k_most_black_in_memory;
     auto picture = is_exr(**bytes) ? read_exr_picture(*bytes, options, reader) : read_plain(*bytes, reader);
     if (!picture) return picture.error().at(file.string());
     if (options.opacity && picture->format == "PNG")
@@ -284,6 +285,7 @@ Result<ImageF> read_number_image(const std::filesystem::path& file, const std::s
     if (!bytes) return bytes.error().at(file.string());
     ReaderOptions options;
     options.decode = Decode::linear;
+    options.max_black = k_most_black_in_memory;
     if (is_exr(**bytes)) {
         auto layers = open_exr_layers(*bytes, options);
         if (!layers) return layers.error().at(file.string());

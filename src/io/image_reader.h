@@ -41,7 +41,14 @@ struct ReaderOptions {
     std::string layer = {};  ///< OpenEXR: which layer, channel or part (exr_channels.h); empty: the picture itself
     /// Codes of a PNG or JPEG as they are stored, whatever the file says of its orientation: for textures.
     bool as_stored = false;
+    /// OpenEXR: the most black texels that a display window may add to the data window, unless it adds no more than four
+    /// times what it shows of that. k_most_black_in_memory for those who hold the whole picture.
+    std::int64_t max_black = std::int64_t(1) << 25;
 };
+
+/// A small region of a picture of 4096 x 2048. A header of some hundred bytes may promise any size, and who compares or
+/// draws from a picture needs up to 150 bytes of memory for each of its texels.
+inline constexpr std::int64_t k_most_black_in_memory = std::int64_t(1) << 23;
 
 /// An image file that is decoded from the top row down. Pixels are RGB as stored (linear, but in the file's own
 /// primaries, and with its NaNs, infinities and negative values).

@@ -243,7 +243,9 @@ Environment with_facts(Environment environment, std::vector<std::filesystem::pat
 }
 
 ReaderOptions reader_options(const EnvironmentOptions& options) {
-    return {options.decode, options.max_bytes, options.threads, options.layer};
+    ReaderOptions reader{options.decode, options.max_bytes, options.threads, options.layer};
+    reader.max_black = k_most_black_in_memory;
+    return reader;
 }
 
 /// One of several files.

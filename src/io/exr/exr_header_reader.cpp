@@ -184,7 +184,7 @@ Result<void> check_part(const PartShape& shape, std::size_t file_size, std::int6
 
 }  // namespace
 
-Result<void> check_exr_black(const ExrWindow& display, const ExrWindow& data, std::int64_t max_bytes) {
+Result<void> check_exr_black(const ExrWindow& display, const ExrWindow& data, const ReaderOptions& options) {
     static constexpr std::int64_t k_none = 0;
     const auto texels = [](const ExrWindow& w) {
         return std::max(k_none, std::int64_t(w[2]) - w[0] + 1) * std::max(k_none, std::int64_t(w[3]) - w[1] + 1);
@@ -192,7 +192,7 @@ Result<void> check_exr_black(const ExrWindow& display, const ExrWindow& data, st
     const ExrWindow seen{std::max(display[0], data[0]), std::max(display[1], data[1]), std::min(display[2], data[2]),
                          std::min(display[3], data[3])};
     const std::int64_t black = texels(display) - texels(seen);
-    const std::int64_t most = std::min(k_most_exr_black, max_bytes / std::int64_t(3 * sizeof(float)));
+    const std::int64_t most = std::min(options.max_black, options.max_bytes / std::int64_t(3 * sizeof(float)));
     if (black <= 4 * texels(seen) || black <= most) return {};
     return Error{fmt::format("the display window has {} texels, but the data window only {} of them: more than the "
                              "limit of {} would be black",

@@ -10,6 +10,8 @@
 
 namespace domelight {
 
+struct ReaderOptions;
+
 /// Checks the headers of an OpenEXR file before the OpenEXR library reads them: the library allocates whatever size a
 /// header states, and here that size is first compared with the file.
 struct ExrPreflight {
@@ -27,13 +29,8 @@ Result<ExrPreflight> check_exr_headers(std::span<const std::uint8_t> file, std::
 /// A window of texels, with its last ones: x_min, y_min, x_max, y_max.
 using ExrWindow = std::array<std::int32_t, 4>;
 
-/// The most black texels round the data window that a display window may add without regard to the data: a small region
-/// of a picture of 8192 x 4096. A header of some hundred bytes may promise two gigapixels round one texel, and whoever reads
-/// the picture works on all of it.
-inline constexpr std::int64_t k_most_exr_black = std::int64_t(1) << 25;
-
 /// Errors: the display window adds more than four times the texels of the data window that it shows, and more than
-/// k_most_exr_black or than `max_bytes` hold as RGB floats.
-Result<void> check_exr_black(const ExrWindow& display, const ExrWindow& data, std::int64_t max_bytes);
+/// `options` allow: max_black, or what max_bytes hold as RGB floats.
+Result<void> check_exr_black(const ExrWindow& display, const ExrWindow& data, const ReaderOptions& options);
 
 }  // namespace domelight

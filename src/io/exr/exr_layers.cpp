@@ -101,7 +101,7 @@ Result<void> Layers::read_from(int part, const std::vector<std::pair<std::string
     if (header.displayWindow() != window_) return Error{"parts of different sizes", "", ""};
     if (!file_->partComplete(part)) return Error{"file is incomplete: some of its texels were never written", "", ""};
     const Imath::Box2i data = header.dataWindow();
-    if (auto ok = check_exr_black(exr_window(window_), exr_window(data), options_.max_bytes); !ok) return ok;
+    if (auto ok = check_exr_black(exr_window(window_), exr_window(data), options_); !ok) return ok;
     const bool inside = data.min.x >= window_.min.x && data.max.x <= window_.max.x && data.min.y >= window_.min.y &&
                         data.max.y <= window_.max.y;
     const std::int64_t width = std::int64_t(data.max.x) - data.min.x + 1,

@@ -77,7 +77,7 @@ Result<void> ExrReader::open() {
     if (const auto sized = check_image_size(width, height); !sized) return sized.error();
     if (!window_.intersects(data_))
         return Error{"the data window lies outside the display window: no texel would be seen", "", ""};
-    if (const auto checked = check_exr_black(exr_window(window_), exr_window(data_), options_.max_bytes); !checked)
+    if (const auto checked = check_exr_black(exr_window(window_), exr_window(data_), options_); !checked)
         return checked.error();
     facts_.width = int(width);
     facts_.height = int(height);
