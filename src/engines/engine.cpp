@@ -91,7 +91,7 @@ const Engine* engine_with_curve(std::span<const double> roughness, int size) {
 int default_levels(const Engine& engine, int size, Lobe lobe) {
     const int smallest = is_phong(lobe) && engine.smallest_phong ? engine.smallest_phong : engine.smallest;
     int levels = 1;
-    while ((size >> levels) >= std::max(1, smallest)) ++levels;
+    while ((size >> levels) >= std::max(1, levels < engine.fewest_levels ? 1 : smallest)) ++levels;
     return levels;
 }
 

@@ -24,6 +24,7 @@ Engine generic_engine() {
     e.loads = "an engine of your own: KTX2 cubes, RGBA16F, roughness = 0.6^(last - level), irradiance E";
     e.smallest = 16;
     e.smallest_phong = 8;
+    e.fewest_levels = 3;
     e.roughness = geometric_roughness;
     e.level_text = "r < 0.6^(M - 1) ? r / 0.6^(M - 1) : M - log(r) / log(0.6)";
     return e;

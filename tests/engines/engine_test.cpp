@@ -199,6 +199,11 @@ TEST_CASE("plan: options override the engine, level by level") {
     CHECK(sizes(plan_of("generic", options)).front() == 1024);  // as fine as a cube of 512^2
     CHECK(sizes(plan_of("generic", options)).size() == 7);      // to 16 rows
 
+    options = {};
+    options.size = 16;
+    CHECK(sizes(plan_of("generic", options)) == std::vector{16, 8, 4});  // a small map is not a mirror alone
+    options.layout = Layout::latlong;
+
     // One texture holds 132 x 66 and 66 x 33, but then 33 x 16: an engine that takes a file for each level may go on.
     options.size = 66;
     CHECK(sizes(plan_of("generic", options)) == std::vector{66, 33});

@@ -81,6 +81,7 @@ struct Engine {
     int size = 512;    ///< face size of level 0; 0 (only with `environment_only`): the image is as fine as the source
     int smallest = 8;  ///< by default levels go down to this face size
     int smallest_phong = 0;  ///< the same for Phong lobes, whose exponents are fixed for each level; 0: `smallest`
+    int fewest_levels = 1;   ///< by default at least these, where the size allows, even if the last is then smaller
     RoughnessCurve roughness = nullptr;
     std::string level_text;  ///< for manifests: the level that a shader reads for a roughness r; M is the last level
     Layout layout = Layout::cube;  ///< the default layout of the maps
