@@ -1,7 +1,9 @@
 #include "texture/texel/rgba8_ranges.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace domelight {
@@ -14,8 +16,8 @@ struct Square {
         const float share = float(byte) / 255;
         return share * share;
     }
-    /// The byte whose value is `v`, not yet rounded. v from 0 to a little above 1.
-    static float byte(float v) { return 255 * std::sqrt(v); }
+    /// The byte whose value is `v`, rounded down; may be beyond 255. v from 0 to a little above 1.
+    static int byte(float v) { return int(255 * std::sqrt(v)); }
 };
 
 /// Babylon's toLinearSpace and toGammaSpace, with its power of 2.2.
@@ -28,7 +30,54 @@ struct Gamma {
         }();
         return k_table[std::size_t(byte)];
     }
-    static float byte(float v) { return 255 * std::pow(v, 1 / 2.2f); }
+    static int byte(float v) { return InverseGamma::made().byte(v); }
+
+  private:
+    /// Babylon's toGammaSpace rounded down to bytes, by a table: a power takes longer than all the rest of a texel.
+    class InverseGamma {
+      public:
+        static const InverseGamma& made() {
+            static const InverseGamma table;
+            return table;
+        }
+        int byte(float v) const {
+            if (v >= 1) return 255;
+            if (v < k_least) return 0;
+            int byte = first_[bucket(v)];
+            while (v >= begin_[std::size_t(byte) + 1]) ++byte;
+            return byte;
+        }
+
+      private:
+        static constexpr float k_least = 0x1p-18f;  // less than byte 1 begins with
+        static constexpr int k_bucket_bits = 17;    // 64 buckets between powers of two
+        static std::size_t bucket(float v) {
+            return (std::bit_cast<std::uint32_t>(v) - std::bit_cast<std::uint32_t>(k_least)) >> k_bucket_bits;
+        }
+        static bool reaches(float v, int byte) { return 255 * std::pow(v, 1 / 2.2f) >= float(byte); }
+
+        InverseGamma() {
+            begin_[256] = std::numeric_limits<float>::infinity();
+            for (int byte = 1; byte < 256; ++byte) {
+                std::uint32_t below = 0, at = std::bit_cast<std::uint32_t>(1.0f);
+                while (at - below > 1) {
+                    const std::uint32_t middle = (below + at) / 2;
+                    (reaches(std::bit_cast<float>(middle), byte) ? at : below) = middle;
+                }
+                begin_[std::size_t(byte)] = std::bit_cast<float>(at);
+            }
+            for (std::size_t i = 0; i < first_.size(); ++i) {
+                const float start =
+                    std::bit_cast<float>(std::bit_cast<std::uint32_t>(k_least) + (std::uint32_t(i) << k_bucket_bits));
+                int byte = 0;
+                while (start >= begin_[std::size_t(byte) + 1]) ++byte;
+                first_[i] = std::uint8_t(byte);
+            }
+        }
+
+        std::array<float, 257> begin_{};           ///< the least value of each byte
+        std::array<std::uint8_t, 18 * 64> first_;  ///< the byte of each bucket's least value
+    };
 };
 
 /// The factor on the colours for a scale byte, and the smallest scale whose factor reaches `largest`; larger scales lie
@@ -67,8 +116,7 @@ Rgba8 encode(const Vec3f& rgb) {
         float error = 0;
         for (std::size_t c = 0; c < 3; ++c) {
             // The nearest value belongs to one of the two neighbouring bytes, but not always to the nearer one.
-            const int below = std::clamp(int(Curve::byte(channel[c] / factor)), 0, 255),
-                      above = std::min(below + 1, 255);
+            const int below = std::clamp(Curve::byte(channel[c] / factor), 0, 255), above = std::min(below + 1, 255);
             const float d0 = Curve::linear(below) * factor - channel[c],
                         d1 = Curve::linear(above) * factor - channel[c];
             const bool up = std::abs(d1) < std::abs(d0);
