@@ -24,7 +24,7 @@ class AlignedArray {
         void* memory = large ? allocate_large(bytes) : std::aligned_alloc(64, bytes ? bytes : 64);
         if (!memory) throw std::bad_alloc();
         data_ = {static_cast<T*>(memory), Free{large ? bytes : 0}};
-        if (zeroed && !(large && k_large_is_zero)) std::memset(memory, 0, bytes);
+        if (zeroed) std::memset(memory, 0, bytes);
     }
     T* data() { return data_.get(); }
     const T* data() const { return data_.get(); }

@@ -24,8 +24,6 @@
 
 namespace domelight {
 
-const bool k_large_is_zero = false;  // arrays are reused: see LargeMemoryReuse
-
 #ifdef DOMELIGHT_PLAIN_MEMORY
 
 void* allocate_large(std::size_t bytes) {

@@ -8,12 +8,10 @@
 namespace domelight {
 
 /// Memory for large arrays, taken from the system directly, in large pages where the system has them. A 64 MB array in
-/// 4 KB pages costs 16384 page faults, which take longer than filling it. Free it with the same size. Throws
-/// std::bad_alloc.
+/// 4 KB pages costs 16384 page faults, which take longer than filling it. Free it with the same size. The contents
+/// are undefined. Throws std::bad_alloc.
 void* allocate_large(std::size_t bytes);
 void free_large(void* memory, std::size_t bytes) noexcept;
-/// Whether the memory that allocate_large returns is already zero.
-extern const bool k_large_is_zero;
 
 /// An allocator for pixels. Large arrays come from allocate_large. Elements without a given value stay uninitialised:
 /// their values are undefined.
