@@ -157,12 +157,11 @@ Result<WrittenPicture> write_projected(const ProjectedImage& image, const Conver
             if (auto ok = check_not_an_input(file_of(picture), output.inputs); !ok) return ok.error();
     FileGroup group;
     for (const Picture& picture : all) {
-        const std::string file = file_of(picture);
-        const auto temporary = group.stage(file);
-        if (!temporary) return temporary.error();
-        if (auto ok = write_picture(temporary->string(), picture.pixels, image, output); !ok)
-            return Error{ok.error().what, file, ok.error().hint};
-        written.files.push_back(file);
+        const auto write = [&](const std::filesystem::path& place) {
+            return write_picture(place.string(), picture.pixels, image, output);
+        };
+        if (auto ok = group.write(file_of(picture), write); !ok) return ok.error();
+        written.files.push_back(file_of(picture));
     }
     if (auto ok = group.commit(); !ok) return ok.error();
     return written;

@@ -86,10 +86,10 @@ Result<void> write_pictures(const std::vector<std::string>& files, const Finishe
                             const RenderWords& w) {
     FileGroup group;
     for (const std::string& file : files) {
-        const auto temporary = group.stage(file);
-        if (!temporary) return temporary.error();
-        if (auto ok = write_picture(temporary->string(), picture, scene, w); !ok)
-            return Error{ok.error().what, file, ok.error().hint};
+        const auto write = [&](const std::filesystem::path& place) {
+            return write_picture(place.string(), picture, scene, w);
+        };
+        if (auto ok = group.write(file, write); !ok) return ok;
     }
     return group.commit();
 }

@@ -18,10 +18,8 @@ namespace {
 
 Result<void> replace(const fs::path& file, const std::function<Result<void>(const fs::path&)>& write) {
     FileGroup group;
-    const auto temporary = group.stage(file);
-    if (!temporary) return temporary.error();
-    if (auto ok = write(*temporary); !ok) return ok;
-    return group.commit();
+    const Result<void> written = group.write(file, write);
+    return written ? group.commit() : written;
 }
 
 }  // namespace
@@ -47,6 +45,13 @@ Result<fs::path> FileGroup::stage(const fs::path& file) {
         return Error{temporary.error().what, file.string(), "does the folder exist, and may you write to it?"};
     files_.push_back({file, *std::move(target), *std::move(temporary)});
     return fs::path(files_.back().temporary.path);
+}
+
+Result<void> FileGroup::write(const fs::path& file, const std::function<Result<void>(const fs::path&)>& write) {
+    const auto temporary = stage(file);
+    if (!temporary) return temporary.error();
+    const Result<void> written = write(*temporary);
+    return written ? written : Error{written.error().what, file.string(), written.error().hint};
 }
 
 Result<void> FileGroup::commit() {

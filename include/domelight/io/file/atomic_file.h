@@ -31,15 +31,18 @@ class FileGroup {
     FileGroup(const FileGroup&) = delete;
     FileGroup& operator=(const FileGroup&) = delete;
 
-    /// The path at which to write what will be `file`; its ending is that of `file`. Links are followed, as
-    /// write_file_atomically() does. A device or a pipe is returned as it is: what is written there cannot be taken
-    /// back. Errors name `file`: no folder to create it in; links that lead in a circle.
-    Result<std::filesystem::path> stage(const std::filesystem::path& file);
-    /// Moves the files to their places, in the order of stage(). Errors, before anything is moved: a place is a folder.
+    /// Writes what will be `file`: `write` gets the path at which to write it, with the ending of `file`. Links are
+    /// followed, as write_file_atomically() does. A device or a pipe is written to at once: that cannot be taken back.
+    /// Errors name `file`: no folder to create it in; links that lead in a circle; what `write` returns.
+    Result<void> write(const std::filesystem::path& file,
+                       const std::function<Result<void>(const std::filesystem::path&)>& write);
+    /// Moves the files to their places, in the order of write(). Errors, before anything is moved: a place is a folder.
     Result<void> commit();
 
   private:
     struct File;
+    Result<std::filesystem::path> stage(const std::filesystem::path& file);
+
     std::vector<File> files_;
 };
 
