@@ -5,16 +5,6 @@
 
 namespace domelight::reproject_detail {
 
-namespace {
-
-/// `i` as a column of a source picture: wrapped around or clamped.
-int source_column(const Source& source, int i) {
-    const int w = source.width();
-    return source.wraps() ? (i % w + w) % w : std::clamp(i, 0, w - 1);
-}
-
-}  // namespace
-
 bool SideIntegrator::prepare(const Source& source, const Block& block) {
     box_ = source_box(block);
     if (box_.too_large()) return false;
@@ -78,7 +68,7 @@ void SideIntegrator::fill_row(const Source& source, int chart, int y, Range rang
         filled += std::size_t(run_length), run_length = 0;
     };
     for (int k = 0; k < count; ++k) {
-        const int column = source_column(source, box_.x0 + range.first + k);
+        const int column = source.column(box_.x0 + range.first + k);
         if (column != previous) {
             if (run_length == 0 || column != previous + 1) fill_run(), run_first = column;
             ++run_length;

@@ -103,8 +103,7 @@ Place Source::locate_near(const Vec3d& world, const Place& near) const {
 }
 
 Cell Source::cell(int chart, int x, int y) const {
-    if (wraps()) x = (x % width_ + width_) % width_;
-    x = std::clamp(x, 0, width_ - 1), y = std::clamp(y, 0, height_ - 1);
+    x = this->column(x), y = std::clamp(y, 0, height_ - 1);
     const float *row[5], *column[5];
     for (int k = 0; k < 5; ++k) row[k] = texel(chart, x + k - 2, y), column[k] = texel(chart, x, y + k - 2);
     double value[5][3];

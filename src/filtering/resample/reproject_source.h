@@ -2,6 +2,7 @@
 
 #include "domelight/filtering/resample/reproject.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -36,6 +37,9 @@ class Source {
     int charts() const { return projection_.charts(); }
     bool wraps() const { return projection_.shape().wraps(); }
     bool black_beyond() const { return black_beyond_; }
+
+    /// Any number as a column of the picture: wrapped around if the picture wraps, otherwise clamped.
+    int column(int x) const { return wraps() ? (x % width_ + width_) % width_ : std::clamp(x, 0, width_ - 1); }
 
     Place locate(const Vec3d& world) const;
     /// The same with the chart and region of `near` continued.

@@ -28,9 +28,7 @@ bool TileIntegrator::prepare(const Source& source, int chart, const SourceBox& b
             Column& c = columns_[std::size_t(y) * width_ + x];
             c.constant = constant, c.slope = slope, c.curve = curve;
             c.cell = source.cell(chart, x0 + x, y0 + y);
-            const int w = source.width(),
-                      column = source.wraps() ? ((x0 + x) % w + w) % w : std::clamp(x0 + x, 0, w - 1);
-            c.solid_angle = source.solid_angle(column, std::clamp(y0 + y, 0, source.height() - 1));
+            c.solid_angle = source.solid_angle(source.column(x0 + x), std::clamp(y0 + y, 0, source.height() - 1));
             constant.light += c.cell.mean * c.solid_angle;
             constant.solid_angle += c.solid_angle;
             slope += c.cell.down * c.solid_angle;

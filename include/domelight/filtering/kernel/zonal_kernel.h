@@ -51,6 +51,8 @@ struct ZonalKernel {
     /// The kernel's characteristic width as an angle in radians, at most pi. ggx: 2 alpha / sqrt(1 - alpha^2); charlie:
     /// 1 / (p + 1) with p = 1 / (2 alpha); phong: sqrt(8 / p) with p the power of the cosine.
     double angular_width() const;
+
+    friend bool operator==(const ZonalKernel&, const ZonalKernel&) = default;
 };
 
 }  // namespace domelight
