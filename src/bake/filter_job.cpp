@@ -16,8 +16,7 @@ namespace domelight {
 namespace {
 
 bool same_level(const LevelSpec& a, const LevelSpec& b) {
-    return a.size == b.size && a.mirror == b.mirror &&
-           (a.mirror || (a.kernel.lobe == b.kernel.lobe && a.kernel.width == b.kernel.width));
+    return a.size == b.size && a.mirror == b.mirror && (a.mirror || a.kernel == b.kernel);
 }
 
 /// Of two runs over one environment.

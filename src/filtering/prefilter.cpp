@@ -161,9 +161,7 @@ class Synthesis {
         std::vector<std::size_t> kernel_of;
         for (const int level : levels) {
             const ZonalKernel of_level = kernel(level);
-            const auto found = std::find_if(kernels.begin(), kernels.end(), [&](const ZonalKernel& k) {
-                return k.lobe == of_level.lobe && k.width == of_level.width;
-            });
+            const auto found = std::find(kernels.begin(), kernels.end(), of_level);
             kernel_of.push_back(std::size_t(found - kernels.begin()));
             if (found == kernels.end()) kernels.push_back(of_level);
         }
@@ -189,10 +187,11 @@ class Synthesis {
                 lookup.residual = &*residual;
             }
             BrightSplit::Lights lights;
-            const DirectKernelTable direct(kernels[i]);
+            std::optional<DirectKernelTable> direct;
             if (split) {
                 lights = source_.split->lights(kernels[i]);
-                lookup.lights = &lights, lookup.kernel = direct.view();
+                direct.emplace(kernels[i]);
+                lookup.lights = &lights, lookup.kernel = direct->view();
             }
             for (std::size_t l = 0; l < levels.size(); ++l)
                 if (kernel_of[l] == i) look_up(levels[l], kernels[i], grids[i], lookup);

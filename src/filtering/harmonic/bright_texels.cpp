@@ -63,7 +63,6 @@ PointLights BrightTexels::points(const Vec3d& mean, int band_limit) const {
     const int nodes = 1 + int(k_pi / height_ * band_limit);
     if (nodes > 16) return {};
     if (k_pi / height_ * band_limit < k_point_like) {
-        texels.resize(std::min(texels.size(), std::size_t(4 * k_most_patches)));
         PointLights points;
         for (const Texel& t : texels) {
             const double theta = k_pi * (t.y + 0.5) / height_, s = std::sin(theta),

@@ -97,10 +97,14 @@ std::vector<double> taper(int from, int band_limit, double beta) {
 
 }  // namespace
 
-ResidualKernel::ResidualKernel(const ZonalKernel& kernel, std::span<const double> factors)
-    : factors_(factors.begin(), factors.end()) {
-    const int band_limit = int(factors_.size()) - 1, from = taper_start(kernel, band_limit);
-    taper_ = taper(from, band_limit, window_beta(kernel));
+ResidualKernel::ResidualKernel(const ZonalKernel& kernel, std::span<const double> factors) : removed_(factors.size()) {
+    const int band_limit = int(factors.size()) - 1, from = taper_start(kernel, band_limit);
+    const std::vector<double> w = taper(from, band_limit, window_beta(kernel));
+    std::vector<double> tapered(factors.size());
+    for (int l = 0; l <= band_limit; ++l) {
+        tapered[l] = w[l] * factors[l];
+        removed_[l] = -(1 - w[l]) * factors[l];
+    }
     reach_ = std::min(k_reach * window_beta(kernel) / (band_limit + 1 - from), 1.0);
     const int steps = int(std::ceil(reach_ * (band_limit + 1) * k_per_wave / (2 * k_pi)));
 
@@ -109,8 +113,6 @@ ResidualKernel::ResidualKernel(const ZonalKernel& kernel, std::span<const double
     for (int i = -steps; i <= steps; ++i) cosines.push_back(reach_ * i / steps);
     const int of_axis = has_kink_at_axis(kernel) ? steps : 1;
     for (int i = 0; i <= of_axis; ++i) cosines.push_back(1 - 0.5 * std::pow(reach_ * i / of_axis, 2));
-    std::vector<double> tapered(factors_.size());
-    for (int l = 0; l <= band_limit; ++l) tapered[l] = taper_[l] * factors_[l];
     const std::vector<double> smooth = legendre_series(tapered, cosines);
 
     ring_.resize(2 * steps + 1);
@@ -134,18 +136,11 @@ ResidualKernel::ResidualKernel(const ZonalKernel& kernel, std::span<const double
     axis_rest_ = largest_from(std::move(axis_rest_));
 }
 
-std::vector<double> ResidualKernel::removed() const {
-    std::vector<double> r(factors_.size());
-    for (std::size_t l = 0; l < r.size(); ++l) r[l] = -(1 - taper_[l]) * factors_[l];
-    return r;
-}
-
 double ResidualKernel::ring_limit(double error) const {
     return reach_ * first_within(ring_rest_, error) / (int(ring_rest_.size()) - 1);
 }
 
 double ResidualKernel::axis_limit(double error) const {
-    if (axis_rest_.size() <= 2) return 0;
     return reach_ * first_within(axis_rest_, error) / (int(axis_rest_.size()) - 1);
 }
 

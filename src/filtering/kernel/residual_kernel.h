@@ -22,7 +22,7 @@ class ResidualKernel {
     ResidualKernel(const ZonalKernel& kernel, std::span<const double> factors);
 
     /// -(1 - w_l) k_l, l = 0..L: what is to be added to an expansion that is not tapered.
-    std::vector<double> removed() const;
+    const std::vector<double>& removed() const { return removed_; }
     simd::ResidualTable table() const {
         return {ring_.data(), int(ring_.size()) - 1, float(reach_), axis_.data(), int(axis_.size()) - 1, float(reach_)};
     }
@@ -34,7 +34,7 @@ class ResidualKernel {
     static constexpr double k_allowed = 1e-5;
 
   private:
-    std::vector<double> factors_, taper_;
+    std::vector<double> removed_;
     double reach_;  ///< half the width of the ring as a cosine, and the chord from the axis
     std::vector<float> ring_, axis_;
     std::vector<double> ring_rest_, axis_rest_;  ///< [i]: the largest |R| - k_allowed K from entry i outwards

@@ -7,26 +7,6 @@
 
 namespace domelight {
 
-void add_tent_nodes(PointLights& points, int width, int height, int x, int y, const float* rgb, int nodes) {
-    const double step_theta = k_pi / height, step_phi = 2 * k_pi / width;
-    const auto& rule = gauss_legendre(nodes);
-    for (int down = -1; down <= 1; down += 2)
-        for (int right = -1; right <= 1; right += 2) {
-            const bool cap = (down < 0 && y == 0) || (down > 0 && y == height - 1);
-            const double length = (cap ? 0.5 : 1.0) * step_theta;
-            for (int i = 0; i < nodes; ++i)
-                for (int j = 0; j < nodes; ++j) {
-                    const double a = 0.5 * (1 + rule.x[i]), b = 0.5 * (1 + rule.x[j]);
-                    const double theta = step_theta * (y + 0.5) + down * a * length,
-                                 phi = step_phi * (x + 0.5) - k_pi + right * b * step_phi;
-                    const double weight = (cap ? 1 : 1 - a) * (1 - b) * std::sin(theta) * 0.25 * rule.w[i] * rule.w[j] *
-                                          length * step_phi;
-                    points.add({std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)},
-                               weight, rgb);
-                }
-        }
-}
-
 TentPatches::TentPatches(int width, int height, int nodes) : width_(width), height_(height), nodes_(nodes) {}
 
 TentPatches::Patch& TentPatches::patch(int x, int y) {
@@ -76,6 +56,12 @@ void TentPatches::add(int x, int y, const float* rgb) {
                     lights_.brighten(patch.first + i * patch.nodes + j, weight, rgb);
                 }
         }
+}
+
+void add_tent_nodes(PointLights& points, int width, int height, int x, int y, const float* rgb, int nodes) {
+    TentPatches patches(width, height, nodes);
+    patches.add(x, y, rgb);
+    points.append(patches.lights(), 0, patches.lights().count());
 }
 
 }  // namespace domelight
