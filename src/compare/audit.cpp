@@ -43,7 +43,10 @@ struct Level {
 class Audit {
   public:
     Audit(std::span<const CubeLevel> levels, const Environment& source, const AuditOptions& options)
-        : given_(levels), options_(options), exact_(source, options.lobe, options.texels_hold, options.threads), source_(source) {}
+        : given_(levels),
+          options_(options),
+          exact_(source, options.lobe, options.texels_hold, options.threads),
+          source_(source) {}
 
     Result<BakeAudit> run() {
         if (given_.empty()) return Error{"no levels to audit", "", ""};
