@@ -16,16 +16,15 @@ import signal
 import struct
 import subprocess
 import sys
-import tempfile
 import threading
 import time
-import traceback
 import zlib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests/malformed"))
+sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests/malformed")]
 import hostile  # noqa: E402
+from folder_tests import run_folder_tests  # noqa: E402
 
 SANITIZED = bool(os.environ.get("DOMELIGHT_SANITIZED"))  # AddressSanitizer reserves terabytes of addresses
 PROGRAM = os.environ.get("DOMELIGHT_PROGRAM", str(ROOT / "build/dev/cli/domelight"))
@@ -448,30 +447,9 @@ def test_names_of_environments_stay_in_the_folder_for_results(folder):
         shutil.rmtree(folder / "out")
 
 
-def main():
-    chosen = sys.argv[1:]
-    tests = [(name, test) for name, test in globals().items() if name.startswith("test_") and (not chosen or any(c in name for c in chosen))]
-    passed = failed = 0
-    with tempfile.TemporaryDirectory(prefix="domelight-attacks-") as base:
-        seed = Path(base) / "studio.hdr"
-        run("sky", "-o", seed, "--height", "32", folder=base)
-        for name, test in tests:
-            folder = Path(base) / name
-            folder.mkdir()
-            shutil.copy(seed, folder)
-            start = time.monotonic()
-            try:
-                test(folder)
-                passed += 1
-                print(f"passed: {name} ({time.monotonic() - start:.1f} s)", flush=True)
-            except Exception:
-                failed += 1
-                print(f"FAILED: {name}", flush=True)
-                traceback.print_exc(file=sys.stdout)
-            shutil.rmtree(folder, ignore_errors=True)
-    print(f"attacks: {passed} passed, {failed} failed, 0 skipped")
-    return 1 if failed else 0
+def prepare(folder):
+    run("sky", "-o", "studio.hdr", "--height", "32", folder=folder)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run_folder_tests("attacks", dict(globals()), sys.argv[1:], prepare))

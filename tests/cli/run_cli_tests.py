@@ -16,19 +16,16 @@ import signal
 import struct
 import subprocess
 import sys
-import tempfile
 import time
-import traceback
 import zlib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests"))
+from folder_tests import Skipped, run_folder_tests  # noqa: E402
+
 PROGRAM = os.environ.get("DOMELIGHT_PROGRAM", str(ROOT / "build/dev/cli/domelight"))
 SMALL = ["--size", "16", "--irradiance-size", "4", "--brdf-size", "16", "--no-preview"]
-
-
-class Skipped(Exception):
-    pass
 
 
 def run(*words, folder, code=0, env=None, **options):
@@ -2024,34 +2021,10 @@ def make_exr(width, height, special):
     return header + table + rows
 
 
-def main():
-    chosen = sys.argv[1:]
-    tests = [(name, test) for name, test in globals().items() if name.startswith("test_") and (not chosen or any(c in name for c in chosen))]
-    passed = failed = skipped = 0
-    with tempfile.TemporaryDirectory(prefix="domelight-cli-") as base:
-        seeds = Path(base) / "seeds"
-        seeds.mkdir()
-        run("sky", "-o", "studio.hdr", "--height", "32", folder=seeds)
-        run("sky", "-o", "evening.hdr", "--height", "32", "--sun-elevation-deg", "5", folder=seeds)
-        for name, test in tests:
-            folder = Path(base) / name
-            shutil.copytree(seeds, folder)
-            start = time.monotonic()
-            try:
-                test(folder)
-                passed += 1
-                print(f"passed: {name} ({time.monotonic() - start:.1f} s)", flush=True)
-            except Skipped as why:
-                skipped += 1
-                print(f"skipped: {why}", flush=True)
-            except Exception:
-                failed += 1
-                print(f"FAILED: {name}", flush=True)
-                traceback.print_exc(file=sys.stdout)
-            shutil.rmtree(folder, ignore_errors=True)
-    print(f"cli-tests: {passed} passed, {failed} failed, {skipped} skipped")
-    sys.exit(1 if failed else 0)
+def prepare(folder):
+    run("sky", "-o", "studio.hdr", "--height", "32", folder=folder)
+    run("sky", "-o", "evening.hdr", "--height", "32", "--sun-elevation-deg", "5", folder=folder)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(run_folder_tests("cli-tests", dict(globals()), sys.argv[1:], prepare))

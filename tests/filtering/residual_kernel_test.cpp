@@ -35,6 +35,11 @@ double legendre_series(const std::vector<double>& k, double c) {
     return sum;
 }
 
+std::vector<double> added(std::vector<double> a, const std::vector<double>& b) {
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] += b[i];
+    return a;
+}
+
 /// The residual as the tables have it.
 double table_value(const simd::ResidualTable& table, double theta) {
     const auto at = [](const float* values, double where) {
@@ -62,8 +67,7 @@ TEST_CASE("residual kernel: with the tapered expansion it is the kernel, at ever
         CAPTURE(test.kernel.width);
         const std::vector<double> factors = test.kernel.coefficients(test.band_limit);
         const ResidualKernel residual(test.kernel, factors);
-        std::vector<double> tapered = residual.removed();
-        for (std::size_t l = 0; l < tapered.size(); ++l) tapered[l] += factors[l];
+        const std::vector<double> tapered = added(factors, residual.removed());
         double largest = 0, of_residual = 0;
         for (int i = 1; i < 4000; ++i) {
             const double theta = k_pi * i / 4000, density = test.kernel.density(theta);
@@ -82,8 +86,7 @@ TEST_CASE("residual kernel: beyond its limits it is as small as asked for") {
         CAPTURE(test.kernel.width);
         const std::vector<double> factors = test.kernel.coefficients(test.band_limit);
         const ResidualKernel residual(test.kernel, factors);
-        std::vector<double> tapered = residual.removed();
-        for (std::size_t l = 0; l < tapered.size(); ++l) tapered[l] += factors[l];
+        const std::vector<double> tapered = added(factors, residual.removed());
         for (const double error : {1e-4, 1e-5, 1e-6}) {
             const double ring = residual.ring_limit(error), axis = residual.axis_limit(error);
             for (int i = 1; i < 1000; ++i) {

@@ -1,13 +1,10 @@
 // Gain maps: photographs whose JPEG holds a picture for a screen and what makes HDR of it.
 #include "io/picture/gain_map.h"
 
+#include "io/jpeg_sample.h"
 #include "io/picture/exif.h"
 #include "io/reader_samples.h"
 #include "test.h"
-
-#include <cstdio>
-// jpeglib.h requires <cstdio> before it.
-#include <jpeglib.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -19,31 +16,12 @@ namespace {
 
 /// A JPEG of 32 x 16 texels: `left` in the left half and `right` in the other.
 Bytes make_jpeg(std::array<std::uint8_t, 3> left, std::array<std::uint8_t, 3> right) {
-    jpeg_compress_struct state;
-    jpeg_error_mgr errors;
-    state.err = jpeg_std_error(&errors);
-    jpeg_create_compress(&state);
-    unsigned char* buffer = nullptr;
-    unsigned long size = 0;
-    jpeg_mem_dest(&state, &buffer, &size);
-    state.image_width = 32, state.image_height = 16, state.input_components = 3;
-    state.in_color_space = JCS_RGB;
-    jpeg_set_defaults(&state);
-    jpeg_set_quality(&state, 100, TRUE);
-    state.comp_info[0].h_samp_factor = state.comp_info[0].v_samp_factor = 1;
-    jpeg_start_compress(&state, TRUE);
-    Bytes row;
-    for (int x = 0; x < 32; ++x)
-        row.insert(row.end(), x < 16 ? left.begin() : right.begin(), x < 16 ? left.end() : right.end());
-    for (int y = 0; y < 16; ++y) {
-        unsigned char* start = row.data();
-        jpeg_write_scanlines(&state, &start, 1);
+    Bytes rows;
+    for (int i = 0; i < 32 * 16; ++i) {
+        const auto& colour = i % 32 < 16 ? left : right;
+        rows.insert(rows.end(), colour.begin(), colour.end());
     }
-    jpeg_finish_compress(&state);
-    Bytes out(buffer, buffer + size);
-    jpeg_destroy_compress(&state);
-    std::free(buffer);
-    return out;
+    return encode_jpeg({.width = 32, .height = 16, .whole_chroma = true}, std::move(rows));
 }
 
 /// The JPEG with one more segment at its start.

@@ -1,8 +1,8 @@
+#include "io/jpeg_sample.h"
 #include "io/picture/screen_colour.h"
 #include "io/reader_samples.h"
 #include "test.h"
 
-#include <jpeglib.h>
 #include <png.h>
 
 #include <cmath>
@@ -65,33 +65,11 @@ Bytes make_png(const PngShape& shape) {
 }
 
 Bytes make_jpeg(int width, int height, int components, bool progressive) {
-    jpeg_compress_struct state;
-    jpeg_error_mgr errors;
-    state.err = jpeg_std_error(&errors);
-    jpeg_create_compress(&state);
-    unsigned char* buffer = nullptr;
-    unsigned long size = 0;
-    jpeg_mem_dest(&state, &buffer, &size);
-    state.image_width = JDIMENSION(width), state.image_height = JDIMENSION(height);
-    state.input_components = components;
-    state.in_color_space = components == 1 ? JCS_GRAYSCALE : components == 4 ? JCS_CMYK : JCS_RGB;
-    jpeg_set_defaults(&state);
-    jpeg_set_quality(&state, 98, TRUE);
-    if (progressive) jpeg_simple_progression(&state);
-    jpeg_start_compress(&state, TRUE);
-    Bytes row(std::size_t(width * components));
-    for (int y = 0; y < height; ++y) {
+    Bytes rows;
+    for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
-            for (int c = 0; c < components; ++c)
-                row[std::size_t(x * components + c)] = std::uint8_t(40 + 2 * x + 3 * y + 20 * c);
-        unsigned char* start = row.data();
-        jpeg_write_scanlines(&state, &start, 1);
-    }
-    jpeg_finish_compress(&state);
-    Bytes out(buffer, buffer + size);
-    jpeg_destroy_compress(&state);
-    std::free(buffer);
-    return out;
+            for (int c = 0; c < components; ++c) rows.push_back(std::uint8_t(40 + 2 * x + 3 * y + 20 * c));
+    return encode_jpeg({width, height, components, 98, progressive}, std::move(rows));
 }
 
 }  // namespace

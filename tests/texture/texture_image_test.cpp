@@ -1,8 +1,8 @@
 #include "io/picture/texture_image.h"
 
+#include "io/jpeg_sample.h"
 #include "test.h"
 
-#include <jpeglib.h>
 #include <png.h>
 #include <webp/encode.h>
 
@@ -44,27 +44,9 @@ Bytes webp(const Bytes& rgba, int width, int height) {
 }
 
 Bytes jpeg(int width, int height, const std::uint8_t rgb[3]) {
-    jpeg_compress_struct state{};
-    jpeg_error_mgr errors;
-    state.err = jpeg_std_error(&errors);
-    jpeg_create_compress(&state);
-    unsigned char* memory = nullptr;
-    unsigned long size = 0;
-    jpeg_mem_dest(&state, &memory, &size);
-    state.image_width = JDIMENSION(width), state.image_height = JDIMENSION(height);
-    state.input_components = 3, state.in_color_space = JCS_RGB;
-    jpeg_set_defaults(&state);
-    jpeg_set_quality(&state, 100, TRUE);
-    jpeg_start_compress(&state, TRUE);
-    Bytes row;
-    for (int x = 0; x < width; ++x) row.insert(row.end(), rgb, rgb + 3);
-    unsigned char* at = row.data();
-    for (int y = 0; y < height; ++y) jpeg_write_scanlines(&state, &at, 1);
-    jpeg_finish_compress(&state);
-    Bytes out(memory, memory + size);
-    jpeg_destroy_compress(&state);
-    std::free(memory);
-    return out;
+    Bytes rows;
+    for (int i = 0; i < width * height; ++i) rows.insert(rows.end(), rgb, rgb + 3);
+    return test::encode_jpeg({width, height}, std::move(rows));
 }
 
 }  // namespace
