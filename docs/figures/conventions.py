@@ -195,8 +195,8 @@ def draw_levels():
     for k in range(9):
         sheet.text(494, 300 - 250 / 8 * k, str(k), 10, FAINT, "rm")
     alpha = r * r
-    first = 0.6**7
-    generic = np.where(r < first, r / first, 8 - np.log(np.maximum(r, first)) / np.log(0.6))
+    first = 0.08
+    generic = np.where(r < first, r / first, 8 - 7 * np.log(np.maximum(r, first)) / np.log(first))
     curves = [("generic", generic, (90, 90, 90)), ("linear", 8 * r, COLOURS["Y"]), ("three, filament", 8 * r * (2 - r), COLOURS["X"]),
               ("babylon", np.clip(0.8 * np.log2(np.maximum(256 * alpha, 1)), 0, 8), COLOURS["Z"]),
               ("materialx", 8 * np.where(alpha < 0.25, r, 0.5 * alpha + 0.375), (150, 90, 170))]

@@ -1,6 +1,6 @@
 // Reads what `domelight bake` writes for an engine of one's own (--for generic). HLSL, shader model 5 and later.
 //
-//   specular.ktx2      g_specular      cube; roughness = 0.6^(last level - level), level 0 is the environment itself
+//   specular.ktx2      g_specular      cube; each level filtered for the roughness that domelight_level() reads it for
 //   irradiance.ktx2    g_irradiance    cube of the irradiance E
 //   brdf.ktx2          g_brdf          u = NdotV, v = roughness with row 0 the smoothest; (scale, bias)
 //   sh.json            g_sh            its nine "irradiance" coefficients, where the cube is too much
@@ -28,8 +28,8 @@ float3 domelight_direction(float3 d) {
 
 /// The level to read for a roughness: a straight line up to the roughness of level 1, its logarithm from there on.
 float domelight_level(float roughness) {
-    float first = pow(0.6, g_last_level - 1.0);
-    return roughness < first ? roughness / first : g_last_level - log(roughness) / log(0.6);
+    float first = max(pow(0.6, g_last_level - 1.0), 0.08);
+    return roughness <= first ? roughness / first : g_last_level - (g_last_level - 1.0) * log(roughness) / log(first);
 }
 
 /// Radiance mirrored by a surface of that roughness, filtered over its lobe. `r`: reflect(-v, n).

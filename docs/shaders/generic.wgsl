@@ -1,6 +1,6 @@
 // Reads what `domelight bake` writes for an engine of one's own (--for generic). WGSL.
 //
-//   specular.ktx2      specular      cube; roughness = 0.6^(last level - level), level 0 is the environment itself
+//   specular.ktx2      specular      cube; each level filtered for the roughness that domelight_level() reads it for
 //   irradiance.ktx2    irradiance    cube of the irradiance E
 //   brdf.ktx2          brdf          u = NdotV, v = roughness with row 0 the smoothest; (scale, bias)
 //   sh.json            light.sh      its nine "irradiance" coefficients, where the cube is too much
@@ -24,11 +24,11 @@ const k_pi = 3.14159265358979;
 
 /// The level to read for a roughness: a straight line up to the roughness of level 1, its logarithm from there on.
 fn domelight_level(roughness: f32) -> f32 {
-    let first = pow(0.6, light.last_level - 1.0);
-    if (roughness < first) {
+    let first = max(pow(0.6, light.last_level - 1.0), 0.08);
+    if (roughness <= first) {
         return roughness / first;
     }
-    return light.last_level - log(roughness) / log(0.6);
+    return light.last_level - (light.last_level - 1.0) * log(roughness) / log(first);
 }
 
 /// Radiance mirrored by a surface of that roughness, filtered over its lobe. `r`: reflect(-v, n).

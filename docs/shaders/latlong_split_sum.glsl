@@ -1,7 +1,7 @@
 // Split-sum shading with lat-long maps. GLSL 3.30 and later, and ES 3.00; behind spherical_envmap.glsl.
 // Reads what `domelight bake studio.hdr -o out --layout latlong` writes:
 //
-//   specular.ktx2      u_specular      lat-long; roughness = 0.6^(last level - level), level 0 is the environment itself
+//   specular.ktx2      u_specular      lat-long; each level filtered for the roughness that domelight_level() reads it for
 //   irradiance.ktx2    u_irradiance    lat-long map of the irradiance E
 //   brdf.ktx2          u_brdf          u = NdotV, v = roughness with row 0 the smoothest; (scale, bias)
 //
@@ -15,8 +15,8 @@ uniform float u_last_level;  // levels - 1
 
 /// The level to read for a roughness: a straight line up to the roughness of level 1, its logarithm from there on.
 float domelight_level(float roughness) {
-    float first = pow(0.6, u_last_level - 1.0);
-    return roughness < first ? roughness / first : u_last_level - log(roughness) / log(0.6);
+    float first = max(pow(0.6, u_last_level - 1.0), 0.08);
+    return roughness <= first ? roughness / first : u_last_level - (u_last_level - 1.0) * log(roughness) / log(first);
 }
 
 /// What is left for the diffuse layer, so that a white surface in an even light reflects all of it.

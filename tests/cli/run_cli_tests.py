@@ -334,7 +334,7 @@ def test_bake_writes_what_its_manifest_says(folder):
     levels = manifest["specular"]["levels"]
     assert [l["size"] for l in levels] == [32, 16, 8] and [l["roughness"] for l in levels] == [0, 0.6, 1] and [l["alpha"] for l in levels] == [0, 0.36, 1]
     assert all("clipped_energy" in l for l in levels)
-    assert manifest["specular"]["level_for_roughness"].startswith("r < 0.6^(M - 1)")
+    assert manifest["specular"]["level_for_roughness"].startswith("r <= r1 ? r / r1")
     assert manifest["specular"]["lobe"] == "ggx" and manifest["specular"]["encoding"] == "rgba16f"
     assert manifest["specular"]["quantity"] == "radiance" and manifest["irradiance"]["quantity"] == "irradiance"
     assert manifest["options"]["size"] == 32 and "version" in manifest

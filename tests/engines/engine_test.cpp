@@ -34,7 +34,7 @@ std::vector<int> sizes(const EnginePlan& plan) {
 }  // namespace
 
 TEST_CASE(
-    "engine: generic is a cube of 512^2 down to 16^2 with roughness 0.6^(last - level), half floats, irradiance E") {
+    "engine: generic is a cube of 512^2 down to 16^2, each of 0.6 times the next one's roughness, half floats, irradiance E") {
     const EnginePlan plan = plan_of("generic");
     CHECK(sizes(plan) == std::vector{512, 256, 128, 64, 32, 16});
     const double roughness[] = {0, 0.1296, 0.216, 0.36, 0.6, 1};
@@ -47,6 +47,21 @@ TEST_CASE(
     CHECK(plan.container == Container::ktx2);
     CHECK(plan.engine->irradiance_quantity == Quantity::irradiance);
     CHECK(plan.engine->mirror == CubeMirror::none);
+}
+
+TEST_CASE("engine: a long chain of generic begins at roughness 0.08 and is geometric from there on") {
+    const Engine& generic = engines().front();
+    CHECK(generic.roughness(1, 2, 32) == 1);
+    CHECK(generic.roughness(1, 7, 1024) == doctest::Approx(0.08));
+    for (const int levels : {8, 11}) {
+        CHECK(generic.roughness(0, levels, 1024) == 0);
+        CHECK(generic.roughness(1, levels, 1024) == doctest::Approx(0.08));
+        CHECK(generic.roughness(levels - 1, levels, 1024) == 1);
+        const double ratio = generic.roughness(1, levels, 1024) / generic.roughness(2, levels, 1024);
+        for (int l = 2; l + 1 < levels; ++l)
+            CHECK(generic.roughness(l, levels, 1024) / generic.roughness(l + 1, levels, 1024) ==
+                  doctest::Approx(ratio));
+    }
 }
 
 TEST_CASE("engine: khronos is linear from 256^2 to 16^2 with Charlie beside GGX and E / pi") {
