@@ -71,10 +71,12 @@ find_package(embree 3.13 REQUIRED)
 domelight_component(render ROOMS render USES io LINKS fmt::fmt embree Threads::Threads)
 domelight_component(bake ROOMS bake compare USES io preview LINKS fmt::fmt)
 domelight_component(study ROOMS study USES render bake LINKS fmt::fmt)
+include(cmake/c_interface.cmake)
 if(domelight_unassigned)
   message(FATAL_ERROR "These files of src/ are in no component of cmake/components.cmake: ${domelight_unassigned}")
 endif()
 
+# The C++ components; the C interface is linked by itself.
 add_library(domelight INTERFACE)
 add_library(domelight::domelight ALIAS domelight)
 list(TRANSFORM domelight_components PREPEND domelight_ OUTPUT_VARIABLE domelight_component_targets)

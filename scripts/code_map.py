@@ -36,7 +36,9 @@ ROOMS = [
     ("compare", "differences of images, FLIP, audit of a bake"),
     ("bake", "plan, filter, write, manifest"),
     ("study", "the figures and tables that teach: estimates, explanations, surveys"),
+    ("c", "the C interface: domelight_c.h"),
 ]
+C_INTERFACE = "domelight/domelight_c.h"
 ORDER = {name: i for i, (name, _) in enumerate(ROOMS)}
 
 
@@ -51,6 +53,8 @@ def sources():
 
 def room_of(included):
     """The room that holds a file, by the longest name that fits; None for domelight.h, which stands above them all."""
+    if included == C_INTERFACE:
+        return "c"
     parts = included.removeprefix("domelight/").split("/")[:-1]
     while parts:
         name = "/".join(parts)

@@ -1,29 +1,21 @@
 #include "engines/chain.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace domelight {
 
 LevelPlan glossy_level(Lobe lobe, int size, double roughness) {
-    // Charlie has no mirror: its lobe lies along the horizon.
-    if (lobe == Lobe::charlie) roughness = std::max(roughness, k_charlie_least_roughness);
     LevelPlan level;
-    level.roughness = roughness;
-    level.alpha = roughness * roughness;
-    level.spec.size = size;
-    level.spec.mirror = roughness == 0;
-    level.spec.kernel = {lobe, level.alpha};
-    if (level.spec.mirror) level.spec.kernel.width = 1;  // not used; any valid kernel
+    level.spec = glossy_level_spec(lobe, size, roughness);
+    level.roughness = lobe == Lobe::charlie ? std::max(roughness, k_charlie_least_roughness) : roughness;
+    level.alpha = level.roughness * level.roughness;
     return level;
 }
 
 LevelPlan phong_level(Lobe lobe, int size, double exponent) {
     LevelPlan level;
+    level.spec = phong_level_spec(lobe, size, exponent);
     level.exponent = exponent;
-    level.spec.size = size;
-    level.spec.mirror = std::isinf(exponent);
-    level.spec.kernel = {lobe, level.spec.mirror ? 1.0 : exponent};
     return level;
 }
 

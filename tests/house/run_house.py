@@ -79,9 +79,9 @@ claim("commands print by way of cli/console, where texts from outside are escape
        for number, line in enumerate(file.read_text().splitlines(), 1) if raw.search(line)])
 
 every = (ROOT / "include/domelight/domelight.h").read_text()
-claim("domelight.h has every public header",
+claim("domelight.h has every public header of C++",
       [f"{name} is missing" for name in sorted(p.relative_to(ROOT / "include").as_posix() for p in (ROOT / "include").rglob("*.h"))
-       if name != "domelight/domelight.h" and f'#include "{name}"' not in every])
+       if name not in ("domelight/domelight.h", "domelight/domelight_c.h") and f'#include "{name}"' not in every])
 
 print(f"house: {passed} passed, {failed} failed, 0 skipped")
 sys.exit(1 if failed else 0)

@@ -4,6 +4,7 @@
 #include "domelight/base/result.h"
 #include "domelight/base/vec.h"
 #include "domelight/filtering/prefilter.h"
+#include "domelight/filtering/quantity.h"
 #include "domelight/texture/texture.h"
 
 #include <span>
@@ -11,18 +12,6 @@
 #include <vector>
 
 namespace domelight {
-
-/// What a map of light holds.
-enum class Quantity { radiance, irradiance, irradiance_over_pi };
-template <>
-struct EnumNames<Quantity> {
-    static constexpr const char* kind = "a quantity";
-    static constexpr NamedValue<Quantity> table[] = {
-        {Quantity::radiance, "radiance"},
-        {Quantity::irradiance, "irradiance"},
-        {Quantity::irradiance_over_pi, "irradiance_over_pi"},
-    };
-};
 
 /// The file a map is written to. exr and hdr hold one image a level; the others hold the whole chain. dds9 is DDS with
 /// the header from before DX10; exr_mip a tiled OpenEXR with its levels and the envmap attribute. The last three belong
@@ -117,10 +106,6 @@ struct Engine {
 std::span<const Engine> engines();
 /// The engine of that name. The error lists the names.
 Result<const Engine*> find_engine(const std::string& name);
-
-/// The least roughness of baked sheen; lower values are raised to it. Towards roughness 0 Charlie's lobe shrinks to the
-/// horizon and its integral to 0 (the Khronos viewer's own level for roughness 0 is black).
-inline constexpr double k_charlie_least_roughness = 0.1;
 
 /// roughness = level / (levels - 1); 0 for a single level.
 double linear_roughness(double level, int levels, int size);

@@ -44,6 +44,19 @@ struct LevelSpec {
     ZonalKernel kernel;
 };
 
+/// The least roughness of filtered sheen; lower values are raised to it. Towards roughness 0 Charlie's lobe shrinks to
+/// the horizon and its integral to 0 (the Khronos viewer's own level for roughness 0 is black).
+inline constexpr double k_charlie_least_roughness = 0.1;
+
+/// A level of GGX or Charlie with alpha = roughness². At roughness 0 it is the environment itself; Charlie's roughness
+/// is raised to k_charlie_least_roughness.
+LevelSpec glossy_level_spec(Lobe lobe, int size, double roughness);
+/// A level of a Phong lobe; the exponent infinity is the environment itself.
+LevelSpec phong_level_spec(Lobe lobe, int size, double exponent);
+/// The one or the other, of a value that comes from outside. `width`: the roughness of GGX and Charlie, or the exponent
+/// of the Phong lobes. Errors: `size` outside 1 to 16384, `roughness` outside 0 to 1, `exponent` below 0.
+Result<LevelSpec> level_spec(Lobe lobe, int size, double width);
+
 /// What to compute from an environment.
 struct FilterOptions {
     Layout layout = Layout::cube;
@@ -108,6 +121,14 @@ struct FilterResult {
     std::int64_t clamped = 0;
     int band_limit = 0;  ///< highest degree that was used
 };
+
+/// Checks options that come from outside. prefilter() itself expects valid ones.
+///
+/// Errors, each with the field in its `where`: a level's `size` outside 1 to 16384 (lat-long maps: height); `alpha` of
+/// GGX or Charlie outside (0, 1]; a Phong `exponent` that is negative or not finite; a direction that is zero or not
+/// finite, or directions together with a level that is the environment itself; `irradiance_size` outside 0 to 4096;
+/// `sh_bands` outside 0 to 64; `world_to_source` that is not orthogonal; `threads` outside 0 to 1024.
+Result<void> check_filter_options(const FilterOptions& options);
 
 /// The exact prefilter: every level is the environment convolved with its kernel. The relative RMS error is at most
 /// 7e-4 for the chains that README.md lists under "How exact". The source is the bilinear reconstruction of the texels

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,15 @@ struct EnvironmentOptions {
 /// unknown or broken format, wrong shape, over `max_bytes`.
 Result<Environment> open_environment(const std::vector<std::filesystem::path>& files,
                                      const EnvironmentOptions& options = {});
+
+/// Opens an environment from the bytes of one file in memory, of any kind that open_environment() reads. The bytes are
+/// copied.
+///
+/// bytes    the whole file
+/// name     what errors call it; Environment::file
+/// Errors: as above; `bytes` is empty; a glTF file whose pictures are in files of their own.
+Result<Environment> open_environment_bytes(std::span<const std::uint8_t> bytes, const std::string& name,
+                                           const EnvironmentOptions& options = {});
 
 /// The SHA-256 of the contents of an environment's files, one after the other, in 64 hexadecimal digits: of a lat-long
 /// image and of a pipe as they were read, of others by reading them once more. Empty where there are no files.
