@@ -23,5 +23,9 @@ test_packages=("${build_packages[@]}" doctest-dev libbenchmark-dev python3
 fuzz_packages=("${test_packages[@]}" clang-19 libclang-rt-19-dev)
 # tests/engines/browser: the browser that runs the engines, Node to drive it, and OpenEXR's own tools.
 engine_packages=(chromium nodejs npm openexr)
+# web/ and tests/web: what builds the browser app, and the browser that runs it.
+web_packages=(chromium nodejs npm)
+# The command that each of them brings, where its name differs.
+declare -A command_of=([nodejs]=node [openexr]=exrheader)
 # bench/peers.py: the program that is measured beside ours.
 peer_packages=(libfilament-tools)

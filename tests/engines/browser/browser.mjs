@@ -5,10 +5,10 @@ import http from 'node:http';
 import path from 'node:path';
 import {createRequire} from 'node:module';
 
-const types = {'.html': 'text/html', '.mjs': 'text/javascript', '.js': 'text/javascript', '.json': 'application/json', '.wasm': 'application/wasm'};
+const types = {'.html': 'text/html', '.css': 'text/css', '.mjs': 'text/javascript', '.js': 'text/javascript', '.json': 'application/json', '.wasm': 'application/wasm'};
 
-/// Serves folders: {'/prefix/': folder}. Resolves to {url, close()}.
-export function serve(folders) {
+/// Serves folders: {'/prefix/': folder}, with more headers if any. Resolves to {url, close()}.
+export function serve(folders, headers = {}) {
     const server = http.createServer((request, response) => {
         const name = decodeURIComponent(new URL(request.url, 'http://x').pathname);
         const prefix = Object.keys(folders).find(p => name.startsWith(p));
@@ -18,7 +18,7 @@ export function serve(folders) {
             response.writeHead(404).end();
             return;
         }
-        response.writeHead(200, {'Content-Type': types[path.extname(file)] ?? 'application/octet-stream', 'Cache-Control': 'no-store'});
+        response.writeHead(200, {'Content-Type': types[path.extname(file)] ?? 'application/octet-stream', 'Cache-Control': 'no-store', ...headers});
         fs.createReadStream(file).pipe(response);
     });
     return new Promise(resolve => server.listen(0, '127.0.0.1', () => resolve({
@@ -27,7 +27,7 @@ export function serve(folders) {
     })));
 }
 
-/// Chromium, headless, on the CPU alone.
+/// Chromium, headless, on the CPU alone. modules: the node_modules that playwright-core is in.
 export async function launch(modules, executablePath) {
     const {chromium} = createRequire(path.join(modules, 'x.js'))('playwright-core');
     return chromium.launch({

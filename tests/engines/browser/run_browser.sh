@@ -19,10 +19,9 @@ folder=$root/build/engines
 mkdir -p "$folder"
 
 # What the browser and Node lack, wherever Node was installed from.
-declare -A command_of=([chromium]=chromium [nodejs]=node [npm]=npm [openexr]=exrheader)
 wanted=()
 for package in "${engine_packages[@]}"; do
-    command -v "${command_of[$package]}" >/dev/null || wanted+=("$package")
+    command -v "${command_of[$package]:-$package}" >/dev/null || wanted+=("$package")
 done
 if [ ${#wanted[@]} -gt 0 ]; then
     say "installing the missing Debian packages: ${wanted[*]}"

@@ -1,0 +1,58 @@
+// Frames of the app beside those of `domelight render`: the same scene, camera and light.
+
+import fs from 'node:fs';
+import path from 'node:path';
+import {execFileSync} from 'node:child_process';
+import {readHdr} from '../engines/browser/files.mjs';
+
+const width = 320, height = 160, size = 256, frames = 32;
+const cases = [
+    {name: 'split-sum', hash: '#mode=split-sum', options: ['--shading', 'split-sum']},
+];
+
+/// The mean of a pane's frames so far: RGB floats, rows from the top.
+export async function readPane(page, frames, pane = 0) {
+    await page.waitForFunction(([n, p]) => domelight.stage.panes[p].count >= n, [frames, pane], {timeout: 120_000});
+    const base64 = await page.evaluate(p => domelight.readPane(p), pane);
+    const bytes = Buffer.from(base64, 'base64');
+    return new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
+}
+
+const encode = v => {
+    const c = Math.min(1, Math.max(0, v));
+    return c <= 0.0031308 ? 12.92 * c : 1.055 * c ** (1 / 2.4) - 0.055;
+};
+
+/// Root mean square of the difference in the values of a display, of 255.
+export function displayedError(a, b) {
+    let sum = 0;
+    for (let k = 0; k < a.length; ++k) sum += (encode(a[k]) - encode(b[k])) ** 2;
+    return 255 * Math.sqrt(sum / a.length);
+}
+
+/// Gives the app a file as if it had been dropped, and waits until it is lit.
+export async function openFile(page, url, name) {
+    await page.evaluate(async ([url, name]) => {
+        const bytes = await (await fetch(url)).arrayBuffer();
+        await domelight.openFiles([new File([bytes], name)]);
+    }, [url, name]);
+}
+
+export async function testFrames({program, work, open, claim, data}) {
+    const domelight = (...args) => execFileSync(program, args.map(String), {stdio: ['ignore', 'pipe', 'pipe']});
+    const environment = path.join(work, 'sky.hdr');
+    if (data) fs.copyFileSync(path.join(data, 'env_latlong/noon_grass_1k.hdr'), environment);
+    else domelight('sky', '-o', environment, '--quiet');
+    const maps = path.join(work, 'maps');
+    domelight('bake', environment, '-o', maps, '--size', size, '--quiet', '--no-preview');
+    for (const {name, hash, options} of cases) {
+        const file = path.join(work, `${name}.hdr`);
+        domelight('render', 'spheres', '--env', environment, '--maps', maps, '--width', width, '--height', height, '--spp', 64, '--quiet', '-o', file, ...options);
+        const page = await open(`${hash}&size=${size}&panel=false`, {viewport: {width, height}});
+        await openFile(page, '/work/sky.hdr', 'sky.hdr');
+        const error = displayedError(await readPane(page, frames), readHdr(file).rgb);
+        claim(`${name}: the app draws what the renderer draws, within 2/255`, error <= 2 ? [] : [`the RMS error is ${error.toFixed(2)}/255`], `${error.toFixed(2)}/255`);
+        claim(`${name}: the console is silent`, page.complaints);
+        await page.close();
+    }
+}

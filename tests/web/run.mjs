@@ -1,0 +1,64 @@
+// The browser app, as it is built, in headless Chromium. Called by run_web.sh.
+//
+//   node run.mjs PROGRAM CHROMIUM [NAME...]
+
+import fs from 'node:fs';
+import path from 'node:path';
+import {fileURLToPath} from 'node:url';
+import {launch, serve} from '../engines/browser/browser.mjs';
+import {testFrames} from './frames.mjs';
+
+const [program, chromium, ...names] = process.argv.slice(2);
+const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..');
+const work = path.join(root, 'build/web-test');
+fs.mkdirSync(work, {recursive: true});
+
+let passed = 0, failed = 0, skipped = 0;
+
+/// Counts a claim. `wrong` lists what contradicts it; `measured` is printed if the claim holds.
+function claim(what, wrong, measured = '') {
+    if (wrong.length) {
+        ++failed;
+        console.log(`FAILED: ${what}: ${wrong.join('; ')}`);
+    } else {
+        ++passed;
+        console.log(`passed: ${what}${measured ? ` (${measured})` : ''}`);
+    }
+}
+function skip(what) {
+    ++skipped;
+    console.log(`skipped: ${what}`);
+}
+
+// What `domelight view` sends too: nothing but the app's own files may be loaded or run.
+const policy = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' blob: data:; " +
+               "connect-src 'self' blob:; worker-src 'self'; base-uri 'none'; form-action 'none'";
+const server = await serve({'/app/': path.join(root, 'build/web'), '/work/': work, '/data/': process.env.DOMELIGHT_DATA ?? work},
+                           {'Content-Security-Policy': policy});
+const browser = await launch(path.join(root, 'web/node_modules'), chromium);
+
+/// Opens the app. `hash`: its state. What the console says, other than the time that something took, is in page.complaints.
+async function open(hash = '', options = {}) {
+    const page = await browser.newPage({viewport: {width: 640, height: 360}, ...options});
+    page.complaints = [];
+    page.on('console', message => ['error', 'warning'].includes(message.type()) && page.complaints.push(message.text()));
+    page.on('pageerror', error => page.complaints.push(String(error)));
+    await page.goto(`${server.url}/app/index.html${hash}`);
+    await page.waitForFunction(() => window.domelight?.ready, undefined, {timeout: 30_000});
+    return page;
+}
+
+const tests = {frames: testFrames};
+const app = {program, root, work, server, browser, open, claim, skip, data: process.env.DOMELIGHT_DATA};
+for (const [name, test] of Object.entries(tests)) {
+    if (names.length && !names.some(n => name.includes(n))) continue;
+    try {
+        await test(app);
+    } catch (error) {
+        claim(`${name} can be tested`, [error.stack ?? String(error)]);
+    }
+}
+await browser.close();
+server.close();
+console.log(`web: ${passed} passed, ${failed} failed, ${skipped} skipped`);
+process.exit(failed ? 1 : 0);

@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# The browser app in headless Chromium. Closes with "web: N passed, N failed, N skipped".
+#
+#   run_web.sh [NAME...]: only the tests whose names have one of these words. Pictures: build/web-test.
+set -uo pipefail
+here=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
+root=$(cd -- "$here/../.." && pwd)
+. "$root/scripts/build.sh"
+
+skip() {
+    printf 'skipped: the browser app: %s\nweb: 0 passed, 0 failed, 1 skipped\n' "$*"
+    exit 0
+}
+
+wanted=()
+for package in "${web_packages[@]}"; do
+    command -v "${command_of[$package]:-$package}" >/dev/null || wanted+=("$package")
+done
+if [ ${#wanted[@]} -gt 0 ]; then
+    say "installing the missing Debian packages: ${wanted[*]}"
+    apt_install "${wanted[@]}" || skip "no ${wanted[*]} to be had"
+fi
+
+export DOMELIGHT_WASM=${DOMELIGHT_WASM:-$root/build/wasm/domelight.wasm}
+[ -f "$DOMELIGHT_WASM" ] || skip "the WebAssembly module has not been built ($DOMELIGHT_WASM)"
+"$root/web/build.sh" || skip "it cannot be built ($(tail -n 1 "$root/build/web.log"))"
+exec node "$here/run.mjs" "${DOMELIGHT_PROGRAM:-$root/build/dev/cli/domelight}" "$(command -v chromium)" "$@"

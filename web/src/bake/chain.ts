@@ -1,0 +1,33 @@
+// The levels of the engine `generic` (src/engines/generic.cpp): what docs/shaders/generic.glsl reads.
+
+/// Sizes from `size` down to `smallest`, halved from level to level.
+export function sizesDownTo(size: number, smallest: number): number[] {
+    const sizes = [];
+    for (let s = size; s >= smallest; s /= 2) sizes.push(s);
+    return sizes;
+}
+
+/// The roughness of a level of `levels`.
+export function levelRoughness(level: number, levels: number): number {
+    const last = levels - 1;
+    if (level === 0) return 0;
+    return Math.max(0.6, 0.08 ** (1 / Math.max(1, last - 1))) ** (last - level);
+}
+
+/// The level, between two levels too, that is read for a roughness: the inverse of levelRoughness.
+export function roughnessLevel(roughness: number, levels: number): number {
+    const last = levels - 1;
+    const first = Math.max(0.6 ** (last - 1), 0.08);
+    return roughness <= first ? roughness / first : last - ((last - 1) * Math.log(roughness)) / Math.log(first);
+}
+
+/// The exponent of a level of a modified Phong chain (src/engines/engine.cpp, default_phong_exponents).
+export function levelExponent(level: number): number {
+    return level === 0 ? Infinity : Math.max(1, 2 ** (13 - 2 * level), 2 ** (7 - level));
+}
+
+/// The roughness that corresponds to an exponent by Beckmann's relation n = 2 / alpha² - 2: between levels, a Phong chain is
+/// interpolated linearly in it.
+export function matchingRoughness(exponent: number): number {
+    return exponent === Infinity ? 0 : (2 / (exponent + 2)) ** 0.25;
+}

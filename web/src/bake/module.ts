@@ -1,0 +1,222 @@
+// The WebAssembly module by its C interface (include/domelight/domelight_c.h): the few calls that the app makes. Structs are written
+// as a 32-bit machine lays them out.
+
+import type {BrdfTable, Chain, CubeLevel, Latlong} from './types';
+
+type Call = (...args: number[]) => number;
+
+interface Exports {
+    memory: WebAssembly.Memory;
+    malloc: Call;
+    free: Call;
+    _initialize?: () => void;
+    [name: string]: unknown;
+}
+
+/// A refusal of the library: what is wrong, where, and what to do about it.
+export class ModuleError extends Error {}
+
+const k_pixels_bytes = 32;
+const k_level_bytes = 32;
+const k_options_bytes = 64;
+
+export class Module {
+    private constructor(private readonly exports: Exports) {}
+
+    static async load(source: Response | Promise<Response>): Promise<Module> {
+        const imports = {
+            wasi_snapshot_preview1: new Proxy({}, {get: (_, name) => (name === 'proc_exit' ? exit : () => 0)}),
+        };
+        const {instance} = await WebAssembly.instantiateStreaming(source, imports);
+        const exports = instance.exports as unknown as Exports;
+        exports._initialize?.();
+        return new Module(exports);
+    }
+
+    /// An environment of pixels, which are copied, and the same pixels as half floats. `close` the environment.
+    environment(latlong: Latlong): {environment: Environment; texels: Uint16Array} {
+        return this.scope(scope => {
+            const pixels = scope.bytes(k_pixels_bytes);
+            this.call('domelight_pixels_init_sized', pixels, k_pixels_bytes);
+            const data = scope.bytes(latlong.pixels.byteLength);
+            this.floats(data, latlong.pixels.length).set(latlong.pixels);
+            this.words(pixels).set([data, latlong.width, latlong.height], 1);
+            const handle = scope.bytes(4);
+            this.check(this.call('domelight_environment_from_pixels', pixels, 0, handle));
+            return {environment: new Environment(this, this.words(handle)[0]!), texels: this.encode(pixels).texels};
+        });
+    }
+
+    brdfTable(size: number): BrdfTable {
+        return this.scope(scope => {
+            const image = scope.bytes(4);
+            this.check(this.call('domelight_brdf_table', size, 0, 1, image));
+            const pixels = scope.bytes(k_pixels_bytes);
+            this.call('domelight_pixels_init_sized', pixels, k_pixels_bytes);
+            this.check(this.call('domelight_image_pixels', this.words(image)[0]!, pixels));
+            const {texels} = this.encode(pixels);
+            this.call('domelight_image_free', this.words(image)[0]!);
+            return {size, texels};
+        });
+    }
+
+    /// The levels of a texture of half floats.
+    levels(texture: number): CubeLevel[] {
+        return this.scope(scope => {
+            const info = scope.bytes(28), pointer = scope.bytes(4), size = scope.bytes(4);
+            this.words(info)[0] = 28;
+            this.check(this.call('domelight_texture_get_info', texture, info));
+            const [, width, , , count] = this.words(info);
+            return Array.from({length: count!}, (_, level) => {
+                this.check(this.call('domelight_texture_level', texture, level, pointer, size));
+                const start = this.words(pointer)[0]!;
+                return {
+                    size: Math.max(1, width! >> level),
+                    texels: new Uint16Array(this.exports.memory.buffer.slice(start, start + this.words(size)[0]!)),
+                };
+            });
+        });
+    }
+
+    /// Encodes pixels that the library returned, as half floats.
+    encode(pixels: number): CubeLevel {
+        return this.scope(scope => {
+            const texture = scope.bytes(4);
+            this.check(this.call('domelight_encode', pixels, 1, 0, texture));
+            const levels = this.levels(this.words(texture)[0]!);
+            this.call('domelight_texture_free', this.words(texture)[0]!);
+            return levels[0]!;
+        });
+    }
+
+    call(name: string, ...args: number[]): number {
+        return (this.exports[name] as Call)(...args);
+    }
+    words(pointer: number): Uint32Array {
+        return new Uint32Array(this.exports.memory.buffer, pointer, 16);
+    }
+    floats(pointer: number, count: number): Float32Array {
+        return new Float32Array(this.exports.memory.buffer, pointer, count);
+    }
+    doubles(pointer: number, count: number): Float64Array {
+        return new Float64Array(this.exports.memory.buffer, pointer, count);
+    }
+
+    /// Throws the error that a function returned, if any.
+    check(error: number): void {
+        if (error === 0) return;
+        const text = this.text(this.call('domelight_error_text', error));
+        this.call('domelight_error_free', error);
+        throw new ModuleError(text);
+    }
+    text(pointer: number): string {
+        const bytes = new Uint8Array(this.exports.memory.buffer, pointer);
+        return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
+    }
+
+    /// Runs `work` with memory that is freed afterwards.
+    scope<T>(work: (scope: Scope) => T): T {
+        const scope = new Scope(this.exports);
+        try {
+            return work(scope);
+        } finally {
+            scope.free();
+        }
+    }
+}
+
+function exit(code: number): never {
+    throw new ModuleError(`the module ended with status ${code}`);
+}
+
+class Scope {
+    private readonly pointers: number[] = [];
+    constructor(private readonly exports: Exports) {}
+    /// Zeroed memory.
+    bytes(count: number): number {
+        const pointer = this.exports.malloc(count + 64);
+        if (pointer === 0) throw new ModuleError('there is not enough memory for this environment');
+        this.pointers.push(pointer);
+        new Uint8Array(this.exports.memory.buffer, pointer, Math.min(count, 4096)).fill(0);
+        return pointer;
+    }
+    string(text: string): number {
+        const bytes = new TextEncoder().encode(text);
+        const pointer = this.bytes(bytes.length + 1);
+        new Uint8Array(this.exports.memory.buffer, pointer, bytes.length).set(bytes);
+        return pointer;
+    }
+    free(): void {
+        for (const pointer of this.pointers) this.exports.free(pointer);
+    }
+}
+
+export interface Filtered {
+    chain: Chain;
+    /// The cosine integral E.
+    irradiance?: CubeLevel;
+    /// 9 x RGB, of the radiance.
+    sh?: Float64Array;
+}
+
+/// An environment in the module's memory.
+export class Environment {
+    constructor(
+        private readonly module: Module,
+        private readonly handle: number,
+    ) {}
+
+    close(): void {
+        this.module.call('domelight_environment_free', this.handle);
+    }
+
+    /// A chain of cubes, in texels that are made to be interpolated; with irradianceSize also the irradiance and nine harmonics.
+    prefilter(lobe: Chain['lobe'], sizes: number[], parameters: number[], irradianceSize: number): Filtered {
+        const m = this.module;
+        return m.scope(scope => {
+            const levels = scope.bytes(k_level_bytes * sizes.length);
+            const word = scope.string(lobe);
+            sizes.forEach((size, k) => {
+                const level = levels + k * k_level_bytes;
+                m.call('domelight_level_init_sized', level, k_level_bytes);
+                m.words(level)[1] = word;
+                m.doubles(level + 8, 2)[lobe === 'ggx' ? 0 : 1] = parameters[k]!;
+                m.words(level)[6] = size;
+            });
+            const options = scope.bytes(k_options_bytes);
+            m.call('domelight_prefilter_options_init_sized', options, 52);
+            const words = m.words(options);
+            words[2] = scope.string('read');
+            m.words(options).set([levels, sizes.length], 3);
+            m.words(options).set([irradianceSize, irradianceSize > 0 ? 3 : 0, 1], 8);
+            const handle = scope.bytes(4);
+            m.check(m.call('domelight_prefilter', this.handle, options, handle));
+            const filtered = m.words(handle)[0]!;
+            try {
+                return this.collect(filtered, lobe, parameters, irradianceSize > 0);
+            } finally {
+                m.call('domelight_filtered_free', filtered);
+            }
+        });
+    }
+
+    private collect(filtered: number, lobe: Chain['lobe'], parameters: number[], more: boolean): Filtered {
+        const m = this.module;
+        return m.scope(scope => {
+            const texture = scope.bytes(4);
+            m.check(m.call('domelight_encode_filtered', filtered, 0, texture));
+            const chain: Chain = {lobe, levels: m.levels(m.words(texture)[0]!), parameters};
+            m.call('domelight_texture_free', m.words(texture)[0]!);
+            if (!more) return {chain};
+            const pixels = scope.bytes(k_pixels_bytes), count = scope.bytes(4);
+            m.call('domelight_pixels_init_sized', pixels, k_pixels_bytes);
+            m.check(m.call('domelight_filtered_irradiance_over_pi', filtered, pixels));
+            // The pixels are this environment's own, and freed with it: they may become E in place.
+            const [, data, width, height] = m.words(pixels);
+            const e = m.floats(data!, 18 * width! * height!);
+            e.forEach((v, k) => (e[k] = v * Math.PI));
+            const sh = m.call('domelight_filtered_sh', filtered, count);
+            return {chain, irradiance: m.encode(pixels), sh: m.doubles(sh, 27).slice()};
+        });
+    }
+}

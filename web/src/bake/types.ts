@@ -1,0 +1,68 @@
+// What the worker and the page exchange. Directions, faces and units are those of docs/conventions.md.
+
+/// A lat-long map of radiance: RGB floats, the top row first.
+export interface Latlong {
+    width: number;
+    height: number;
+    pixels: Float32Array;
+}
+
+/// A cube of half floats, RGBA, its faces +X -X +Y -Y +Z -Z one after the other.
+export interface CubeLevel {
+    size: number;
+    texels: Uint16Array;
+}
+
+/// A chain of levels that is read by roughness, or by the exponent of a modified Phong lobe.
+export interface Chain {
+    lobe: 'ggx' | 'phong';
+    levels: CubeLevel[];
+    /// Of each level: the roughness, or the exponent, which is infinite for level 0.
+    parameters: number[];
+}
+
+/// The maps of one environment.
+export interface Bake {
+    specular: Chain;
+    /// The cosine integral E.
+    irradiance: CubeLevel;
+    /// 9 x RGB: the coefficients of E, real, orthonormal, polar axis +Z.
+    sh: Float32Array;
+    /// Wall-clock time of the filter.
+    milliseconds: number;
+}
+
+/// What an opened file is.
+export interface EnvironmentInfo {
+    name: string;
+    format: string;
+    width: number;
+    height: number;
+    /// RGBA half floats of the lat-long map. (The worker keeps the floats.)
+    texels: Uint16Array;
+    /// Sentences about repaired texels and the like.
+    warnings: string[];
+    milliseconds: number;
+}
+
+export interface BrdfTable {
+    size: number;
+    /// RGBA half floats: scale and bias in the first two channels; row 0 is the smoothest.
+    texels: Uint16Array;
+}
+
+/// A request to the worker. Each has a number that its reply carries.
+export type Request =
+    | {kind: 'open'; name: string; bytes: ArrayBuffer}
+    | {kind: 'use'; name: string; latlong: Latlong}
+    | {kind: 'bake'; size: number}
+    | {kind: 'phong'; size: number}
+    | {kind: 'brdf'; size: number};
+
+export interface Replies {
+    open: EnvironmentInfo;
+    use: EnvironmentInfo;
+    bake: Bake;
+    phong: Chain;
+    brdf: BrdfTable;
+}

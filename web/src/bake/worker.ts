@@ -1,0 +1,73 @@
+// The worker that reads and filters environments, so that the page keeps moving.
+
+import {levelExponent, levelRoughness, sizesDownTo} from './chain';
+import {Module, type Environment} from './module';
+import {readLatlong} from './read_environment';
+import type {Bake, EnvironmentInfo, Latlong, Replies, Request} from './types';
+import moduleUrl from 'domelight.wasm?url';
+
+const module = Module.load(fetch(moduleUrl));
+let environment: Environment | undefined;
+
+function use(name: string, format: string, latlong: Latlong, loaded: Module, start: number): EnvironmentInfo {
+    const made = loaded.environment(latlong);
+    environment?.close();
+    environment = made.environment;
+    const {width, height} = latlong;
+    return {name, format, width, height, texels: made.texels, warnings: [], milliseconds: performance.now() - start};
+}
+
+function opened(): Environment {
+    if (!environment) throw new Error('No environment has been opened.');
+    return environment;
+}
+
+function bake(size: number): Bake {
+    const start = performance.now();
+    const sizes = sizesDownTo(size, 16);
+    const {chain, irradiance, sh} = opened().prefilter('ggx', sizes, sizes.map((_, l) => levelRoughness(l, sizes.length)), 32);
+    return {specular: chain, irradiance: irradiance!, sh: irradianceHarmonics(sh!), milliseconds: performance.now() - start};
+}
+
+/// Coefficients of the irradiance E from those of the radiance: Ramamoorthi and Hanrahan 2001, eq. 7 to 9.
+function irradianceHarmonics(radiance: Float64Array): Float32Array {
+    const factors = [Math.PI, (2 * Math.PI) / 3, Math.PI / 4];
+    return Float32Array.from(radiance, (v, k) => v * factors[Math.floor(Math.sqrt(Math.floor(k / 3)))]!);
+}
+
+async function answer(request: Request): Promise<Replies[Request['kind']]> {
+    const start = performance.now();
+    const loaded = await module;
+    switch (request.kind) {
+        case 'open': {
+            const {format, latlong} = readLatlong(request.name, request.bytes);
+            return use(request.name, format, latlong, loaded, start);
+        }
+        case 'use':
+            return use(request.name, 'computed in the page', request.latlong, loaded, start);
+        case 'bake':
+            return bake(request.size);
+        case 'phong': {
+            const sizes = sizesDownTo(request.size, 8);
+            return opened().prefilter('phong', sizes, sizes.map((_, l) => levelExponent(l)), 0).chain;
+        }
+        case 'brdf':
+            return loaded.brdfTable(request.size);
+    }
+}
+
+addEventListener('message', async ({data}: MessageEvent<{id: number; request: Request}>) => {
+    try {
+        const reply = await answer(data.request);
+        postMessage({id: data.id, reply}, {transfer: buffersOf(reply)});
+    } catch (error) {
+        postMessage({id: data.id, error: (error as Error).message});
+    }
+});
+
+/// All array buffers in a reply, which are handed over and not copied.
+function buffersOf(value: unknown): ArrayBuffer[] {
+    if (ArrayBuffer.isView(value)) return [value.buffer as ArrayBuffer];
+    if (value === null || typeof value !== 'object') return [];
+    return Object.values(value).flatMap(buffersOf);
+}

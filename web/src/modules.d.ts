@@ -1,0 +1,4 @@
+declare module 'domelight.wasm?url' {
+    const url: string;
+    export default url;
+}

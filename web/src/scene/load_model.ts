@@ -1,0 +1,61 @@
+// Models from .glb and .gltf files, by three.js's loader.
+
+import * as THREE from 'three';
+import type {GLTF} from 'three/addons/loaders/GLTFLoader.js';
+import type {Model} from './built_in';
+
+/// Reads a model. `siblings`: files that were dropped with it, by name, which a .gltf refers to. Throws an Error with a sentence.
+export async function loadModel(name: string, bytes: ArrayBuffer, siblings: Map<string, File> = new Map()): Promise<Model> {
+    const {GLTFLoader} = await import('three/addons/loaders/GLTFLoader.js');
+    const {MeshoptDecoder} = await import('three/addons/libs/meshopt_decoder.module.js');
+    const manager = new THREE.LoadingManager();
+    const urls: string[] = [];
+    manager.setURLModifier(url => {
+        const file = siblings.get(decodeURIComponent(url.split('/').pop() ?? ''));
+        if (!file) return url;
+        urls.push(URL.createObjectURL(file));
+        return urls.at(-1)!;
+    });
+    const loader = new GLTFLoader(manager).setMeshoptDecoder(MeshoptDecoder);
+    let gltf: GLTF;
+    try {
+        gltf = await loader.parseAsync(bytes, '');
+    } catch (error) {
+        throw new Error(`${name}: the model cannot be read (${sentence(error)}).`);
+    } finally {
+        urls.forEach(URL.revokeObjectURL);
+    }
+    if (!hasSurface(gltf.scene)) throw new Error(`${name}: the model has no surface to be lit.`);
+    freeze(gltf.scene);
+    return {name, root: gltf.scene, variants: variantsOf(gltf)};
+}
+
+const sentence = (error: unknown) => String((error as Error).message ?? error).replace(/^THREE\.\w+: /, '').replace(/\.$/, '');
+
+function hasSurface(root: THREE.Object3D): boolean {
+    let found = false;
+    root.traverse(object => (found ||= (object as THREE.Mesh).isMesh === true));
+    return found;
+}
+
+/// Bones and morph targets in the pose that the file shows become plain vertices: nothing moves here.
+function freeze(root: THREE.Object3D): void {
+    root.updateMatrixWorld(true);
+    root.traverse(object => {
+        const mesh = object as THREE.SkinnedMesh;
+        if (!mesh.isMesh || !(mesh.isSkinnedMesh || mesh.morphTargetInfluences?.some(w => w !== 0))) return;
+        const geometry = mesh.geometry.clone(), place = geometry.getAttribute('position'), point = new THREE.Vector3();
+        for (let k = 0; k < place.count; ++k) {
+            mesh.getVertexPosition(k, point);
+            place.setXYZ(k, point.x, point.y, point.z);
+        }
+        geometry.morphAttributes = {};
+        geometry.computeVertexNormals();
+        mesh.geometry = geometry;
+    });
+}
+
+function variantsOf(gltf: GLTF): string[] {
+    const extension = gltf.parser.json.extensions?.KHR_materials_variants;
+    return (extension?.variants ?? []).map((variant: {name: string}) => variant.name);
+}

@@ -1,0 +1,11 @@
+// The end of every shader of a model: the radiance of the surface, of whichever method came before.
+
+out vec4 out_color;
+
+void main() {
+    Surface s = surface_here();
+    vec3 light = s.emission;
+    if (!s.unlit) light += shade(s, normalize(u_eye - s.position));
+    // Beyond this a half float is infinite.
+    out_color = vec4(min(light, vec3(65504.0)), s.opacity);
+}

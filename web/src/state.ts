@@ -1,0 +1,124 @@
+// Everything that the user has chosen. It is also the address of the page: what differs from the defaults stands behind its #.
+
+export const modes = ['split-sum', 'stretched', 'phong', 'mirror', 'refract', 'monte-carlo'] as const;
+export type Mode = (typeof modes)[number];
+export const tonemaps = ['none', 'reinhard', 'aces', 'agx', 'neutral'] as const;
+export const lookups = ['environment', 'cube', 'latlong', 'sphere-map', 'dual-paraboloid'] as const;
+export const backgrounds = ['environment', 'blurred', 'colour'] as const;
+export const views = ['one', 'split', 'difference', 'flip'] as const;
+export const strategies = ['mis', 'env', 'brdf'] as const;
+export const tables = ['walk', 'guided'] as const;
+
+export interface State {
+    mode: Mode;
+    /// The right pane, and what the left one is compared with.
+    other: Mode;
+    view: (typeof views)[number];
+    divider: number;
+    model: string;
+    environment: string;
+    exposure: number;
+    tonemap: (typeof tonemaps)[number];
+    background: (typeof backgrounds)[number];
+    blur: number;
+    turn: number;
+    size: number;
+    multipleScattering: boolean;
+    irradiance: 'cube' | 'sh';
+    occlusion: boolean;
+    bentLookup: boolean;
+    diffuseWeight: 'energy' | 'fresnel';
+    lookup: (typeof lookups)[number];
+    ior: number;
+    iorOutside: number;
+    override: boolean;
+    color: string;
+    metalness: number;
+    roughness: number;
+    exponent: number;
+    furnace: boolean;
+    strategy: (typeof strategies)[number];
+    tables: (typeof tables)[number];
+    samples: number;
+    eye: [number, number, number];
+    target: [number, number, number];
+    fov: number;
+    panel: boolean;
+}
+
+export const defaults: State = {
+    mode: 'split-sum', other: 'monte-carlo', view: 'one', divider: 0.5,
+    model: 'spheres', environment: 'studio',
+    exposure: 0, tonemap: 'agx', background: 'environment', blur: 0.35, turn: 0, size: 256,
+    multipleScattering: false, irradiance: 'cube', occlusion: true, bentLookup: false, diffuseWeight: 'energy',
+    lookup: 'environment', ior: 1.5, iorOutside: 1,
+    override: false, color: '#ffffff', metalness: 1, roughness: 0.3, exponent: 64,
+    furnace: false, strategy: 'mis', tables: 'guided', samples: 1,
+    eye: [0, 0, 0], target: [0, 0, 0], fov: 35, panel: true,
+};
+
+const accepted: Partial<Record<keyof State, readonly string[]>> = {
+    mode: modes, other: modes, view: views, tonemap: tonemaps, background: backgrounds, lookup: lookups, strategy: strategies,
+    tables, irradiance: ['cube', 'sh'], diffuseWeight: ['energy', 'fresnel'],
+};
+
+type Listener = (changed: Set<keyof State>) => void;
+
+/// The state, and who wants to know of its changes. Changes are told once a frame.
+export class Store {
+    readonly state: State;
+    private readonly listeners: Listener[] = [];
+    private changed = new Set<keyof State>();
+
+    constructor(hash: string) {
+        this.state = {...defaults, ...readHash(hash)};
+    }
+
+    set(changes: Partial<State>): void {
+        for (const [key, value] of Object.entries(changes) as [keyof State, never][]) {
+            if (same(this.state[key], value)) continue;
+            this.state[key] = value;
+            if (this.changed.size === 0) requestAnimationFrame(() => this.tell());
+            this.changed.add(key);
+        }
+    }
+    listen(listener: Listener): void {
+        this.listeners.push(listener);
+    }
+    private tell(): void {
+        const changed = this.changed;
+        this.changed = new Set();
+        for (const listener of this.listeners) listener(changed);
+    }
+}
+
+const same = (a: unknown, b: unknown) => (Array.isArray(a) ? String(a) === String(b) : a === b);
+
+/// `#mode=phong&eye=0,0,5`, without what is the default.
+export function writeHash(state: State): string {
+    const parts = Object.entries(state)
+        .filter(([key, value]) => !same(value, defaults[key as keyof State]))
+        .map(([key, value]) => `${key}=${Array.isArray(value) ? value.map(v => +v.toFixed(4)).join() : encodeURIComponent(value)}`);
+    return parts.length ? `#${parts.join('&')}` : '';
+}
+
+/// What of an address is understood. The rest is left out, because an address may come from another version.
+export function readHash(hash: string): Partial<State> {
+    const read: Record<string, unknown> = {};
+    for (const [key, text] of new URLSearchParams(hash.replace(/^#/, ''))) {
+        const value = key in defaults ? parse(key as keyof State, text) : undefined;
+        if (value !== undefined) read[key] = value;
+    }
+    return read;
+}
+
+function parse(key: keyof State, text: string): unknown {
+    const usual = defaults[key];
+    if (typeof usual === 'boolean') return text === 'true' ? true : text === 'false' ? false : undefined;
+    if (typeof usual === 'number') return text !== '' && Number.isFinite(+text) ? +text : undefined;
+    if (Array.isArray(usual)) {
+        const numbers = text.split(',').map(Number);
+        return numbers.length === usual.length && numbers.every(Number.isFinite) ? numbers : undefined;
+    }
+    return accepted[key] && !accepted[key].includes(text) ? undefined : text;
+}

@@ -1,0 +1,16 @@
+import {fileURLToPath} from 'node:url';
+import {defineConfig} from 'vite';
+
+// The WebAssembly module of the library (the preset `wasm`).
+const module = process.env.DOMELIGHT_WASM ?? fileURLToPath(new URL('../build/wasm/domelight.wasm', import.meta.url));
+
+// All paths are relative, so that the files can be served from any folder of any host. The shaders that the app shares with
+// the documentation lie in docs/shaders, outside this folder.
+export default defineConfig({
+    base: './',
+    resolve: {alias: [{find: /^domelight\.wasm(?=\?)/, replacement: module}]},
+    build: {outDir: '../build/web', emptyOutDir: true, target: 'es2022', assetsInlineLimit: 0, chunkSizeWarningLimit: 1200},
+    worker: {format: 'es'},
+    server: {host: '127.0.0.1', fs: {allow: ['..', module]}},
+    preview: {host: '127.0.0.1'},
+});
