@@ -15,5 +15,6 @@ int run_render(const std::vector<std::string>& words);
 int run_lights(const std::vector<std::string>& words);
 int run_sample(const std::vector<std::string>& words);
 int run_sky(const std::vector<std::string>& words);
+int run_view(const std::vector<std::string>& words);
 
 }  // namespace domelight::cli

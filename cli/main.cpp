@@ -41,6 +41,7 @@ constexpr Command k_commands[] = {
     {"sample", "draws light directions from an environment, and compares the errors of sampling strategies",
      run_sample},
     {"sky", "makes a physically based sky, or the labelled six-axis environment", run_sky},
+    {"view", "opens a page that shows a model under an environment by every method, beside the truth", run_view},
 };
 
 std::string help() {

@@ -69,6 +69,8 @@ domelight_component(io ROOMS texture io scene engines USES core
 domelight_component(preview ROOMS preview USES core LINKS fmt::fmt)
 find_package(embree 3.13 REQUIRED)
 domelight_component(render ROOMS render USES io LINKS fmt::fmt embree Threads::Threads)
+pkg_check_modules(httplib REQUIRED IMPORTED_TARGET cpp-httplib)
+domelight_component(view ROOMS view USES render LINKS fmt::fmt PkgConfig::httplib Threads::Threads)
 domelight_component(bake ROOMS bake compare USES io preview LINKS fmt::fmt)
 domelight_component(study ROOMS study USES render bake LINKS fmt::fmt)
 include(cmake/c_interface.cmake)

@@ -35,6 +35,7 @@ ROOMS = [
     ("render", "path tracing, surfaces, and the shading that engines draw"),
     ("compare", "differences of images, FLIP, audit of a bake"),
     ("bake", "plan, filter, write, manifest"),
+    ("view", "the page of `domelight view`, served to a browser on this machine"),
     ("study", "the figures and tables that teach: estimates, explanations, surveys"),
     ("c", "the C interface: domelight_c.h"),
 ]

@@ -14,6 +14,7 @@ build_packages=(
     libastcenc-dev      # ASTC HDR
     libssl-dev          # SHA-256 (libcrypto only)
     libembree-dev       # rays; brings oneTBB
+    libcpp-httplib-dev  # the page of `domelight view`
     libfmt-dev nlohmann-json3-dev libcli11-dev
 )
 # ./test: the test framework, the benchmarks, and the scripts that drive the program.

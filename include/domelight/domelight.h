@@ -114,3 +114,4 @@
 #include "domelight/study/strategy_study.h"
 #include "domelight/texture/container/babylon_env.h"
 #include "domelight/texture/texture.h"
+#include "domelight/view/view_server.h"

@@ -87,7 +87,7 @@ def test_examples_in_every_help_run(folder):
 def test_help_of_a_command(folder):
     overview = run("help", folder=folder).stdout
     assert overview == run("--help", folder=folder).stdout and "domelight help COMMAND" in overview
-    for command in ["bake", "brdf", "compare", "convert", "info", "lights", "render", "sample", "sky"]:
+    for command in ["bake", "brdf", "compare", "convert", "info", "lights", "render", "sample", "sky", "view"]:
         text = run("help", command, folder=folder).stdout
         assert text == run(command, "--help", folder=folder).stdout
         assert text.count("is the default") == 1, command
