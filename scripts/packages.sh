@@ -28,5 +28,7 @@ engine_packages=(chromium nodejs npm openexr)
 web_packages=(chromium nodejs npm)
 # The command that each of them brings, where its name differs.
 declare -A command_of=([nodejs]=node [openexr]=exrheader)
+# tests/python: the headers of Python, and its virtual environments.
+python_packages=(python3-dev python3-venv)
 # bench/peers.py: the program that is measured beside ours.
 peer_packages=(libfilament-tools)

@@ -1,0 +1,51 @@
+"""Progress callbacks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+#: ``progress(stage, done)``: the name of a stage and the part of it that is done, 0 to 1. Returning False cancels.
+ProgressCallback = Callable[[str, float], Any]
+
+
+class ProgressBar(Protocol):
+    """What is used of a tqdm bar."""
+
+    n: float
+    total: float | None
+
+    def set_description(self, desc: str, refresh: bool = ...) -> Any: ...
+    def refresh(self) -> Any: ...
+
+
+Progress = ProgressCallback | ProgressBar | bool | None
+
+
+def _on_bar(bar: ProgressBar) -> ProgressCallback:
+    if bar.total is None:
+        bar.total = 1
+
+    def show(stage: str, done: float) -> None:
+        bar.set_description(stage, refresh=False)
+        bar.n = round(done * (bar.total or 1), 3)
+        bar.refresh()
+
+    return show
+
+
+def callback(progress: Progress) -> ProgressCallback | None:
+    """A callback from what users pass: a function, a tqdm bar, or True for a new tqdm bar."""
+    if progress is None or progress is False:
+        return None
+    if progress is True:
+        from tqdm.auto import tqdm
+
+        return _on_bar(tqdm(total=1, bar_format="{desc} {percentage:3.0f}%|{bar}| {elapsed}"))
+    if hasattr(progress, "set_description") and hasattr(progress, "refresh"):
+        return _on_bar(progress)
+    if not callable(progress):
+        from ._errors import wrong_type
+
+        wrong_type("progress", progress, "a function of (stage, done), a tqdm bar or True")
+    return progress  # type: ignore[return-value]

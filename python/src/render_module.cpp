@@ -1,0 +1,188 @@
+// domelight._render: the path tracer, with Embree. A module of its own, which is loaded when a picture is asked for.
+
+#include "domelight/io/environment/open_environment.h"
+#include "domelight/render/render.h"
+#include "domelight/render/shading/shading.h"
+#include "domelight/scene/scene.h"
+
+#include "array_input.h"
+#include "base/field_place.h"
+#include "errors.h"
+#include "keywords.h"
+#include "work.h"
+
+#include <fmt/format.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace domelight::python {
+namespace {
+
+Scene open_scene(const std::string& name, int threads) {
+    const auto names = built_in_scene_names();
+    if (std::find(names.begin(), names.end(), name) != names.end()) return value_of(built_in_scene(name));
+    SceneOptions options;
+    options.threads = threads;
+    return value_of(load_scene(name, options));
+}
+
+Vec3f vector_of(const Keywords& words, const char* name) {
+    std::vector<double> v;
+    words.read(name, v);
+    if (v.empty()) return {};
+    if (v.size() != 3) throw Failure({fmt::format("{} numbers, expected three", v.size()), field_place(name), ""});
+    return Vec3f(Vec3d{v[0], v[1], v[2]});
+}
+
+void within(const char* field, double value, double low, double high) {
+    if (!(value >= low && value <= high))
+        throw Failure({fmt::format("{:g} is not from {:g} to {:g}", value, low, high), field_place(field), ""});
+}
+
+/// Size in pixels and camera: the scene's own, or one that shows all of it.
+void set_view(const Keywords& words, const Scene& scene, RenderOptions& options) {
+    const bool placed = words.has("camera_position");
+    const Camera* own = placed || scene.cameras.empty() ? nullptr : &scene.cameras.front();
+    const float aspect = own && own->aspect > 0 ? own->aspect : 1;
+    words.read("width", options.width);
+    options.height = std::clamp(int(std::lround(float(options.width) / aspect)), 1, 16384);
+    words.read("height", options.height);
+    within("width", options.width, 1, 16384);
+    within("height", options.height, 1, 16384);
+    double fov_deg = 35;
+    words.read("fov_deg", fov_deg);
+    within("fov_deg", fov_deg, 0.1, 170);
+    const float shape = float(options.width) / float(options.height);
+    options.camera = own      ? camera_for(*own, shape)
+                     : placed ? look_at(vector_of(words, "camera_position"), vector_of(words, "camera_target"),
+                                        float(fov_deg * k_pi / 180))
+                              : default_camera(scene, shape);
+}
+
+RenderOptions render_options(const Keywords& words, const Scene& scene) {
+    RenderOptions options;
+    set_view(words, scene, options);
+    options.bounces = 4;
+    words.read("spp", options.samples);
+    words.read("noise", options.noise);
+    words.read("time", options.seconds);
+    words.read("bounces", options.bounces);
+    words.read("strategy", options.strategy);
+    words.read("occlusion", options.occlusion);
+    words.read("multiple_scattering", options.multiple_scattering);
+    words.read("background", options.background);
+    words.read("seed", options.seed);
+    words.read("threads", options.threads);
+    options.background_colour = vector_of(words, "background_colour");
+    double roughness = options.background_roughness;
+    words.read("background_roughness", roughness);
+    options.background_roughness = float(roughness);
+    within("spp", options.samples, 1, 1 << 20);
+    within("noise", options.noise, 0, 1);
+    within("time", options.seconds, 0, 1e9);
+    within("bounces", options.bounces, 0, 1000);
+    within("background_roughness", roughness, 0, 1);
+    within("threads", options.threads, 0, 1024);
+    return options;
+}
+
+struct Shading {
+    std::optional<ShadingOptions> options;  ///< nothing: the reference
+};
+
+Shading shading_of(const Keywords& words, const RenderOptions& render) {
+    std::string word = "reference";
+    words.read("shading", word);
+    if (word == "reference") return {};
+    ShadingOptions options;
+    const auto model = from_name<ShadingModel>(word);
+    if (!model) {
+        auto accepted = names_of<ShadingModel>();
+        accepted.insert(accepted.begin(), "reference");
+        throw Failure(unknown_name(word, "a model of shading", accepted).at(field_place("shading")));
+    }
+    options.model = *model;
+    words.read("lookup", options.lookup);
+    words.read("lookup_size", options.lookup_size);
+    words.read("diffuse_weight", options.diffuse_weight);
+    options.occlusion = render.occlusion;
+    options.multiple_scattering = render.multiple_scattering;
+    return {options};
+}
+
+Result<RenderResult> draw(Scene scene, const Environment& environment, const Shading& shading, RenderOptions options) {
+    auto traced = RayScene::build(std::move(scene));
+    if (!traced) return traced.error();
+    auto sampler =
+        EnvironmentSampler::build(environment, reference_sampler_options(options.strategy, options.threads));
+    if (!sampler) return sampler.error();
+    std::optional<LightMaps> maps;
+    if (shading.options || options.background == Background::blurred) {
+        const Lobe lobe = shading.options ? shading_lobe(shading.options->model) : Lobe::ggx;
+        auto baked = LightMaps::bake(sampler->image(), sampler->world_to_source(), options.threads, lobe);
+        if (!baked) return baked.error();
+        maps.emplace(*std::move(baked));
+        options.background_maps = &*maps;
+    }
+    return shading.options ? render_shaded(*traced, *maps, *sampler, *shading.options, options)
+                           : render_reference(*traced, *sampler, options);
+}
+
+nb::dict told(RenderResult result) {
+    nb::dict layers;
+    const auto add = [&](const char* name, ImageF& image) {
+        if (!image.empty()) layers[name] = numpy_of(std::move(image));
+    };
+    add("radiance", result.radiance);
+    add("opacity", result.opacity);
+    add("direct", result.direct);
+    add("indirect", result.indirect);
+    add("diffuse", result.diffuse);
+    add("specular", result.specular);
+    add("albedo", result.albedo);
+    add("normal", result.normal);
+    add("depth", result.depth);
+    add("object", result.object);
+    add("variance", result.variance);
+    add("samples", result.samples);
+    nb::dict all;
+    all["layers"] = layers;
+    all["noise"] = result.noise;
+    all["seconds"] = result.seconds;
+    all["rays"] = result.rays;
+    return all;
+}
+
+nb::dict run_render(const std::string& name, const Environment& environment, const nb::dict& dictionary,
+                    const nb::object& progress) {
+    const Keywords words(dictionary);
+    int threads = 0;
+    words.read("threads", threads);
+    Scene scene = run_work_for(nb::none(), [&](const Progress&) { return open_scene(name, threads); });
+    RenderOptions options = render_options(words, scene);
+    const Shading shading = shading_of(words, options);
+    std::vector<std::string> warnings = scene.warnings;
+    const auto missing = shading.options ? not_rendered(scene, shading.options->model) : not_rendered(scene);
+    warnings.insert(warnings.end(), missing.begin(), missing.end());
+    nb::dict all = told(run_work_for(progress, [&](const Progress& report) {
+        options.progress = report;
+        return value_of(draw(std::move(scene), environment, shading, options));
+    }));
+    all["warnings"] = warnings;
+    return all;
+}
+
+}  // namespace
+}  // namespace domelight::python
+
+NB_MODULE(_render, module) {
+    using namespace domelight::python;
+    nb::set_leak_warnings(false);
+    register_errors();
+    module.def("render", &run_render, nb::arg("scene"), nb::arg("environment"), nb::arg("options"),
+               nb::arg("progress") = nb::none());
+    module.def("built_in_scenes", &domelight::built_in_scene_names);
+}
