@@ -114,5 +114,6 @@
 #include "domelight/study/sample_explanation.h"
 #include "domelight/study/strategy_study.h"
 #include "domelight/texture/container/babylon_env.h"
+#include "domelight/texture/container/texture_bytes.h"
 #include "domelight/texture/texture.h"
 #include "domelight/view/view_server.h"

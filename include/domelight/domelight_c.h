@@ -397,6 +397,81 @@ DOMELIGHT_API domelight_error* domelight_texture_set_metadata(domelight_texture*
                                                               const char* value);
 DOMELIGHT_API void domelight_texture_free(domelight_texture* texture);
 
+/* Writes the texture as a file, which appears whole or not at all.
+ *
+ * format             ktx2, ktx1, dds, dds9 (the header from before DX10), env (Babylon.js: rgbd, a power of two wide, every
+ *                    level down to 1; the faces are mirrored for its world, and diffuse light is in it if the texture was
+ *                    encoded from a filtered environment with three or more bands). NULL: by the file's ending
+ * supercompression   of ktx2: none, zstd; NULL: none */
+DOMELIGHT_API domelight_error* domelight_texture_write(const domelight_texture* texture, const char* file,
+                                                       const char* format, const char* supercompression);
+/* Bytes that the library made. */
+typedef struct domelight_bytes domelight_bytes;
+/* The same file in memory. format NULL: ktx2. */
+DOMELIGHT_API domelight_error* domelight_texture_file(const domelight_texture* texture, const char* format,
+                                                      const char* supercompression, domelight_bytes** bytes);
+DOMELIGHT_API const void* domelight_bytes_data(const domelight_bytes* bytes, size_t* size);
+DOMELIGHT_API void domelight_bytes_free(domelight_bytes* bytes);
+
+/* ---- Converting --------------------------------------------------------------------------------------------------- */
+
+typedef struct domelight_convert_options {
+    size_t struct_size;
+    const char* to;              /* projection and convention: "latlong" (default), "latlong/usd", "cube", "angular", ... */
+    domelight_progress progress; /* may be NULL */
+    void* progress_data;
+    int32_t height;              /* of a face or of the picture; 0 (default): as fine as the environment */
+    int32_t sharp;               /* 1: keeps more detail in a conversion there and back, and takes longer */
+    int32_t threads;
+} domelight_convert_options;
+DOMELIGHT_API void domelight_convert_options_init_sized(domelight_convert_options* options, size_t struct_size);
+
+/* The environment as a picture of another projection or convention. Its faces are those of the cube, the two halves of a
+ * dual paraboloid, or one. */
+DOMELIGHT_API domelight_error* domelight_convert(const domelight_environment* environment,
+                                                 const domelight_convert_options* options, domelight_image** image);
+/* Writes pixels of three or four channels as .exr (half floats where they suffice) or .hdr; faces one below the other. */
+DOMELIGHT_API domelight_error* domelight_pixels_write(const domelight_pixels* pixels, const char* file);
+
+/* ---- Baking ------------------------------------------------------------------------------------------------------- */
+
+/* What `domelight bake` takes, by the same words. A word that is NULL, and a size or number of levels that is 0, is the
+ * engine's own. */
+typedef struct domelight_bake_options {
+    size_t struct_size;
+    const char* engines;             /* "generic" (default); several with commas: "three,babylon" */
+    const char* layout;              /* cube, latlong */
+    const char* lobe;                /* ggx, charlie, phong, phong-plain */
+    const char* texels;              /* read, centre */
+    const char* encoding;            /* rgba16f, rgb9e5, bc6h, ... */
+    const char* encoding_quality;    /* fast, default, high, exhaustive */
+    const char* format;              /* ktx2, ktx1, dds, dds9, exr, exr-mip, hdr */
+    const char* latlong_out;         /* convention of lat-long maps that are written: default, usd, ... */
+    const char* irradiance_quantity; /* irradiance, irradiance_over_pi */
+    const char* sh_window;           /* none (default), hann, lanczos */
+    const char* brdf_masking;        /* correlated (default), smith, karis */
+    const double* roughness;         /* of each level, 0 to 1 */
+    size_t roughness_count;
+    const double* exponents;         /* phong: of each level; infinity: the environment itself */
+    size_t exponent_count;
+    domelight_progress progress;     /* may be NULL */
+    void* progress_data;
+    int32_t size;                    /* of level 0: of a cube's face, or the height of a lat-long map */
+    int32_t levels;
+    int32_t irradiance_size;
+    int32_t brdf_size;
+    int32_t sh_bands;                /* 1 to 64; 3 */
+    int32_t preview;                 /* 1 (default): preview.png */
+    int32_t hashes;                  /* 1 (default): SHA-256 of source and files in the manifest */
+    int32_t threads;
+} domelight_bake_options;
+DOMELIGHT_API void domelight_bake_options_init_sized(domelight_bake_options* options, size_t struct_size);
+
+/* Writes what the engines load into `folder` (several engines: each into a folder of its name inside), which changes only
+ * when everything is complete. docs/manifest.md describes manifest.json. */
+DOMELIGHT_API domelight_error* domelight_bake(const domelight_environment* environment,
+                                              const domelight_bake_options* options, const char* folder);
+
 #ifdef __cplusplus
 }
 #endif
@@ -425,6 +500,12 @@ static inline void domelight_lights_options_init(domelight_lights_options* optio
 }
 static inline void domelight_encode_options_init(domelight_encode_options* options) {
     domelight_encode_options_init_sized(options, sizeof *options);
+}
+static inline void domelight_convert_options_init(domelight_convert_options* options) {
+    domelight_convert_options_init_sized(options, sizeof *options);
+}
+static inline void domelight_bake_options_init(domelight_bake_options* options) {
+    domelight_bake_options_init_sized(options, sizeof *options);
 }
 
 #endif

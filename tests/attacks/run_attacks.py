@@ -128,8 +128,7 @@ def test_a_pipe_that_cannot_be_read_again_is_refused(folder):
     run("bake", "studio.hdr", "-o", "b", *SMALL, folder=folder)
     texture = (folder / "b/specular.ktx2").read_bytes()
     for words in [["bake", "pipe", "-o", "b"], ["convert", "pipe", "-o", "c.hdr"]]:
-        said = fed(folder, "pipe", texture, *words, code=1).stderr
-        assert "pipe: is a pipe with a texture" in said
+        fed(folder, "pipe", texture, *words)  # it is read once, into memory
     # Names that files state lead to regular files only: nobody writes into these pipes.
     os.mkfifo(folder / "a.bin")
     (folder / "a.gltf").write_text(json.dumps({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 36, "uri": "a.bin"}]}))

@@ -35,22 +35,22 @@ std::string assumed_curve(const TextureInfo& info) {
 
 }  // namespace
 
-Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_t max_bytes, RepairOptions repair,
+Result<Cubemap> read_cube_texture(std::span<const std::uint8_t> bytes, std::int64_t max_bytes, RepairOptions repair,
                                   RepairReport& report, Decode decode) {
-    const Result<TextureInfo> info = read_texture_info(file);
-    if (!info) return info.error().at(file.string());
+    MemorySource source(bytes);
+    const Result<TextureInfo> info = texture_info(source);
+    if (!info) return info.error();
     if (info->faces != 6 || info->width != info->height || info->layers > 1)
-        return Error{"texture is not a cube", file.string(), "An environment must be a cube or a lat-long image."};
+        return Error{"texture is not a cube", "", "An environment must be a cube or a lat-long image."};
     // The decoded faces are in memory together with the encoded texture.
     const std::int64_t size = info->width;
     if (size < 1 || size > 65536 || 2 * 6 * size * size * 12 > max_bytes)
         return Error{
             fmt::format("a cube of {} x {} faces needs more memory than the limit of {} bytes", size, size, max_bytes),
-            file.string(), ""};
-    const Result<Texture> texture = read_texture(file, decode);
-    if (!texture) return texture.error().at(file.string());
-    if (encoding_channels(texture->encoding) != 3)
-        return Error{"texture has two channels, not a colour", file.string(), ""};
+            "", ""};
+    const Result<Texture> texture = domelight::texture(source, decode);
+    if (!texture) return texture.error();
+    if (encoding_channels(texture->encoding) != 3) return Error{"texture has two channels, not a colour", "", ""};
 
     Cubemap cube(texture->width);
     if (texture->encoding == Encoding::rgba16f || texture->encoding == Encoding::r11g11b10f) repair.largest = 65504;
@@ -71,12 +71,11 @@ Result<Cubemap> read_cube_texture(const std::filesystem::path& file, std::int64_
     return cube;
 }
 
-Result<GltfEnvironment> read_gltf_environment(const std::filesystem::path& file, std::int64_t max_bytes,
-                                              RepairOptions repair, RepairReport& report) {
-    const auto bytes = FileBytes::open(file, max_bytes);
-    if (!bytes) return bytes.error();
-    auto light = read_gltf_image_light(*bytes, file.parent_path(), max_bytes, 1);
-    if (!light) return light.error().at(file.string());
+Result<GltfEnvironment> read_gltf_environment(std::shared_ptr<const FileBytes> bytes,
+                                              const std::optional<std::filesystem::path>& folder,
+                                              std::int64_t max_bytes, RepairOptions repair, RepairReport& report) {
+    auto light = read_gltf_image_light(std::move(bytes), folder, max_bytes, 1);
+    if (!light) return light.error();
     GltfEnvironment environment{std::move(light->levels.front()), light->rotation};
     repair.scale *= float(light->intensity);
     for (int f = 0; f < 6; ++f) repair_image(environment.cube.face(f), repair, report);

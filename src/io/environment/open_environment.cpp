@@ -425,16 +425,16 @@ Result<Environment> open_halves(const std::vector<std::filesystem::path>& files,
 }
 
 /// Opens a KTX2, KTX, DDS or .env file, which holds a cube as engines load it.
-Result<Environment> open_texture(const std::filesystem::path& file, const std::string& container,
-                                 const Request& request) {
+Result<Environment> open_texture(const std::filesystem::path& file, const FileBytes& bytes,
+                                 const std::string& container, const Request& request) {
     if (const std::string& projection = request.options.projection; projection != "auto" && projection != "cube")
         return Error{"a texture's projection is known: leave " + projection + " out", field_place("projection"), ""};
     const bool babylon = container.starts_with("Babylon");
     if (babylon)
         if (auto ok = check_no_faces(request.options, "a .env file, which states them"); !ok) return ok.error();
     RepairReport report;
-    Result<Cubemap> cube = read_cube_texture(file, request.options.max_bytes, repair_options(request, false), report,
-                                             request.options.decode);
+    Result<Cubemap> cube = read_cube_texture(bytes.bytes(), request.options.max_bytes, repair_options(request, false),
+                                             report, request.options.decode);
     if (!cube) return cube.error();
     const auto orientation = request.options.face_orientation;
     if (!orientation && !babylon)
@@ -452,12 +452,16 @@ Mat3 turn_of(const std::array<float, 4>& q) {
 }
 
 /// Opens the image-based light of a glTF file (EXT_lights_image_based).
-Result<Environment> open_gltf_light(const std::filesystem::path& file, const Request& request) {
+Result<Environment> open_gltf_light(const std::filesystem::path& file, std::shared_ptr<const FileBytes> bytes,
+                                    const Request& request) {
     if (const std::string& projection = request.options.projection; projection != "auto" && projection != "cube")
         return Error{"a glTF file's light is a cube: leave " + projection + " out", field_place("projection"), ""};
     if (auto ok = check_no_faces(request.options, "a glTF file, which states them"); !ok) return ok.error();
     RepairReport report;
-    auto light = read_gltf_environment(file, request.options.max_bytes, repair_options(request, false), report);
+    // What comes from a pipe or from memory lies in no folder.
+    const auto folder = bytes->regular() ? std::optional(file.parent_path()) : std::nullopt;
+    auto light = read_gltf_environment(std::move(bytes), folder, request.options.max_bytes,
+                                       repair_options(request, false), report);
     if (!light) return light.error();
     const int size = light->cube.size();
     Environment environment = with_facts(finish_cube(std::move(light->cube), std::move(report), request), {file},
@@ -471,13 +475,9 @@ Result<Environment> open_picture(const std::filesystem::path& file, std::shared_
                                  const Request& request) {
     const std::string container = texture_container(bytes->bytes());
     const bool gltf = container.empty() && may_be_gltf_image_light(bytes->bytes());
-    if ((gltf || !container.empty()) && !bytes->regular())
-        return Error{
-            fmt::format("is a pipe with {}, which is read from regular files only", gltf ? "a glTF file" : "a texture"),
-            "", "Write it to a file first."};
     if (!container.empty() && !request.options.layer.empty()) return no_layers();
-    if (!container.empty()) return open_texture(file, container, request);
-    if (gltf) return open_gltf_light(file, request);
+    if (!container.empty()) return open_texture(file, *bytes, container, request);
+    if (gltf) return open_gltf_light(file, std::move(bytes), request);
     auto image = open_image_reader(bytes, reader_options(request.options));
     if (!image) return image.error();
     const ImageFacts facts = (*image)->facts();
@@ -566,6 +566,17 @@ Result<Environment> open_faces(const std::vector<std::filesystem::path>& files, 
                       {faces->files.begin(), faces->files.end()}, first);
 }
 
+/// One file that has been read.
+Result<Environment> open_bytes(const std::filesystem::path& file, std::shared_ptr<const FileBytes> bytes,
+                               const Request& request) {
+    Result<Environment> environment = open_picture(file, bytes, request);
+    if (!environment) return environment.error().at(file.string());
+    // The rows of a lat-long image are decoded from these bytes again and again, so they are kept in any case.
+    if (!bytes->regular() || environment->storage() == Environment::Storage::rows)
+        environment->sha256 = [bytes] { return sha256(bytes->bytes()); };
+    return environment;
+}
+
 /// What a folder without the faces of a cube may be instead.
 std::string hint_for_folder(const std::filesystem::path& folder) {
     std::error_code ignored;
@@ -596,12 +607,15 @@ Result<Environment> open_environment(const std::vector<std::filesystem::path>& f
     }
     const auto bytes = FileBytes::open(files[0], options.max_bytes);
     if (!bytes) return bytes.error();
-    Result<Environment> environment = open_picture(files[0], *bytes, *request);
-    if (!environment) return environment.error().at(files[0].string());
-    // The rows of a lat-long image are decoded from these bytes again and again, so they are kept in any case.
-    if (!(*bytes)->regular() || environment->storage() == Environment::Storage::rows)
-        environment->sha256 = [bytes = *bytes] { return sha256(bytes->bytes()); };
-    return environment;
+    return open_bytes(files[0], *bytes, *request);
+}
+
+Result<Environment> open_environment_bytes(std::span<const std::uint8_t> bytes, const std::string& name,
+                                           const EnvironmentOptions& options) {
+    const Result<Request> request = check_options(options);
+    if (!request) return request.error();
+    if (bytes.empty()) return Error{"there are no bytes", name, ""};
+    return open_bytes(name, FileBytes::from_memory({bytes.begin(), bytes.end()}), *request);
 }
 
 Result<std::string> environment_sha256(const Environment& environment) {

@@ -78,7 +78,10 @@ Result<std::shared_ptr<const FileBytes>> GltfData::resource(const std::string& u
         if (!bytes) return bytes.error();
         return FileBytes::from_memory(std::move(*bytes));
     }
-    const auto path = path_of_uri(uri, folder_);
+    if (!folder_)
+        return Error{fmt::format("names the file {}, but is itself in memory", printable(uri, 80)), "",
+                     "Give the path of the glTF file, or one that contains its pictures."};
+    const auto path = path_of_uri(uri, *folder_);
     if (!path) return path.error();
     auto file = FileBytes::open(*path, budget_->left(), FileKinds::regular);
     if (!file) return Error{printable(uri, 80) + ": " + file.error().what, "", file.error().hint};
@@ -86,7 +89,7 @@ Result<std::shared_ptr<const FileBytes>> GltfData::resource(const std::string& u
 }
 
 Result<GltfData> GltfData::open(const GltfDocument& document, std::span<const std::uint8_t> chunk,
-                                const std::filesystem::path& folder, ByteBudget& budget) {
+                                const std::optional<std::filesystem::path>& folder, ByteBudget& budget) {
     GltfData data(document, folder, budget);
     for (std::size_t b = 0; b < document.buffers.size(); ++b) {
         const GltfBuffer& buffer = document.buffers[b];

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,10 +16,11 @@ namespace domelight {
 /// numbers of accessors. Nothing is allocated before the bytes that fill it are known to exist.
 class GltfData {
   public:
-    /// `chunk`: the binary chunk of a .glb. `folder`: where uris are looked up; they may not leave it.
+    /// `chunk`: the binary chunk of a .glb. `folder`: where uris are looked up; they may not leave it. Empty: only
+    /// data uris are resolved.
     /// Errors: a buffer that is missing or shorter than claimed.
     static Result<GltfData> open(const GltfDocument& document, std::span<const std::uint8_t> chunk,
-                                 const std::filesystem::path& folder, ByteBudget& budget);
+                                 const std::optional<std::filesystem::path>& folder, ByteBudget& budget);
 
     /// The bytes of a view. Errors: it does not lie in its buffer; packed data is broken.
     Result<std::span<const std::uint8_t>> view(int view);
@@ -39,7 +41,7 @@ class GltfData {
     Result<std::shared_ptr<const FileBytes>> resource(const std::string& uri);
 
   private:
-    GltfData(const GltfDocument& document, std::filesystem::path folder, ByteBudget& budget)
+    GltfData(const GltfDocument& document, std::optional<std::filesystem::path> folder, ByteBudget& budget)
         : document_(&document), folder_(std::move(folder)), budget_(&budget) {}
     Result<std::span<const std::uint8_t>> range(int buffer, std::uint64_t offset, std::uint64_t length) const;
     Result<std::span<const std::uint8_t>> elements(int view, std::uint64_t offset, std::uint64_t count,
@@ -47,7 +49,7 @@ class GltfData {
     Result<void> apply_sparse(int accessor, std::uint64_t first, std::uint64_t count, float* out);
 
     const GltfDocument* document_;
-    std::filesystem::path folder_;
+    std::optional<std::filesystem::path> folder_;
     ByteBudget* budget_;
     std::vector<std::span<const std::uint8_t>> buffers_;
     std::vector<std::shared_ptr<const FileBytes>> held_;

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,10 +41,10 @@ struct GltfImageLight {
 /// Whether the bytes may be a glTF file with such a light: checks the beginning, and searches for the extension's name.
 bool may_be_gltf_image_light(std::span<const std::uint8_t> bytes);
 
-/// `folder`: where the pictures' URIs are looked up. `most_levels`: 1 for the environment alone. Every picture's size
+/// `folder`: where the pictures' URIs are looked up; empty: nowhere. `most_levels`: 1 for the environment alone. Every picture's size
 /// is checked against its level before it is decoded. Errors name no file.
 Result<GltfImageLight> read_gltf_image_light(std::shared_ptr<const FileBytes> bytes,
-                                             const std::filesystem::path& folder, std::int64_t max_bytes,
+                                             const std::optional<std::filesystem::path>& folder, std::int64_t max_bytes,
                                              int most_levels = 32);
 
 }  // namespace domelight

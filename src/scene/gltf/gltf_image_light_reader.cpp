@@ -135,7 +135,7 @@ bool may_be_gltf_image_light(std::span<const std::uint8_t> bytes) {
 }
 
 Result<GltfImageLight> read_gltf_image_light(std::shared_ptr<const FileBytes> bytes,
-                                             const std::filesystem::path& folder, std::int64_t max_bytes,
+                                             const std::optional<std::filesystem::path>& folder, std::int64_t max_bytes,
                                              int most_levels) {
     const auto chunks = split_gltf(bytes->bytes());
     if (!chunks) return chunks.error();

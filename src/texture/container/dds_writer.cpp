@@ -98,4 +98,16 @@ Result<void> write_dds9(const std::filesystem::path& file, const Texture& textur
     return write_with_layout(file, *layout, texture.faces, texture.levels);
 }
 
+Result<TexelBytes> dds_bytes(const Texture& texture) {
+    const auto layout = dds_layout(texture, level_bytes_of(texture));
+    if (!layout) return layout.error();
+    return bytes_with_layout(*layout, texture.faces, texture.levels);
+}
+
+Result<TexelBytes> dds9_bytes(const Texture& texture) {
+    const auto layout = dds9_layout(texture, level_bytes_of(texture));
+    if (!layout) return layout.error();
+    return bytes_with_layout(*layout, texture.faces, texture.levels);
+}
+
 }  // namespace domelight

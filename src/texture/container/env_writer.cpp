@@ -62,20 +62,46 @@ QuadraticPolynomial babylon_polynomial(std::span<const Vec3d> radiance) {
     return p;
 }
 
-Result<void> write_env(const std::filesystem::path& file, const BabylonEnv& env, int threads) {
-    if (const auto fits = check_cube(env.cube); !fits) return fits.error().at(file.string());
+namespace {
+
+/// The pictures of an environment, and the text in front of them, which ends in a zero.
+struct StoredEnv {
+    std::string json;
+    std::vector<PngBytes> pictures;
+};
+
+Result<StoredEnv> stored_env(const BabylonEnv& env, int threads) {
+    if (const auto fits = check_cube(env.cube); !fits) return fits.error();
     Texture cube = env.cube;
     flip_faces(cube);
-    const auto pictures = encode_faces(cube, threads);
-    if (!pictures) return pictures.error().at(file.string());
+    auto pictures = encode_faces(cube, threads);
+    if (!pictures) return pictures.error();
+    std::string json = header_json(env, *pictures) + '\0';
+    return StoredEnv{std::move(json), *std::move(pictures)};
+}
+
+}  // namespace
+
+Result<void> write_env(const std::filesystem::path& file, const BabylonEnv& env, int threads) {
+    const auto stored = stored_env(env, threads);
+    if (!stored) return stored.error().at(file.string());
     return write_file_atomically(file, [&](const std::filesystem::path& path) {
         OutputFile out(path);
-        const std::string json = header_json(env, *pictures) + '\0';
         out.write(std::span<const std::uint8_t>(k_env_magic));
-        out.write(std::span<const char>(json));
-        for (const PngBytes& picture : *pictures) out.write(picture);
+        out.write(std::span<const char>(stored->json));
+        for (const PngBytes& picture : stored->pictures) out.write(picture);
         return out.finish();
     });
+}
+
+Result<TexelBytes> env_bytes(const BabylonEnv& env, int threads) {
+    const auto stored = stored_env(env, threads);
+    if (!stored) return stored.error();
+    TexelBytes file;
+    file.insert(file.end(), k_env_magic.begin(), k_env_magic.end());
+    file.insert(file.end(), stored->json.begin(), stored->json.end());
+    for (const PngBytes& picture : stored->pictures) file.insert(file.end(), picture.begin(), picture.end());
+    return file;
 }
 
 }  // namespace domelight

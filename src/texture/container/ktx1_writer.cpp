@@ -114,4 +114,10 @@ Result<void> write_ktx1(const std::filesystem::path& file, const Texture& textur
     return write_with_layout(file, *layout, texture.faces, texture.levels);
 }
 
+Result<TexelBytes> ktx1_bytes(const Texture& texture) {
+    const auto layout = ktx1_layout(texture, level_bytes_of(texture));
+    if (!layout) return layout.error();
+    return bytes_with_layout(*layout, texture.faces, texture.levels);
+}
+
 }  // namespace domelight

@@ -230,20 +230,44 @@ Result<TextureLayout> ktx2_layout(const Texture& texture, std::span<const std::u
     return layout;
 }
 
-Result<void> write_ktx2(const std::filesystem::path& file, const Texture& texture, Supercompression compression) {
+namespace {
+
+/// A texture as a file holds it.
+struct StoredKtx2 {
+    TextureLayout layout;
+    std::vector<TexelBytes> packed;  ///< the levels, where they are compressed
+};
+
+Result<StoredKtx2> stored_ktx2(const Texture& texture, Supercompression compression) {
+    StoredKtx2 stored;
     const auto level_bytes = level_bytes_of(texture);
-    if (compression == Supercompression::none) {
-        const auto layout = ktx2_layout(texture, level_bytes, compression, level_bytes);
-        if (!layout) return layout.error().at(file.string());
-        return write_with_layout(file, *layout, texture.faces, texture.levels);
+    std::vector<std::uint64_t> stored_bytes = level_bytes;
+    if (compression != Supercompression::none) {
+        auto packed = compress_levels(texture);
+        if (!packed) return packed.error();
+        stored.packed = *std::move(packed);
+        for (std::size_t l = 0; l < stored_bytes.size(); ++l) stored_bytes[l] = stored.packed[l].size();
     }
-    const auto packed = compress_levels(texture);
-    if (!packed) return packed.error().at(file.string());
-    std::vector<std::uint64_t> packed_bytes;
-    for (const TexelBytes& level : *packed) packed_bytes.push_back(level.size());
-    const auto layout = ktx2_layout(texture, level_bytes, compression, packed_bytes);
-    if (!layout) return layout.error().at(file.string());
-    return write_with_layout(file, *layout, texture.faces, *packed);
+    auto layout = ktx2_layout(texture, level_bytes, compression, stored_bytes);
+    if (!layout) return layout.error();
+    stored.layout = *std::move(layout);
+    return stored;
+}
+
+}  // namespace
+
+Result<void> write_ktx2(const std::filesystem::path& file, const Texture& texture, Supercompression compression) {
+    const auto stored = stored_ktx2(texture, compression);
+    if (!stored) return stored.error().at(file.string());
+    const bool packed = compression != Supercompression::none;
+    return write_with_layout(file, stored->layout, texture.faces, packed ? stored->packed : texture.levels);
+}
+
+Result<TexelBytes> ktx2_bytes(const Texture& texture, Supercompression compression) {
+    const auto stored = stored_ktx2(texture, compression);
+    if (!stored) return stored.error();
+    const bool packed = compression != Supercompression::none;
+    return bytes_with_layout(stored->layout, texture.faces, packed ? stored->packed : texture.levels);
 }
 
 }  // namespace domelight

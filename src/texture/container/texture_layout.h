@@ -42,5 +42,7 @@ std::vector<std::uint64_t> level_bytes_of(const Texture& texture);
 /// Writes levels from memory at the positions of a layout. The file appears whole or not at all.
 Result<void> write_with_layout(const std::filesystem::path& file, const TextureLayout& layout, int faces,
                                std::span<const TexelBytes> levels);
+/// The bytes of that file.
+TexelBytes bytes_with_layout(const TextureLayout& layout, int faces, std::span<const TexelBytes> levels);
 
 }  // namespace domelight

@@ -172,22 +172,42 @@ auto read_from(const std::filesystem::path& file, Read read) -> decltype(read(st
 
 }  // namespace
 
+Result<TextureInfo> texture_info(ByteSource& source) {
+    const Result<Format> format = recognise(source);
+    if (!format) return format.error();
+    switch (*format) {
+        case Format::ktx2:
+            return ktx2_info(source);
+        case Format::ktx1:
+            return ktx1_info(source);
+        case Format::dds:
+            return dds_info(source);
+        case Format::env:
+            break;
+    }
+    return env_info(source);
+}
+
+Result<Texture> texture(ByteSource& source, Decode decode) {
+    const Result<Format> format = recognise(source);
+    if (!format) return format.error();
+    switch (*format) {
+        case Format::ktx2:
+            return ktx2_texture(source, decode);
+        case Format::ktx1:
+            return ktx1_texture(source, decode);
+        case Format::dds:
+            return dds_texture(source, decode);
+        case Format::env:
+            break;
+    }
+    auto env = env_file(source);
+    if (!env) return env.error();
+    return std::move(env->cube);
+}
+
 Result<TextureInfo> read_texture_info(const std::filesystem::path& file) {
-    return read_from(file, [](ByteSource& source) -> Result<TextureInfo> {
-        const Result<Format> format = recognise(source);
-        if (!format) return format.error();
-        switch (*format) {
-            case Format::ktx2:
-                return ktx2_info(source);
-            case Format::ktx1:
-                return ktx1_info(source);
-            case Format::dds:
-                return dds_info(source);
-            case Format::env:
-                break;
-        }
-        return env_info(source);
-    });
+    return read_from(file, [](ByteSource& source) { return texture_info(source); });
 }
 
 Result<Texture> read_texture(const std::filesystem::path& file) {
@@ -195,23 +215,7 @@ Result<Texture> read_texture(const std::filesystem::path& file) {
 }
 
 Result<Texture> read_texture(const std::filesystem::path& file, Decode decode) {
-    return read_from(file, [&](ByteSource& source) -> Result<Texture> {
-        const Result<Format> format = recognise(source);
-        if (!format) return format.error();
-        switch (*format) {
-            case Format::ktx2:
-                return ktx2_texture(source, decode);
-            case Format::ktx1:
-                return ktx1_texture(source, decode);
-            case Format::dds:
-                return dds_texture(source, decode);
-            case Format::env:
-                break;
-        }
-        auto env = env_file(source);
-        if (!env) return env.error();
-        return std::move(env->cube);
-    });
+    return read_from(file, [&](ByteSource& source) { return texture(source, decode); });
 }
 
 }  // namespace domelight

@@ -74,6 +74,10 @@ Result<Texture> ktx1_texture(ByteSource& source, Decode decode = Decode::automat
 Result<TextureInfo> dds_info(ByteSource& source);
 Result<Texture> dds_texture(ByteSource& source, Decode decode = Decode::automatic);
 
+/// The texture of any of these kinds, and of a .env file. Errors name no file.
+Result<TextureInfo> texture_info(ByteSource& source);
+Result<Texture> texture(ByteSource& source, Decode decode = Decode::automatic);
+
 /// read_texture() with that option.
 Result<Texture> read_texture(const std::filesystem::path& file, Decode decode);
 
