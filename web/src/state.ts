@@ -40,6 +40,9 @@ export interface State {
     strategy: (typeof strategies)[number];
     tables: (typeof tables)[number];
     samples: number;
+    /// Rows of the map that is sampled.
+    rows: number;
+    lookupSize: number;
     eye: [number, number, number];
     target: [number, number, number];
     fov: number;
@@ -53,7 +56,7 @@ export const defaults: State = {
     multipleScattering: false, irradiance: 'cube', occlusion: true, bentLookup: false, diffuseWeight: 'energy',
     lookup: 'environment', ior: 1.5, iorOutside: 1,
     override: false, color: '#ffffff', metalness: 1, roughness: 0.3, exponent: 64,
-    furnace: false, strategy: 'mis', tables: 'guided', samples: 1,
+    furnace: false, strategy: 'mis', tables: 'guided', samples: 1, rows: 256, lookupSize: 512,
     eye: [0, 0, 0], target: [0, 0, 0], fov: 35, panel: true,
 };
 

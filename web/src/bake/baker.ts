@@ -1,6 +1,6 @@
 // The page's side of the worker: promises in place of messages.
 
-import type {Bake, BrdfTable, Chain, EnvironmentInfo, Latlong, Replies, Request} from './types';
+import type {Bake, BrdfTable, Chain, EnvironmentInfo, Latlong, Replies, Request, Tables} from './types';
 
 type Waiting = {resolve: (reply: never) => void; reject: (error: Error) => void};
 
@@ -30,6 +30,11 @@ export class Baker {
     }
     brdf(size: number): Promise<BrdfTable> {
         return this.ask({kind: 'brdf', size});
+    }
+
+    /// What shaders draw light directions with. rows: at most, of the map.
+    tables(rows: number): Promise<Tables> {
+        return this.ask({kind: 'tables', rows});
     }
 
     private ask<R extends Request>(request: R, transfer: Transferable[] = []): Promise<Replies[R['kind']]> {

@@ -51,13 +51,28 @@ export interface BrdfTable {
     texels: Uint16Array;
 }
 
+/// The environment for sampling in a shader (shading/monte_carlo.glsl), `width` x `height`.
+export interface Tables {
+    width: number;
+    height: number;
+    /// RGBA floats of the map.
+    texels: Float32Array;
+    /// Of each row the average of luminance times sin(theta), and the average of all rows.
+    rowAverages: Float32Array;
+    totalAverage: number;
+    /// Pairs (cumulative weight, guide) of each column of each row, and of each row.
+    columns: Float32Array;
+    rows: Float32Array;
+}
+
 /// A request to the worker. Each has a number that its reply carries.
 export type Request =
     | {kind: 'open'; name: string; bytes: ArrayBuffer}
     | {kind: 'use'; name: string; latlong: Latlong}
     | {kind: 'bake'; size: number}
     | {kind: 'phong'; size: number}
-    | {kind: 'brdf'; size: number};
+    | {kind: 'brdf'; size: number}
+    | {kind: 'tables'; rows: number};
 
 export interface Replies {
     open: EnvironmentInfo;
@@ -65,4 +80,5 @@ export interface Replies {
     bake: Bake;
     phong: Chain;
     brdf: BrdfTable;
+    tables: Tables;
 }

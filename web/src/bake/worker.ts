@@ -3,16 +3,19 @@
 import {levelExponent, levelRoughness, sizesDownTo} from './chain';
 import {Module, type Environment} from './module';
 import {readLatlong} from './read_environment';
+import {makeTables} from './tables';
 import type {Bake, EnvironmentInfo, Latlong, Replies, Request} from './types';
 import moduleUrl from 'domelight.wasm?url';
 
 const module = Module.load(fetch(moduleUrl));
 let environment: Environment | undefined;
+let pixels: Latlong | undefined;
 
 function use(name: string, format: string, latlong: Latlong, loaded: Module, start: number): EnvironmentInfo {
     const made = loaded.environment(latlong);
     environment?.close();
     environment = made.environment;
+    pixels = latlong;
     const {width, height} = latlong;
     return {name, format, width, height, texels: made.texels, warnings: [], milliseconds: performance.now() - start};
 }
@@ -53,6 +56,9 @@ async function answer(request: Request): Promise<Replies[Request['kind']]> {
         }
         case 'brdf':
             return loaded.brdfTable(request.size);
+        case 'tables':
+            opened();
+            return makeTables(pixels!, request.rows);
     }
 }
 

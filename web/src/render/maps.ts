@@ -40,3 +40,24 @@ export function latlongTexture({width, height, texels}: EnvironmentInfo): THREE.
     texture.needsUpdate = true;
     return texture;
 }
+
+/// A table of floats that is read texel by texel.
+export function tableTexture(values: Float32Array, width: number, height: number): THREE.DataTexture {
+    const channels = values.length / (width * height);
+    const format = channels === 1 ? THREE.RedFormat : channels === 2 ? THREE.RGFormat : THREE.RGBAFormat;
+    const texture = new THREE.DataTexture(values, width, height, format, THREE.FloatType);
+    texture.needsUpdate = true;
+    return texture;
+}
+
+/// The coefficients of the stretched lobe, read from the C++ that has them (src/render/shading/stretched_fit.cpp): nine rows of twenty
+/// (tilt, roughness, scale, bias).
+export function stretchedTexture(source: string): THREE.DataTexture {
+    const numbers = [...source.matchAll(/(-?[\d.]+(?:e-?\d+)?)f\b/g)].map(match => Number(match[1]));
+    const taps = 9, terms = 20, values = new Float32Array(4 * taps * terms);
+    numbers.forEach((v, k) => {
+        const term = k % terms, which = Math.floor(k / terms) % 4, tap = Math.floor(k / (4 * terms));
+        values[4 * (tap * terms + term) + which] = v;
+    });
+    return tableTexture(values, terms, taps);
+}

@@ -1,15 +1,27 @@
 // The text of the shaders, put together from files: those of docs/shaders, which are tested against the C++, and those of shading/.
 
 import generic from '../../../docs/shaders/generic.glsl?raw';
+import sampleEnvmap from '../../../docs/shaders/sample_envmap.glsl?raw';
+import sphericalEnvmap from '../../../docs/shaders/spherical_envmap.glsl?raw';
 import accumulate from '../shading/accumulate.glsl?raw';
 import backgroundFragment from '../shading/background_fragment.glsl?raw';
 import backgroundVertex from '../shading/background_vertex.glsl?raw';
+import diffuse from '../shading/diffuse.glsl?raw';
 import environment from '../shading/environment.glsl?raw';
 import fullscreenVertex from '../shading/fullscreen_vertex.glsl?raw';
+import lookup from '../shading/lookup.glsl?raw';
+import metallicRoughness from '../shading/metallic_roughness.glsl?raw';
+import mirror from '../shading/mirror.glsl?raw';
 import modelFragment from '../shading/model_fragment.glsl?raw';
 import modelVertex from '../shading/model_vertex.glsl?raw';
+import monteCarlo from '../shading/monte_carlo.glsl?raw';
+import phong from '../shading/phong.glsl?raw';
 import present from '../shading/present.glsl?raw';
+import projectEnvironment from '../shading/project_environment.glsl?raw';
+import projections from '../shading/projections.glsl?raw';
+import refract from '../shading/refract.glsl?raw';
 import splitSum from '../shading/split_sum.glsl?raw';
+import stretched from '../shading/stretched.glsl?raw';
 import surface from '../shading/surface.glsl?raw';
 import tonemap from '../shading/tonemap.glsl?raw';
 import type {Mode} from '../state';
@@ -17,14 +29,18 @@ import type {Mode} from '../state';
 const head = 'precision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp samplerCube;\n';
 const join = (...parts: string[]) => head + parts.join('\n');
 
+/// The lat-long shaders have +Z up in the space of their map, so their u_environment is another matrix than that of the cubes.
+const ownFrame = (text: string) => text.replaceAll('u_environment', 'u_envmap_frame');
+
+const sharp = [generic, environment, projections, lookup];
 /// What computes a surface's light, by mode.
 const lighting: Record<Mode, string[]> = {
-    'split-sum': [generic, splitSum],
-    stretched: [generic, splitSum],
-    phong: [generic, splitSum],
-    mirror: [generic, splitSum],
-    refract: [generic, splitSum],
-    'monte-carlo': [generic, splitSum],
+    'split-sum': [generic, diffuse, metallicRoughness, splitSum],
+    stretched: [generic, diffuse, metallicRoughness, stretched],
+    phong: [generic, diffuse, phong],
+    mirror: [...sharp, mirror],
+    refract: [...sharp, refract],
+    'monte-carlo': [ownFrame(sphericalEnvmap), sampleEnvmap, monteCarlo],
 };
 
 export interface Program {
@@ -41,5 +57,6 @@ export const backgroundProgram: Program = {
     fragmentShader: join(environment, generic, backgroundFragment),
 };
 const fullscreen = (...parts: string[]): Program => ({vertexShader: join(fullscreenVertex), fragmentShader: join(...parts)});
+export const projectProgram = fullscreen(environment, projections, projectEnvironment);
 export const accumulateProgram = fullscreen(accumulate);
 export const presentProgram = fullscreen(tonemap, present);

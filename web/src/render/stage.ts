@@ -1,10 +1,13 @@
 // The scene, the light and the camera, drawn by any mode into panes and from there to the screen.
 
 import * as THREE from 'three';
-import type {Bake, BrdfTable, EnvironmentInfo} from '../bake/types';
+import stretchedFit from '../../../src/render/shading/stretched_fit.cpp?raw';
+import {matchingRoughness} from '../bake/chain';
+import type {Bake, BrdfTable, Chain, EnvironmentInfo, Tables} from '../bake/types';
 import {radians} from '../scene/framing';
-import {backgrounds, tonemaps, type Mode, type State} from '../state';
-import {brdfTexture, chainTexture, cubeTexture, latlongTexture} from './maps';
+import {backgrounds, lookups, strategies, tables, tonemaps, type Mode, type State} from '../state';
+import {LookupMaps} from './lookup_maps';
+import {brdfTexture, chainTexture, cubeTexture, latlongTexture, stretchedTexture, tableTexture} from './maps';
 import {Pane} from './pane';
 import {Pass, triangle} from './passes';
 import {backgroundProgram, presentProgram} from './programs';
@@ -21,12 +24,18 @@ export class Stage {
         u_specular: uniform(null), u_irradiance: uniform(null), u_brdf: uniform(null), u_last_level: uniform(1),
         u_sh: uniform(Array.from({length: 9}, () => new THREE.Vector3())), u_latlong: uniform(null),
         u_multiple_scattering: uniform(false), u_harmonics: uniform(false), u_bent_lookup: uniform(false), u_fresnel_weight: uniform(false),
-        u_occlusion: uniform(true),
+        u_occlusion: uniform(true), u_ior_outside: uniform(1), u_lookup: uniform(0), u_lookup_map: uniform(null), u_lookup_back: uniform(null),
+        u_phong: uniform(null), u_phong_roughness: uniform(new Float32Array(16)), u_phong_levels: uniform(1), u_exponent: uniform(-1),
+        u_stretched_fit: uniform(stretchedTexture(stretchedFit)),
+        u_envmap_frame: uniform(new THREE.Matrix3()), u_envmap: uniform(null), u_row_averages: uniform(null), u_total_average: uniform(1),
+        u_columns: uniform(null), u_rows: uniform(null), u_strategy: uniform(0), u_tables: uniform(0), u_samples: uniform(1), u_frame: uniform(0),
+        u_override: uniform(false), u_override_color: uniform(new THREE.Color()), u_override_metalness: uniform(1), u_override_roughness: uniform(0),
         u_background: uniform(0), u_background_color: uniform(new THREE.Color(1, 1, 1)), u_background_roughness: uniform(0.35),
         u_unproject: uniform(new THREE.Matrix4()),
     };
     private readonly scene = new THREE.Scene();
     private readonly present: Pass;
+    private readonly lookups: LookupMaps;
     private meshes: LitMesh[] = [];
     private model?: THREE.Object3D;
 
@@ -35,6 +44,7 @@ export class Stage {
         this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;  // the shaders write what the screen shows
         this.renderer.autoClear = true;
         this.panes = [new Pane(this.renderer), new Pane(this.renderer)];
+        this.lookups = new LookupMaps(this.renderer, this.uniforms.u_latlong!);
         const sky = triangle(new THREE.RawShaderMaterial({
             ...backgroundProgram, glslVersion: THREE.GLSL3, uniforms: this.uniforms, depthWrite: false, depthFunc: THREE.LessEqualDepth,
         }));
@@ -63,12 +73,27 @@ export class Stage {
 
     setEnvironment(info: EnvironmentInfo): void {
         this.replace('u_latlong', latlongTexture(info));
+        this.lookups.forget();
     }
     setBake(bake: Bake): void {
         this.replace('u_specular', chainTexture(bake.specular));
         this.replace('u_irradiance', cubeTexture([bake.irradiance]));
         this.uniforms.u_last_level!.value = bake.specular.levels.length - 1;
         (this.uniforms.u_sh!.value as THREE.Vector3[]).forEach((v, k) => v.fromArray(bake.sh, 3 * k));
+        this.restart();
+    }
+    setPhong(chain: Chain): void {
+        this.replace('u_phong', chainTexture(chain));
+        (this.uniforms.u_phong_roughness!.value as Float32Array).set(chain.parameters.map(matchingRoughness));
+        this.uniforms.u_phong_levels!.value = chain.levels.length;
+        this.restart();
+    }
+    setTables({width, height, texels, rowAverages, totalAverage, columns, rows}: Tables): void {
+        this.replace('u_envmap', tableTexture(texels, width, height));
+        this.replace('u_row_averages', tableTexture(rowAverages, 1, height));
+        this.replace('u_columns', tableTexture(columns, width, height));
+        this.replace('u_rows', tableTexture(rows, 1, height));
+        this.uniforms.u_total_average!.value = totalAverage;
         this.restart();
     }
     setBrdf(table: BrdfTable): void {
@@ -91,7 +116,24 @@ export class Stage {
         u.u_background_roughness!.value = state.blur;
         const turn = radians(state.turn), c = Math.cos(turn), s = Math.sin(turn);
         // Turns the light about +Y, from +X towards +Z: this is the inverse turn, of the directions.
-        for (const name of ['u_turn', 'u_environment']) (u[name]!.value as THREE.Matrix3).set(c, 0, s, 0, 1, 0, -s, 0, c);
+        const world = u.u_turn!.value as THREE.Matrix3;
+        world.set(c, 0, s, 0, 1, 0, -s, 0, c);
+        (u.u_environment!.value as THREE.Matrix3).copy(world);
+        // The frame of docs/shaders/spherical_envmap.glsl, for files of the convention `default` in a world with +Y up.
+        (u.u_envmap_frame!.value as THREE.Matrix3).set(-1, 0, 0, 0, 0, 1, 0, 1, 0).multiply(world);
+        u.u_override!.value = state.override;
+        (u.u_override_color!.value as THREE.Color).setStyle(state.color);  // sRGB, as on the screen, to linear
+        u.u_override_metalness!.value = state.metalness;
+        u.u_override_roughness!.value = state.roughness;
+        u.u_exponent!.value = state.override ? state.exponent : -1;
+        u.u_ior_outside!.value = state.iorOutside;
+        u.u_strategy!.value = strategies.indexOf(state.strategy);
+        u.u_tables!.value = tables.indexOf(state.tables);
+        u.u_samples!.value = state.samples;
+        u.u_lookup!.value = lookups.indexOf(state.lookup);
+        const {front, back} = this.lookups.get(state.lookup, state.lookupSize);
+        u.u_lookup_map!.value = front;
+        u.u_lookup_back!.value = back;
         this.camera.position.fromArray(state.eye);
         this.camera.up.set(0, 1, 0);
         this.camera.lookAt(...state.target);
@@ -111,6 +153,7 @@ export class Stage {
         this.camera.updateProjectionMatrix();
         this.camera.updateMatrixWorld();
         for (const mesh of this.meshes) mesh.use(mode);
+        this.uniforms.u_frame!.value = pane.count;
         (this.uniforms.u_eye!.value as THREE.Vector3).copy(this.camera.position);
         pane.advance(this.camera, mode === 'monte-carlo', () => {
             this.camera.updateProjectionMatrix();

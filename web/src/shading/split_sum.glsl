@@ -1,21 +1,9 @@
-// Split-sum: Karis 2013, "Real Shading in Unreal Engine 4". docs/math/split-sum.md derives it line by line. Behind
-// docs/shaders/generic.glsl; the C++ is src/render/shading/shading_split_sum.cpp.
+// Split-sum: Karis 2013, "Real Shading in Unreal Engine 4". docs/math/split-sum.md derives it line by line. The C++ is
+// src/render/shading/shading_split_sum.cpp. Behind metallic_roughness.glsl.
 
-uniform bool u_multiple_scattering;
-uniform bool u_harmonics;    // irradiance from nine coefficients in place of the cube
 uniform bool u_bent_lookup;
-uniform bool u_fresnel_weight;
 
-vec3 diffuse_light(vec3 n) {
-    return u_harmonics ? domelight_diffuse_sh(n) : domelight_diffuse(n);
-}
-
-/// Specular occlusion from the ambient one: Lagarde and de Rousiers 2014, "Moving Frostbite to PBR", listing 26.
-float specular_occlusion(float NdotV, float occlusion, float alpha) {
-    return clamp(pow(NdotV + occlusion, exp2(-16.0 * alpha - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
-}
-
-/// The mirror direction, or one between it and the normal, nearer to the normal the rougher the surface is (the same, listing 21).
+/// The mirror direction, or one between it and the normal, nearer to the normal the rougher the surface is (Lagarde and de Rousiers 2014, listing 21).
 vec3 lookup_direction(vec3 n, vec3 v, float roughness) {
     vec3 r = reflect(-v, n);
     float smoothness = 1.0 - roughness;
@@ -23,29 +11,8 @@ vec3 lookup_direction(vec3 n, vec3 v, float roughness) {
     return u_bent_lookup ? n + (r - n) * lean : r;
 }
 
-/// A surface for a given light of its specular lobe: the part that F0 multiplies, and the part that F90 multiplies.
-vec3 shade_metallic_roughness(Surface s, float NdotV, vec3 scale_light, vec3 bias_light) {
-    vec3 e = diffuse_light(s.normal);
-    vec2 scale_bias = textureLod(u_brdf, vec2(NdotV, s.roughness), 0.0).rg;
-    vec3 single = s.f0 * scale_bias.x + s.f90 * scale_bias.y;
-    vec3 specular = scale_light * s.f0 * scale_bias.x + bias_light * s.f90 * scale_bias.y;
-    vec3 weight = u_fresnel_weight ? 1.0 - (s.f0 + (s.f90 - s.f0) * pow(1.0 - NdotV, 5.0)) : 1.0 - single;
-    if (u_multiple_scattering) {
-        // Fdez-Aguera 2019, listing 2; domelight_multiple_scattering() is the same for F90 = 1.
-        float lost = 1.0 - (scale_bias.x + scale_bias.y);
-        vec3 mean = s.f0 + (1.0 - s.f0) / 21.0;
-        vec3 multiple = lost * single * mean / (1.0 - lost * mean);
-        specular += multiple * e;
-        if (!u_fresnel_weight) weight -= multiple;
-    }
-    vec3 diffuse = s.diffuse * weight * e * s.occlusion;
-    return diffuse + specular * specular_occlusion(NdotV, s.occlusion, s.roughness * s.roughness);
-}
-
-#ifndef OTHER_LOBE
 vec3 shade(Surface s, vec3 v) {
     float NdotV = clamp(dot(s.normal, v), 0.0, 1.0);
     vec3 light = domelight_specular(lookup_direction(s.normal, v, s.roughness), s.roughness);
     return shade_metallic_roughness(s, NdotV, light, light);
 }
-#endif

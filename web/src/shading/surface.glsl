@@ -39,6 +39,10 @@ uniform float u_alpha_cutoff;  // below 0: no cut-out
 uniform bool u_blend;
 uniform bool u_unlit;
 uniform bool u_occlusion;      // whether occlusion textures are read
+uniform bool u_override;       // every surface has the material that the user chose:
+uniform vec3 u_override_color;
+uniform float u_override_metalness;
+uniform float u_override_roughness;
 
 #ifdef BASE_COLOR_MAP
 uniform sampler2D u_base_color_map;
@@ -116,6 +120,11 @@ Surface surface_here() {
     metalness *= texel.b;
     roughness *= texel.g;
 #endif
+    if (u_override) {
+        base.rgb = u_override_color;
+        metalness = u_override_metalness;
+        roughness = u_override_roughness;
+    }
     s.roughness = max(clamp(roughness, 0.0, 1.0), 0.01);  // alpha = roughness², at least 1e-4
     float ratio = (u_ior - 1.0) / (u_ior + 1.0);
     s.dielectric_f0 = min(ratio * ratio * u_specular_tint, vec3(1.0)) * u_specular_weight;
