@@ -36,11 +36,12 @@ void declare(Arguments& a, RenderWords& w) {
     a.group("The picture");
     a.texts("-o,--output", "FILE", w.outputs,
             "the output: .exr with all layers, .hdr, or a tone-mapped .png or .jpg; may be given several times");
-    a.integer("--width", "N", w.width, "pixels (512)");
-    a.integer("--height", "N", w.height, "pixels (from the aspect ratio of the scene's camera, otherwise 512)");
-    a.text("--camera", "N|NAME", w.camera, "the camera of the scene to use, 1 is the first (1)");
+    a.integer("--width", "N", w.width, "pixels (512; of a face with --camera cube: 256)");
+    a.integer("--height", "N", w.height, "pixels (from the aspect ratio of the scene's camera, otherwise 512; half the width with --camera latlong)");
+    a.text("--camera", "N|NAME|cube|latlong", w.camera, "the camera of the scene to use, 1 is the first (1); cube or latlong: every direction "
+           "from --camera-position (the middle of the scene), as an environment to bake or to convert");
     a.numbers("--camera-position", "x,y,z", w.camera_position,
-              "the eye (the scene's camera, or one that shows all of it)");
+              "the eye (that of the scene's camera, or of one that shows all of it)");
     a.numbers("--camera-target", "x,y,z", w.camera_target, "the point that the camera looks at (0,0,0)");
     a.number("--fov-deg", "DEGREES", w.fov_deg, "vertical field of view with --camera-position, 0.1 to 170 (35)");
     a.choice("--background", w.background, "what is seen where there is no surface (environment)");

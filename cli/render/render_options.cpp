@@ -92,8 +92,17 @@ Result<void> check_company(const RenderWords& w, const Arguments& a) {
             if (is_screen_picture(o) && !holds_opacity(o))
                 return Error{fmt::format("\"{}\" cannot be transparent: JPEG holds no opacity", o), "--output",
                              "Write a .png, or choose another --background."};
-    if (!w.camera.empty() && !w.camera_position.empty())
+    if (w.panorama() != Camera::Panorama::none) {
+        for (const char* option : {"--camera-target", "--fov-deg", "--frames", "--shadow-catcher"})
+            if (a.given(option)) return Error{"has no meaning with --camera " + w.camera, option, ""};
+        if (w.panorama() == Camera::Panorama::cube && a.given("--height"))
+            return Error{"has no meaning with --camera cube", "--height",
+                         "--width N is the size of a face; the six faces lie one below the other."};
+        if (w.panorama() == Camera::Panorama::latlong && w.width && w.height && *w.width != 2 * *w.height)
+            return Error{"is not half of --width", "--height", "A lat-long map is twice as wide as high."};
+    } else if (!w.camera.empty() && !w.camera_position.empty()) {
         return Error{"is one camera, --camera-position another", "--camera", "Leave one of them out."};
+    }
     if (w.turn == "environment" && !w.maps.empty())
         return Error{"turns the light, and the maps of --maps would stay as they are", "--turn",
                      "Leave --maps out: each frame then bakes its own."};
@@ -164,10 +173,27 @@ Result<const Camera*> find_camera(const std::string& word, const Scene& scene) {
                                        : fmt::format("It has {}.", camera_list(scene))};
 }
 
-}  // namespace
+Vec3f vector(const std::vector<double>& v) {
+    return v.empty() ? Vec3f{} : Vec3f(Vec3d{v[0], v[1], v[2]});
+}
 
-Result<RenderOptions> render_options(const RenderWords& w, const Scene& scene) {
-    RenderOptions o;
+/// Sets a camera that sees in every direction, and the size of its picture.
+void set_panorama(RenderOptions& o, const RenderWords& w, const Scene& scene) {
+    o.camera.panorama = w.panorama();
+    const Scene::Box box = scene.bounds();
+    o.camera.to_world.translation =
+        w.camera_position.empty() ? (box.low + box.high) * 0.5f : vector(w.camera_position);
+    if (o.camera.panorama == Camera::Panorama::cube) {
+        o.width = w.width.value_or(256);
+        o.height = 6 * o.width;
+    } else {
+        o.height = w.height ? *w.height : w.width ? std::max(1, *w.width / 2) : 512;
+        o.width = 2 * o.height;
+    }
+}
+
+/// Sets the camera that was asked for, or the scene's, and the size of the picture.
+Result<void> set_camera(RenderOptions& o, const RenderWords& w, const Scene& scene) {
     const Camera* own = scene.cameras.empty() ? nullptr : &scene.cameras.front();
     if (!w.camera.empty()) {
         const auto found = find_camera(w.camera, scene);
@@ -183,14 +209,22 @@ Result<RenderOptions> render_options(const RenderWords& w, const Scene& scene) {
         o.height = *w.height;
         o.width = std::clamp(int(std::lround(float(o.height) * aspect)), 1, 16384);
     }
-    const auto vector = [](const std::vector<double>& v) {
-        return v.empty() ? Vec3f{} : Vec3f(Vec3d{v[0], v[1], v[2]});
-    };
     const float shape = float(o.width) / float(o.height);
     o.camera = own ? camera_for(*own, shape)
                : w.camera_position.empty()
                    ? default_camera(scene, shape)
                    : look_at(vector(w.camera_position), vector(w.camera_target), float(w.fov_deg * k_pi / 180));
+    return {};
+}
+
+}  // namespace
+
+Result<RenderOptions> render_options(const RenderWords& w, const Scene& scene) {
+    RenderOptions o;
+    if (w.panorama() != Camera::Panorama::none)
+        set_panorama(o, w, scene);
+    else if (auto ok = set_camera(o, w, scene); !ok)
+        return ok.error();
     o.strategy = w.strategy;
     o.samples = w.spp.value_or(64);
     o.noise = w.noise;

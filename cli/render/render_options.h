@@ -57,6 +57,12 @@ struct RenderWords {
     bool reference() const { return !shading; }
     std::string shading_name() const { return shading ? name_of(*shading) : k_reference; }
     std::string scene_name() const { return scenes.empty() ? "" : scenes.front(); }
+    /// Whether --camera asks for a picture of every direction.
+    Camera::Panorama panorama() const {
+        return camera == "cube"      ? Camera::Panorama::cube
+               : camera == "latlong" ? Camera::Panorama::latlong
+                                     : Camera::Panorama::none;
+    }
 };
 
 /// Checks the options and their combinations, splits the outputs at commas, and sets the background.

@@ -1,19 +1,33 @@
 #include "render/camera.h"
 
+#include "domelight/projection/projection.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace domelight {
 
-CameraRays::CameraRays(const Camera& camera, int width, int height) : camera_(camera) {
+CameraRays::CameraRays(const Camera& camera, int width, int height)
+    : camera_(camera), width_(width), height_(height) {
     half_height_ = camera.orthographic ? camera.half_height : std::tan(0.5f * camera.fov_y);
     half_width_ = half_height_ * float(width) / float(height);
     step_u_ = 2 * half_width_ / float(width);
     step_v_ = 2 * half_height_ / float(height);
 }
 
+Vec3f CameraRays::panorama_direction(float x, float y) const {
+    if (camera_.panorama == Camera::Panorama::latlong)
+        return Vec3f(latlong_direction({double(x) / width_, double(y) / height_}));
+    const int face = std::min(int(y) / width_, 5);
+    return Vec3f(cube_direction(face, {double(x) / width_, double(y) / width_ - face}));
+}
+
 Ray CameraRays::through(int x, int y, UnitPoint within) const {
+    if (camera_.panorama != Camera::Panorama::none) {
+        const Vec3f d = panorama_direction(float(x) + unit_float(within.x), float(y) + unit_float(within.y));
+        return {camera_.to_world.translation, normalize(camera_.to_world.vector(d)), 0};
+    }
     const float u = (float(x) + unit_float(within.x)) * step_u_ - half_width_,
                 v = half_height_ - (float(y) + unit_float(within.y)) * step_v_;
     const Affine& m = camera_.to_world;

@@ -15,7 +15,11 @@ class CameraRays {
     Ray through(int x, int y, UnitPoint within) const;
 
   private:
+    /// The direction of a panorama's ray, in the camera's frame, through a point of the picture in pixels.
+    Vec3f panorama_direction(float x, float y) const;
+
     Camera camera_;
+    int width_, height_;
     float half_width_, half_height_;
     float step_u_, step_v_;  ///< from pixel to pixel
 };

@@ -84,6 +84,26 @@ def test_examples_in_every_help_run(folder):
         run(*line.split()[1:], "--quiet", folder=folder)
 
 
+def test_a_render_of_every_direction_is_an_environment(folder):
+    """Far away from the scene there is only the environment, which comes back through a cube and through a lat-long map."""
+    (folder / "helmet.glb").write_bytes(make_glb())
+    run("sky", "--axes", "-o", "axes.hdr", "--height", "64", folder=folder)
+    view = ["helmet.glb", "--env", "axes.hdr", "--camera-position", "1e6,0,0", "--spp", "16", "--quiet"]
+    run("render", *view, "--camera", "cube", "--width", "32", "-o", "cube.exr", folder=folder)
+    assert "32 x 192" in run("info", "cube.exr", folder=folder).stdout
+    run("convert", "cube.exr", "--to", "latlong", "--size", "64", "-o", "back.exr", folder=folder)
+    run("render", *view, "--camera", "latlong", "--height", "64", "-o", "latlong.exr", folder=folder)
+    for file, most in [("back.exr", 0.25), ("latlong.exr", 0.2)]:  # labels turned or mirrored: over 0.5
+        told = json.loads(run("compare", file, "axes.hdr", "--json", folder=folder).stdout)
+        error = told["errors"]["relative_rmse"]
+        assert error < most, (file, error)
+    for words, what in [(["--camera", "cube", "--height", "64"], "--height: has no meaning with --camera cube"),
+                        (["--camera", "latlong", "--width", "64", "--height", "64"], "--height: is not half of --width"),
+                        (["--camera", "cube", "--frames", "4"], "--frames: has no meaning with --camera cube"),
+                        (["--camera", "latlong", "--fov-deg", "40"], "--fov-deg: has no meaning")]:
+        assert what in run("render", "helmet.glb", *words, "-o", "x.exr", folder=folder, code=2).stderr, words
+
+
 def test_help_of_a_command(folder):
     overview = run("help", folder=folder).stdout
     assert overview == run("--help", folder=folder).stdout and "domelight help COMMAND" in overview

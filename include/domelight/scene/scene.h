@@ -142,12 +142,20 @@ struct PunctualLight {
     std::string name;
 };
 
-/// A pinhole camera (or a parallel one) looking along -z of its frame, +y up.
+/// A pinhole camera (or a parallel one) looking along -z of its frame, +y up; or one that sees in every direction.
 struct Camera {
+    /// What a camera that sees in every direction draws: an environment around its position, in its frame's axes.
+    enum class Panorama : std::uint8_t {
+        none,
+        cube,    ///< the six faces of a Cubemap, one below the other: the picture is six times as high as wide
+        latlong  ///< a lat-long map in the default convention: the picture is twice as wide as high
+    };
+
     Affine to_world;
     float fov_y = 0.6f;  ///< radians
     bool orthographic = false;
     float half_height = 1;  ///< orthographic: metres
+    Panorama panorama = Panorama::none;  ///< not `none`: fov_y, orthographic and half_height are not used
     float aspect = 0;       ///< width / height of the picture that it was made for; 0: not stated
     std::string name;
 };
