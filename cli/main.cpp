@@ -1,6 +1,7 @@
 #include "domelight/base/version.h"
 #include "domelight/io/file/atomic_file.h"
 
+#include "cli/about/about.h"
 #include "cli/commands.h"
 #include "cli/console/arguments.h"
 #include "cli/console/console.h"
@@ -16,8 +17,12 @@
 #include <malloc.h>
 #endif
 
+#include <algorithm>
+#include <array>
 #include <exception>
+#include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace domelight::cli {
@@ -44,25 +49,72 @@ constexpr Command k_commands[] = {
     {"view", "opens a page that shows a model under an environment by every method, beside the truth", run_view},
 };
 
+constexpr const char* k_summary =
+    "image-based lighting, computed exactly: bakes for real-time engines, light samples, reference renders";
+constexpr std::array k_examples{"domelight bake studio.hdr -o out", "domelight info studio.hdr",
+                                "domelight sky -o evening.hdr --sun-elevation-deg 4"};
+constexpr std::array k_shells{"bash", "zsh", "fish"};
+
 std::string help() {
-    std::string text =
-        "Examples:\n"
-        "  domelight bake studio.hdr -o out\n"
-        "  domelight info studio.hdr\n"
-        "  domelight sky -o evening.hdr --sun-elevation-deg 4\n"
-        "\ndomelight COMMAND ...\nImage-based lighting, computed exactly: bakes for real-time engines, light samples, "
-        "reference renders.\n\nCommands:\n";
+    std::string text = "Examples:\n";
+    for (const char* example : k_examples) text += fmt::format("  {}\n", example);
+    std::string summary = k_summary;
+    summary[0] = 'I';
+    text += fmt::format("\ndomelight COMMAND ...\n{}.\n\nCommands:\n", summary);
     for (const Command& command : k_commands) text += fmt::format("  {:<28}{}\n", command.name, command.does);
     return text +
            "\ndomelight help COMMAND (or domelight COMMAND --help) lists a command's options.\n"
+           "domelight completion bash|zsh|fish prints a script with which the shell completes these words.\n"
            "  --version                   the version\n"
            "  --help                      this text\n"
            "\nExit status: 0 done, 1 failed, 2 wrong usage.\n";
 }
 
+/// All that the commands say of themselves.
+ProgramDescription describe_program() {
+    ProgramDescription program{k_summary, {k_examples.begin(), k_examples.end()}, {}, {}};
+    DescriptionCollector collector;
+    for (const Command& command : k_commands) {
+        program.does.emplace_back(command.name, command.does);
+        command.run({"--help"});
+    }
+    program.commands = std::move(collector.commands);
+    return program;
+}
+
+/// domelight completion SHELL.
+int print_completion(const std::vector<std::string>& words) {
+    const std::vector<std::string> shells(k_shells.begin(), k_shells.end());
+    if (words.size() != 1 || std::ranges::find(shells, words[0]) == shells.end())
+        return print_error({"names one shell: " + join(shells, ", "), "completion", "As in: domelight completion bash"},
+                           exit_usage);
+    print_lines(completion_script(describe_program(), words[0]));
+    return exit_done;
+}
+
+Result<void> write_text(const std::filesystem::path& file, const std::string& text) {
+    return write_file_atomically(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+/// domelight manual DIR: writes the manual pages and the completions, which cmake --install installs.
+int write_manual(const std::vector<std::string>& words) {
+    if (words.size() != 1) return print_error({"names one folder that exists", "manual", ""}, exit_usage);
+    const std::filesystem::path folder = words[0];
+    const ProgramDescription program = describe_program();
+    std::vector<std::pair<std::string, std::string>> files{{"domelight.1", program_manual(program)},
+                                                           {"domelight", completion_script(program, "bash")},
+                                                           {"_domelight", completion_script(program, "zsh")},
+                                                           {"domelight.fish", completion_script(program, "fish")}};
+    for (const CommandDescription& command : program.commands)
+        files.emplace_back("domelight-" + command.command + ".1", command_manual(program, command));
+    for (const auto& [name, text] : files)
+        if (auto ok = write_text(folder / name, text); !ok) return print_error(ok.error());
+    return exit_done;
+}
+
 /// Says that a word is no command.
 int refuse(const std::string& word) {
-    std::vector<std::string> commands, names{"help", "--help", "--version"};
+    std::vector<std::string> commands, names{"help", "completion", "--help", "--version"};
     for (const Command& command : k_commands) commands.emplace_back(command.name);
     names.insert(names.end(), commands.begin(), commands.end());
     return print_error(
@@ -85,11 +137,12 @@ int run(const std::vector<std::string>& words) {
         print("domelight {}\n", version());
         return exit_done;
     }
+    const std::vector<std::string> rest(words.begin() + 1, words.end());
+    if (words[0] == "completion") return print_completion(rest);
+    if (words[0] == "manual") return write_manual(rest);
     const std::string& name = words[wants_help ? 1 : 0];
     for (const Command& command : k_commands)
-        if (name == command.name)
-            return command.run(wants_help ? std::vector<std::string>{"--help"}
-                                          : std::vector<std::string>(words.begin() + 1, words.end()));
+        if (name == command.name) return command.run(wants_help ? std::vector<std::string>{"--help"} : rest);
     return refuse(name);
 }
 

@@ -19,7 +19,9 @@ build_packages=(
 )
 # ./test: the test framework, the benchmarks, and the scripts that drive the program.
 test_packages=("${build_packages[@]}" doctest-dev libbenchmark-dev python3
-    glslang-tools)      # compiles docs/shaders
+    glslang-tools       # compiles docs/shaders
+    valgrind            # tests/c: leaks of the C interface
+    man-db)             # tests/install: sets the manual pages
 # ./test --fuzz: libFuzzer comes with clang.
 fuzz_packages=("${test_packages[@]}" clang-19 libclang-rt-19-dev)
 # tests/engines/browser: the browser that runs the engines, Node to drive it, and OpenEXR's own tools.
@@ -30,5 +32,7 @@ web_packages=(chromium nodejs npm)
 declare -A command_of=([nodejs]=node [openexr]=exrheader)
 # tests/python: the headers of Python, and its virtual environments.
 python_packages=(python3-dev python3-venv)
+# ./test --package: a root of Debian with nothing in it.
+package_packages=(mmdebstrap)
 # bench/peers.py: the program that is measured beside ours.
 peer_packages=(libfilament-tools)

@@ -71,6 +71,7 @@ struct Arguments::Parser {
         std::string group, name, value_name, help;
         CLI::Option* option = nullptr;
         std::vector<std::pair<std::string, std::string>> table = {};  ///< values and what they stand for
+        std::vector<std::string> accepted = {};                       ///< the values, where they are known
     };
     std::vector<Entry> entries;
     bool help = false;
@@ -200,6 +201,7 @@ void Arguments::choice_by_place(const std::string& name, const std::vector<std::
                      take(std::size_t(std::find(accepted.begin(), accepted.end(), word) - accepted.begin()));
                      return {};
                  });
+    parser_->entries.back().accepted = accepted;
 }
 
 void Arguments::choice(const std::string& name, std::string& value, const std::vector<std::string>& accepted,
@@ -220,6 +222,7 @@ void Arguments::choices(const std::string& name, std::vector<std::string>& value
             return {};
         },
         true);
+    parser_->entries.back().accepted = accepted;
 }
 
 void Arguments::choices(const std::string& name, const std::string& value_name, std::vector<std::string>& values,
@@ -324,6 +327,14 @@ std::string Arguments::help() const {
                    wrap(meaning, 110 - meaning_column, meaning_column) + "\n";
     }
     return out + "  --help                      this text\n";
+}
+
+CommandDescription Arguments::description() const {
+    CommandDescription description{command_, summary_, examples_, {}};
+    for (const auto& entry : parser_->entries)
+        description.options.push_back(
+            {entry.group, split(entry.name, ','), entry.value_name, entry.help, entry.accepted, entry.table});
+    return description;
 }
 
 }  // namespace domelight::cli

@@ -3,6 +3,8 @@
 #include "domelight/base/names.h"
 #include "domelight/base/result.h"
 
+#include "cli/console/description.h"
+
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -72,6 +74,7 @@ class Arguments {
     Result<void> parse(const std::vector<std::string>& words);
     bool help_wanted() const;
     std::string help() const;
+    CommandDescription description() const;
 
   private:
     /// `take` gets the place of the given word in `accepted`.

@@ -37,6 +37,10 @@ std::optional<int> begin_command(Arguments& arguments, const std::vector<std::st
                                  const CommonOptions& options) {
     if (auto ok = arguments.parse(words); !ok) return print_error(ok.error(), exit_usage);
     if (arguments.help_wanted()) {
+        if (DescriptionCollector* collector = DescriptionCollector::current()) {
+            collector->commands.push_back(arguments.description());
+            return exit_done;
+        }
         print_lines(arguments.help());
         return exit_done;
     }

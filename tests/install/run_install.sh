@@ -5,7 +5,7 @@ here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 build=${DOMELIGHT_BUILD:-$here/../../build/dev}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-passed=0 failed=0
+passed=0 failed=0 skipped=0
 
 claim() {
     local what=$1
@@ -23,7 +23,7 @@ same_version() {
     [ "$("$work/prefix/bin/domelight" --version | grep -oE '[0-9]+\.[0-9]+\.[0-9]+' | head -n 1)" = \
         "$(sed -nE 's/^project\(domelight VERSION ([0-9.]+).*/\1/p' "$here/../../CMakeLists.txt")" ]
 }
-names_no_build_folder() { ! grep -rnF -e "$(cd -- "$here/../.." && pwd)" "$work/prefix/lib" --include='*.cmake'; }
+names_no_build_folder() { ! grep -rnF -e "$(cd -- "$here/../.." && pwd)" "$work/prefix/lib" --include='*.cmake' --include='*.pc'; }
 refuses_unknown_component() {
     mkdir "$work/unknown"
     sed 's/COMPONENTS core/COMPONENTS kitchen/' "$here/core/CMakeLists.txt" >"$work/unknown/CMakeLists.txt"
@@ -90,9 +90,72 @@ claim "a project that only samples and filters finds the component core" \
 claim "it compiles and links" cmake --build "$work/core"
 claim "it links Highway and threads, and none of the libraries that files and rays need" core_links_little
 claim "it runs" core_runs
+# The C interface, found by CMake and by pkg-config, in a program that knows nothing of C++.
+cp -r "$here/c" "$work/c"
+cp "$here/../../examples/c/bake.c" "$work/c"
+c_bakes_the_same() { "$work/c/build/bake" "$work/white.hdr" "$work/c.ktx2" && cmp "$work/c.ktx2" "$work/specular.ktx2"; }
+c_by_pkg_config() {
+    local libdir
+    libdir=$(dirname "$(find "$work/moved" -name libdomelight_c.so)")
+    export PKG_CONFIG_PATH=$libdir/pkgconfig
+    # shellcheck disable=SC2046
+    cc -std=c99 "$work/c/bake.c" $(pkg-config --cflags --libs domelight_c) -Wl,-rpath,"$libdir" -o "$work/c/by_pkg_config" &&
+        "$work/c/by_pkg_config" "$work/white.hdr" "$work/c2.ktx2" && cmp "$work/c2.ktx2" "$work/specular.ktx2"
+}
+claim "a project in C finds the component c" cmake -S "$work/c" -B "$work/c/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/moved"
+claim "it compiles and links" cmake --build "$work/c/build"
+claim "it bakes the bytes of examples/bake_minimal.cpp" c_bakes_the_same
+claim "pkg-config finds it too" c_by_pkg_config
+
+# What belongs to the program.
+share=$work/moved/share
+texts_are_there() { [ -s "$share/doc/domelight/LICENSE" ] && [ -s "$share/doc/domelight/NOTICE" ] && [ -s "$share/domelight/shaders/generic.glsl" ]; }
+pages_for_all_commands() {
+    "$work/moved/bin/domelight" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p' >"$work/commands"
+    [ "$(wc -l <"$work/commands")" -gt 5 ] || return 1
+    while read -r command; do [ -s "$share/man/man1/domelight-$command.1" ] || { echo "no page for $command"; return 1; }; done <"$work/commands"
+    [ -s "$share/man/man1/domelight.1" ]
+}
+# Every option of the help is in the page, by its name.
+page_has_options() {
+    "$work/moved/bin/domelight" bake --help | grep -oE '^  (-[a-z], )?--[a-z-]+' | grep -oE -e '--[a-z-]+' >"$work/options"
+    sed 's/\\-/-/g' "$share/man/man1/domelight-bake.1" >"$work/page"
+    [ "$(wc -l <"$work/options")" -gt 30 ] || return 1
+    while read -r option; do grep -qF -e "$option" "$work/page" || { echo "no $option"; return 1; }; done <"$work/options"
+}
+pages_are_set() {
+    for page in "$share"/man/man1/*.1; do
+        man --warnings -E UTF-8 -l "$page" 2>"$work/said" >"$work/set" || return 1
+        [ ! -s "$work/said" ] || { cat "$work/said"; return 1; }
+    done
+}
+# complete WORDS...: what bash offers for the last word.
+complete() {
+    bash -c '. "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); compopt() { :; }; _domelight; printf "%s\n" "${COMPREPLY[@]}"' - \
+        "$share/bash-completion/completions/domelight" domelight "$@" | sort
+}
+bash_completes() {
+    [ "$(complete co | tr '\n' ' ')" = 'compare completion convert ' ] &&
+        [ "$(complete bake --lo)" = --lobe ] &&
+        [ "$(complete bake --lobe '' | tr '\n' ' ')" = 'charlie ggx phong phong-plain ' ] &&
+        [ "$(complete bake --for = ba)" = babylon ] &&
+        [ "$(complete help ligh)" = lights ] &&
+        [ -z "$(complete bake -o '')" ] && [ -z "$(complete bake --size '')" ]
+}
+bash_reads_it() { bash -c '. "$1" && complete -p domelight' - "$share/bash-completion/completions/domelight"; }
+claim "licence, notice and shaders are installed" texts_are_there
+claim "each command has a manual page" pages_for_all_commands
+claim "which has every option" page_has_options
+if command -v man >/dev/null; then claim "man sets the pages without a warning" pages_are_set; else
+    skipped=$((skipped + 1))
+    echo "skipped: man is not installed"
+fi
+claim "bash accepts the completion" bash_reads_it
+claim "and completes commands, options and values" bash_completes
+
 sed -i 's/domelight 0.2 REQUIRED/domelight 99 REQUIRED/' "$work/project/CMakeLists.txt"
 claim "an unknown component is refused, and those that exist are listed" refuses_unknown_component
 claim "another version is refused" refuses_another_version
 
-echo "install: $passed passed, $failed failed, 0 skipped"
+echo "install: $passed passed, $failed failed, $skipped skipped"
 [ "$failed" = 0 ]
