@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -138,10 +139,19 @@ class ArrayRows : public RowSource {
     int next_row_ = 0;
 };
 
+bool is_light(float value) {
+    return value >= 0 && value <= std::numeric_limits<float>::max();
+}
+
+/// Whether all values are finite and not negative. By their bits, which is several times as fast as comparing: the sign
+/// bit is set of negative values, and 0x00800000 carries the exponent of infinities and NaNs into it.
 bool all_are_light(const float* values, int count) {
-    int bad = 0;
-    for (int i = 0; i < count; ++i) bad |= !(values[i] >= 0 && values[i] <= std::numeric_limits<float>::max());
-    return bad == 0;
+    std::uint32_t signs = 0;
+    for (int i = 0; i < count; ++i) {
+        const std::uint32_t bits = std::bit_cast<std::uint32_t>(values[i]);
+        signs |= bits | (bits + 0x00800000u);
+    }
+    return signs >> 31 == 0 || std::all_of(values, values + count, is_light);  // -0 is light
 }
 
 template <typename T>
@@ -224,7 +234,7 @@ Result<void> check_radiance(ImageView<const float> rows, int first_row, const st
         const float* const row = rows.row(y);
         const int count = rows.width * rows.channels;
         if (all_are_light(row, count)) continue;
-        const auto bad = std::find_if(row, row + count, [](float v) { return !all_are_light(&v, 1); }) - row;
+        const auto bad = std::find_if(row, row + count, [](float v) { return !is_light(v); }) - row;
         return Error{fmt::format("{} at row {}, column {}, channel {} is no radiance, which is finite and not negative",
                                  row[bad], first_row + y, bad / rows.channels, bad % rows.channels),
                      field_place(keyword), "numpy.clip(numpy.nan_to_num(array), 0, None) is."};

@@ -11,11 +11,11 @@
 
 namespace domelight::python {
 
-/// Runs `work` on a thread of its own without the interpreter's lock, and returns when it is done. The calling thread
-/// meanwhile passes its progress on to `progress(stage, done)` (None: to nobody) and listens to Ctrl-C. Where the
-/// callback raises or returns False, or a signal's handler raises, the work is asked to stop, and what was raised is
-/// raised here once it has stopped. A thread of its own also means that a child process made by fork() can call the
-/// library: it inherits no helper threads.
+/// Runs `work` on another thread without the interpreter's lock, and returns when it is done. The calling thread
+/// meanwhile passes its progress on to `progress(stage, done)` (None: to nobody) and looks for signals. Where the
+/// callback raises or returns False, or a signal's handler raises (Ctrl-C), the work is asked to stop, and what was
+/// raised is raised here once it has stopped. A child process made by fork() can call the library too: its work runs on
+/// new threads.
 void run_work(const nb::object& progress, const std::function<void(const Progress&)>& work);
 
 /// The same for work that gives a result.

@@ -83,6 +83,12 @@ def test_several_threads_at_once(light):
     assert all(a.tobytes() == b.tobytes() for result in results for a, b in zip(result, expected))
 
 
+def test_a_callback_calls_the_library(light):
+    told = []
+    dl.prefilter(light, size=32, levels=3, progress=lambda *_: told.append(dl.irradiance(light, size=1).shape))
+    assert told and set(told) == {(6, 1, 1, 3)}
+
+
 INTERRUPTED = textwrap.dedent("""
     import signal, sys
     signal.signal(signal.SIGINT, signal.default_int_handler)
