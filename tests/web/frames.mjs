@@ -19,10 +19,9 @@ const cases = [
     })),
 ];
 
-/// The mean of a pane's frames so far: RGB floats, rows from the top.
+/// The mean of a pane's first frames: RGB floats, rows from the top.
 export async function readPane(page, frames, pane = 0) {
-    await page.waitForFunction(([n, p]) => domelight.stage.panes[p].count >= n, [frames, pane], {timeout: 120_000});
-    const base64 = await page.evaluate(p => domelight.readPane(p), pane);
+    const base64 = await page.evaluate(([n, p]) => domelight.paneAt(n, p), [frames, pane]);
     const bytes = Buffer.from(base64, 'base64');
     return new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
 }

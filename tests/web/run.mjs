@@ -7,6 +7,7 @@ import path from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {launch, serve} from '../engines/browser/browser.mjs';
 import {testFrames} from './frames.mjs';
+import {testMonteCarlo} from './monte_carlo.mjs';
 
 const [program, chromium, ...names] = process.argv.slice(2);
 const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..');
@@ -41,14 +42,15 @@ const browser = await launch(path.join(root, 'web/node_modules'), chromium);
 async function open(hash = '', options = {}) {
     const page = await browser.newPage({viewport: {width: 640, height: 360}, ...options});
     page.complaints = [];
-    page.on('console', message => ['error', 'warning'].includes(message.type()) && page.complaints.push(message.text()));
-    page.on('pageerror', error => page.complaints.push(String(error)));
+    const complain = text => page.complaints.length < 5 && !page.complaints.includes(text) && page.complaints.push(text.slice(0, 2000));
+    page.on('console', message => ['error', 'warning'].includes(message.type()) && complain(message.text()));
+    page.on('pageerror', error => complain(String(error)));
     await page.goto(`${server.url}/app/index.html${hash}`);
     await page.waitForFunction(() => window.domelight?.ready, undefined, {timeout: 30_000});
     return page;
 }
 
-const tests = {frames: testFrames};
+const tests = {frames: testFrames, 'monte-carlo': testMonteCarlo};
 const app = {program, root, work, server, browser, open, claim, skip, data: process.env.DOMELIGHT_DATA};
 for (const [name, test] of Object.entries(tests)) {
     if (names.length && !names.some(n => name.includes(n))) continue;

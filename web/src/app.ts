@@ -2,6 +2,7 @@
 
 import {Baker} from './bake/baker';
 import type {Latlong} from './bake/types';
+import {readPane} from './render/read_back';
 import {Stage} from './render/stage';
 import {builtInModels, type Model} from './scene/built_in';
 import {viewOf} from './scene/framing';
@@ -38,6 +39,7 @@ export class App {
     private needed = {phong: false, tables: 0};
     private dirty = false;
     private environment = 0;
+    private waiting: {frames: number; index: number; resolve: (base64: string) => void}[] = [];
 
     constructor(
         canvas: HTMLCanvasElement,
@@ -168,6 +170,12 @@ export class App {
         }
     }
 
+    /// For tests: a pane when it has averaged this many frames, in base64.
+    paneAt(frames: number, index: number): Promise<string> {
+        this.redraw();
+        return new Promise(resolve => this.waiting.push({frames, index, resolve}));
+    }
+
     private frame(): void {
         this.dirty = false;
         const {state, stage} = this;
@@ -180,6 +188,7 @@ export class App {
         });
         stage.show(state);
         this.events.drawn();
+        this.waiting = this.waiting.filter(({frames, index, resolve}) => stage.panes[index]!.count !== frames || void resolve(readPane(stage, index)));
         if (unfinished) this.redraw();
     }
 }

@@ -2,7 +2,6 @@
 
 import {App} from './app';
 import {Store} from './state';
-import {readPane} from './render/read_back';
 
 const canvas = document.createElement('canvas');
 document.body.append(canvas);
@@ -19,7 +18,7 @@ Object.assign(window, {
     domelight: {
         get ready() { return app.ready; },
         stage: app.stage, store: app.store, openFiles: (files: File[]) => app.openFiles(files),
-        readPane: (index: number) => readPane(app.stage, index),
+        paneAt: (frames: number, index: number) => app.paneAt(frames, index),
     },
 });
 void app.start();

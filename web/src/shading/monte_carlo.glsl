@@ -20,6 +20,18 @@ vec4 random4() {
     return vec4(v >> 8u) / 16777216.0;
 }
 
+/// Radiance at a point of the map, bilinear between texels: what all strategies integrate. (The densities are constant in each texel.)
+vec3 radiance_at(vec2 point) {
+    ivec2 size = textureSize(u_envmap, 0);
+    vec2 p = point * vec2(size) - 0.5;
+    ivec2 low = ivec2(floor(p));
+    vec2 t = p - vec2(low);
+    int x0 = (low.x + size.x) % size.x, x1 = (low.x + 1) % size.x, y0 = max(low.y, 0), y1 = min(low.y + 1, size.y - 1);
+    vec3 above = mix(texelFetch(u_envmap, ivec2(x0, y0), 0).rgb, texelFetch(u_envmap, ivec2(x1, y0), 0).rgb, t.x);
+    vec3 below = mix(texelFetch(u_envmap, ivec2(x0, y1), 0).rgb, texelFetch(u_envmap, ivec2(x1, y1), 0).rgb, t.x);
+    return mix(above, below, t.y);
+}
+
 /// A direction by inversion of the two cumulative functions. The guide says for each cell of random numbers where its search begins.
 EnvmapSample sample_guided(vec2 random) {
     ivec2 size = textureSize(u_envmap, 0);
@@ -35,7 +47,7 @@ EnvmapSample sample_guided(vec2 random) {
 
     EnvmapSample light;
     light.direction = domelight_latlong_direction(vec2(x, y));
-    light.radiance = texelFetch(u_envmap, ivec2(column, row), 0).rgb;
+    light.radiance = radiance_at(vec2(x, y));
     light.pdf_solid_angle = envmapWeight(column, row, size.y) / u_total_average / (2.0 * k_pi * k_pi * max(sin(k_pi * y), 1e-7));
     return light;
 }
@@ -47,7 +59,7 @@ EnvmapSample look_up(vec3 direction) {
     ivec2 texel = min(ivec2(p * vec2(size)), size - 1);
     EnvmapSample light;
     light.direction = direction;
-    light.radiance = texelFetch(u_envmap, texel, 0).rgb;
+    light.radiance = radiance_at(p);
     light.pdf_solid_angle = envmapWeight(texel.x, texel.y, size.y) / u_total_average / (2.0 * k_pi * k_pi * max(sin(k_pi * p.y), 1e-7));
     return light;
 }
@@ -113,7 +125,13 @@ vec3 shade(Surface s, vec3 view) {
     for (int i = 0; i < u_samples; ++i) {
         vec4 random = random4();
         if (u_strategy != 2) {
-            EnvmapSample light = u_tables == 0 ? sampleEnvmap(random.xy) : sample_guided(random.xy);
+            EnvmapSample light;
+            if (u_tables == 1) {
+                light = sample_guided(random.xy);
+            } else {
+                light = sampleEnvmap(random.xy);
+                light.radiance = radiance_at(domelight_latlong_point(light.direction));
+            }
             vec3 l = light.direction * frame;
             // The balance heuristic of one sample each: Veach 1997, eq. 9.8.
             float pdf = light.pdf_solid_angle + (u_strategy == 0 ? brdf_pdf(s, share, v, l) : 0.0);
