@@ -13,7 +13,7 @@ everything.
 from . import _core, conventions
 from ._baking import Bake, Bakes, bake, engines
 from ._comparing import Audit, Comparison, LevelAudit, audit, compare, flip
-from ._converting import convert, write
+from ._converting import convert, read_levels, write
 from ._environment import Environment, Warning, axes, read, sky
 from ._errors import Cancelled, Error, FileError, WrongType
 from ._filtering import Levels, brdf_table, irradiance, prefilter, spherical_harmonics
@@ -54,6 +54,7 @@ __all__ = [
     "lights",
     "prefilter",
     "read",
+    "read_levels",
     "render",
     "sky",
     "spherical_harmonics",

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import _core
+from ._converting import read_levels
 from ._environment import ArrayLike, EnvironmentLike, FloatArray, PathLike, core_environment
 from ._filtering import Levels
 from ._progress import Progress, callback
@@ -174,7 +175,7 @@ class Audit:
 
 
 def audit(
-    levels: Levels | Sequence[ArrayLike],
+    levels: Levels | Sequence[ArrayLike] | PathLike,
     environment: EnvironmentLike,
     *,
     roughness: Sequence[float] | None = None,
@@ -190,7 +191,7 @@ def audit(
     Parameters
     ----------
     levels
-        Cubes of shape (6, size, size, 3), the sharpest first.
+        Cubes of shape (6, size, size, 3), the sharpest first; or the name of a texture's file.
     environment
         What they were baked from.
     roughness, exponents
@@ -200,6 +201,8 @@ def audit(
     within
         The largest error that passes.
     """
+    if isinstance(levels, (str, os.PathLike)):
+        levels = read_levels(levels)
     if isinstance(levels, Levels):
         phong = levels.lobe.startswith("phong")
         lobe, texels = lobe or levels.lobe, texels or levels.texels

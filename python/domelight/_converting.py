@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Sequence
 from typing import Any
@@ -103,17 +104,19 @@ def write(
         options = {"encoding": encoding, "encoding_quality": encoding_quality, "zstd": zstd, "threads": threads}
         _core.write_texture(name, _levels(image), {**options, "metadata": _metadata(image)})
         return
-    if isinstance(image, Environment):
-        image = image.latlong(threads=threads)
     if isinstance(image, (Levels, list, tuple)):
         raise Error("a chain of levels goes into .ktx2, .ktx or .dds", "file", "Write its levels one by one.", "file")
-    shape = np.shape(image)
-    strip = image.reshape(6 * shape[1], shape[2], shape[3]) if len(shape) == 4 and shape[0] == 6 else image
     _core.write_image(
         name,
-        strip,
+        _strip(image.latlong(threads=threads) if isinstance(image, Environment) else image),
         {"half": half, "compression": compression, "tonemap": tonemap, "ev": ev, "threads": threads},
     )
+
+
+def _strip(image: Any) -> Any:
+    """The faces of a cube one below the other; any other array as it is."""
+    shape = np.shape(image)
+    return image.reshape(6 * shape[1], shape[2], shape[3]) if len(shape) == 4 and shape[0] == 6 else image
 
 
 def _levels(image: Any) -> list[Any]:
@@ -134,3 +137,32 @@ def _metadata(image: Any) -> dict[str, str]:
     else:
         keys["domelight.roughness"] = " ".join(f"{value:.9g}" for value in image.roughness)
     return keys
+
+
+def read_levels(file: PathLike) -> Levels:
+    """Reads the levels of a texture (.ktx2, .ktx, .dds): of a cube, or of a lat-long map in the file's convention.
+
+    Roughness or exponents, lobe and kind of texels are those that the file states, as `bake` and `write` write them; the
+    lists are empty where it does not.
+    """
+    told = _core.read_levels(os.fspath(file))
+    keys: dict[str, str] = told.pop("metadata")
+    lobe = keys.get("domelight.lobe", "ggx")
+    numbers = {name: _numbers(keys.get(f"domelight.{name}", "")) for name in ("roughness", "exponent")}
+    widths = numbers["exponent"] if lobe.startswith("phong") else numbers["roughness"]
+    sharp = math.inf if lobe.startswith("phong") else 0
+    return Levels(
+        {
+            **told,
+            "roughness": numbers["roughness"],
+            "exponents": numbers["exponent"],
+            "mirror": [width == sharp for width in widths],
+            "lobe": lobe,
+            "texels": keys.get("domelight.texels", "centre"),
+            "mean": (math.nan,) * 3,
+        }
+    )
+
+
+def _numbers(text: str) -> list[float]:
+    return [float(word) for word in text.replace(",", " ").split()]

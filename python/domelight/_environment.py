@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, conventions
+from ._errors import IN_MEMORY
 
 #: An array of numbers: of NumPy, PyTorch, JAX, Dr.Jit, or anything else with a buffer or with ``__dlpack__``.
 ArrayLike = Any
@@ -150,7 +151,7 @@ class Environment:
         """
         return self._environment.radiance(directions).reshape(np.shape(directions))
 
-    def __array__(self, dtype: npt.DTypeLike = None, copy: bool | None = None) -> npt.NDArray[Any]:
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
         array = self.latlong()
         if dtype is not None and np.dtype(dtype) != array.dtype:
             return array.astype(dtype)
@@ -185,7 +186,7 @@ def core_environment(environment: EnvironmentLike, keyword: str = "environment")
 
 
 def read(
-    file: PathLike | Sequence[PathLike],
+    file: PathLike | Sequence[PathLike] | bytes | bytearray | memoryview,
     *,
     projection: str = "auto",
     latlong: str | None = None,
@@ -206,7 +207,8 @@ def read(
     Parameters
     ----------
     file
-        One file, the six faces of a cube in any order, a folder with these, or the two halves of a dual paraboloid.
+        One file, the six faces of a cube in any order, a folder with these, or the two halves of a dual paraboloid; or the
+        contents of one file as bytes.
     projection
         "auto" (by shape and attributes), "latlong", "latlong/usd", "cube", "mirror-ball/fov=20", ...; or one of
         `domelight.conventions`: "nvdiffrec", ...
@@ -236,7 +238,6 @@ def read(
     Error
         A keyword out of its range.
     """
-    files = [file] if isinstance(file, (str, os.PathLike)) else list(file)
     name, turn = conventions.resolve(projection)
     options = {
         "projection": name,
@@ -251,7 +252,11 @@ def read(
         "negatives": negatives,
         "threads": threads,
     }
-    environment = _core.open_environment([os.fspath(each) for each in files], options)
+    if isinstance(file, (bytes, bytearray, memoryview)):
+        environment = _core.open_environment_bytes(bytes(file), IN_MEMORY, options)
+    else:
+        files = [file] if isinstance(file, (str, os.PathLike)) else list(file)
+        environment = _core.open_environment([os.fspath(each) for each in files], options)
     _warn(environment.report()["lines"], 3)
     return Environment._wrap(environment, options)
 

@@ -5,6 +5,11 @@ from __future__ import annotations
 import errno
 import os
 import re
+from typing import NoReturn
+
+#: What errors call a file that is in memory.
+IN_MEMORY = "the bytes"
+
 
 class Error(ValueError):
     """What went wrong, where, and what to do about it.
@@ -45,7 +50,7 @@ class FileError(Error, OSError):
     def __init__(self, message: str, where: str = "", hint: str = "", field: str = "") -> None:
         Error.__init__(self, message, where, hint, field)
         self.filename = where
-        self.errno = errno.EIO if os.path.exists(where) else errno.ENOENT
+        self.errno = errno.EIO if where == IN_MEMORY or os.path.exists(where) else errno.ENOENT
         self.strerror = message
 
     def __str__(self) -> str:
@@ -72,7 +77,7 @@ def from_library(what: str, where: str, hint: str) -> Error:
     return Error(message, place, advice, field)
 
 
-def wrong_type(keyword: str, value: object, expected: str) -> None:
+def wrong_type(keyword: str, value: object, expected: str) -> NoReturn:
     """Raises WrongType."""
     text = repr(value)
     shown = text if len(text) <= 40 else text[:37] + "..."

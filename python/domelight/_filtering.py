@@ -17,7 +17,7 @@ class Levels(Sequence[FloatArray]):
     """A filtered chain: a sequence of arrays, the sharpest first.
 
     Each level of a cube has the shape (6, size, size, 3): faces +X -X +Y -Y +Z -Z in OpenGL's orientation. Each level of
-    a lat-long chain has the shape (height, 2 height, 3), in the default convention.
+    a lat-long chain has the shape (height, 2 height, 3), in the default convention. In single directions: (n, 3).
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class Levels(Sequence[FloatArray]):
     mirror : list of bool
         Whether a level is the environment itself.
     lobe, layout, texels : str
-        As they were asked for.
+        As they were asked for; the layout "directions" where single directions were.
     mean : tuple of float
         Mean radiance over the sphere.
     """
@@ -54,19 +54,17 @@ class Levels(Sequence[FloatArray]):
     def __iter__(self) -> Iterator[FloatArray]:
         return iter(self._maps)
 
-    def _repr_png_(self) -> bytes:
+    def _repr_png_(self) -> bytes | None:
+        if self.layout == "directions":
+            return None
         words = {"roughness": self.roughness, "exponents": self.exponents, "title": "domelight.prefilter"}
         return _core.levels_picture(self._maps, {**words, "subtitle": f"{self.lobe} · {self.layout}"})
 
     def __repr__(self) -> str:
-        sizes = ", ".join(str(level.shape[-2 if self.layout == "cube" else 0]) for level in self._maps)
+        sizes = ", ".join(str(level.shape[-3 if level.ndim > 2 else 0]) for level in self._maps)
         return f"<domelight.Levels {self.lobe}, {self.layout}: {sizes}>"
 
 
-@overload
-def prefilter(environment: EnvironmentLike, **options: Any) -> Levels: ...
-@overload
-def prefilter(environment: EnvironmentLike, *, directions: ArrayLike, **options: Any) -> FloatArray: ...
 def prefilter(
     environment: EnvironmentLike,
     *,
@@ -80,7 +78,7 @@ def prefilter(
     directions: ArrayLike | None = None,
     threads: int = 0,
     progress: Progress = None,
-) -> Levels | FloatArray:
+) -> Levels:
     """Filters an environment with a specular lobe, exactly: the texels that ``domelight bake`` computes with the same
     words for the generic engine.
 
@@ -112,7 +110,7 @@ def prefilter(
 
     Returns
     -------
-    `Levels`; with `directions`, float32 of shape (levels, n, 3).
+    `Levels`; with `directions`, each level has the shape (n, 3).
     """
     options = {
         "size": size,
@@ -125,8 +123,7 @@ def prefilter(
         "directions": directions,
         "threads": threads,
     }
-    result = _core.prefilter(core_environment(environment), options, callback(progress))
-    return Levels(result) if directions is None else np.stack(result["maps"])
+    return Levels(_core.prefilter(core_environment(environment), options, callback(progress)))
 
 
 def irradiance(

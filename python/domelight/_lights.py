@@ -50,6 +50,11 @@ class Light:
     texels: int
 
 
+def _light(told: dict[str, Any]) -> Light:
+    values: dict[str, Any] = {key: np.array(v) if isinstance(v, tuple) else v for key, v in told.items()}
+    return Light(**values)
+
+
 class Lights(Sequence[Light]):
     """The lights of an environment, the strongest first.
 
@@ -64,10 +69,7 @@ class Lights(Sequence[Light]):
     """
 
     def __init__(self, told: dict[str, Any]) -> None:
-        self._lights = [
-            Light(**{key: np.array(value) if isinstance(value, tuple) else value for key, value in light.items()})
-            for light in told["lights"]
-        ]
+        self._lights = [_light(light) for light in told["lights"]]
         self.remainder = Environment._wrap(told["remainder"])
         self.unaccounted: float = told["unaccounted"]
         self.left_out: int = told["left_out"]

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 #: ``progress(stage, done)``: the name of a stage and the part of it that is done, 0 to 1. Returning False cancels.
 ProgressCallback = Callable[[str, float], Any]
 
 
+@runtime_checkable
 class ProgressBar(Protocol):
     """What is used of a tqdm bar."""
 
@@ -42,10 +43,10 @@ def callback(progress: Progress) -> ProgressCallback | None:
         from tqdm.auto import tqdm
 
         return _on_bar(tqdm(total=1, bar_format="{desc} {percentage:3.0f}%|{bar}| {elapsed}"))
-    if hasattr(progress, "set_description") and hasattr(progress, "refresh"):
+    if isinstance(progress, ProgressBar):
         return _on_bar(progress)
     if not callable(progress):
         from ._errors import wrong_type
 
         wrong_type("progress", progress, "a function of (stage, done), a tqdm bar or True")
-    return progress  # type: ignore[return-value]
+    return progress

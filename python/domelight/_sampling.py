@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
@@ -36,11 +34,13 @@ class Samples:
 
     @property
     def u(self) -> FloatArray:
-        return self.array[0]
+        u: FloatArray = self.array[0]
+        return u
 
     @property
     def v(self) -> FloatArray:
-        return self.array[1]
+        v: FloatArray = self.array[1]
+        return v
 
     @property
     def direction(self) -> FloatArray:
@@ -52,7 +52,8 @@ class Samples:
 
     @property
     def pdf_solid_angle(self) -> FloatArray:
-        return self.array[8]
+        pdf: FloatArray = self.array[8]
+        return pdf
 
     def __len__(self) -> int:
         return int(self.array.shape[1])
@@ -180,7 +181,8 @@ class Sampler:
         float32 of shape (...), 0 where a direction is never drawn.
         """
         rows, shape = self._look_up(directions, threads)
-        return rows[8].reshape(shape)
+        pdf: FloatArray = rows[8].reshape(shape)
+        return pdf
 
     def radiance(self, directions: ArrayLike, *, threads: int = 0) -> FloatArray:
         """Radiance from directions, by the lookup that goes with the method.
@@ -207,5 +209,4 @@ def unit_points(n: int, sequence: str = "sobol", seed: int = 1) -> npt.NDArray[n
     -------
     uint32 of shape (n, 2): multiply by 2⁻³² for numbers from 0 to below 1.
     """
-    result: Any = _core.unit_points(n, {"sequence": sequence, "seed": seed})
-    return result
+    return _core.unit_points(n, {"sequence": sequence, "seed": seed})

@@ -17,6 +17,7 @@
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/map.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -171,11 +172,42 @@ nb::list write_texture(const std::filesystem::path& file, nb::handle levels, con
     return told;
 }
 
+/// The levels of a texture as arrays, with its metadata.
+nb::dict read_levels(const std::filesystem::path& file) {
+    const Texture texture = run_work_for(nb::none(), [&](const Progress&) {
+        auto read = read_texture(file);
+        if (!read) throw Failure(read.error().at(file.string()));
+        return *std::move(read);
+    });
+    if (encoding_channels(texture.encoding) != 3)
+        throw Failure({"texture has fewer than three channels: no colour", file.string(), ""});
+    if (texture.faces != 6 && texture.width != 2 * texture.height)
+        throw Failure({fmt::format("{} x {} texels are not a cube, nor a lat-long map", texture.width, texture.height),
+                       file.string(), ""});
+    nb::list maps;
+    for (int l = 0; l < int(texture.levels.size()); ++l) {
+        const int width = texture.level_width(l), height = texture.level_height(l);
+        auto image = ImageF::uninitialized(width, texture.faces * height, 3);
+        for (int f = 0; f < texture.faces; ++f) {
+            const ImageF face = decode_texture(texture, l, f);
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x) std::copy_n(face.at(x, y), 3, image.at(x, f * height + y));
+        }
+        maps.append(array_of({texture.faces == 6 ? Layout::cube : Layout::latlong, std::move(image)}));
+    }
+    nb::dict told;
+    told["maps"] = maps;
+    told["metadata"] = texture.metadata;
+    told["layout"] = texture.faces == 6 ? "cube" : "latlong";
+    return told;
+}
+
 }  // namespace
 
 void declare_converting(nb::module_& module) {
     module.def("convert", &run_convert, nb::arg("environment"), nb::arg("to"), nb::arg("options"),
                nb::arg("progress") = nb::none());
+    module.def("read_levels", &read_levels, nb::arg("file"));
     module.def("write_image", &write_image, nb::arg("file"), nb::arg("array").none(), nb::arg("options"));
     module.def("write_texture", &write_texture, nb::arg("file"), nb::arg("levels"), nb::arg("options"));
 }

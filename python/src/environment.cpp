@@ -26,6 +26,15 @@ Environment open(const std::vector<std::filesystem::path>& files, const nb::dict
     return run_work_for(nb::none(), [&](const Progress&) { return value_of(open_environment(files, options)); });
 }
 
+/// From the contents of a file: any object with a buffer of bytes.
+Environment open_bytes(const nb::bytes& bytes, const std::string& name, const nb::dict& words) {
+    const EnvironmentOptions options = environment_options(Keywords(words));
+    const std::span<const std::uint8_t> contents(static_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+    return run_work_for(nb::none(), [&](const Progress&) {
+        return value_of(open_environment_bytes(contents, name, options));
+    });
+}
+
 /// A lat-long array in one of the conventions.
 Environment latlong_environment(ArrayPixels pixels, const LatlongConvention& convention, const std::string& keyword) {
     const int width = pixels.width(), height = pixels.height();
@@ -265,6 +274,7 @@ void declare_environment(nb::module_& module) {
         .def("radiance", &radiance, nb::arg("directions"))
         .def("report", &report);
     module.def("open_environment", &open, nb::arg("files"), nb::arg("options"));
+    module.def("open_environment_bytes", &open_bytes, nb::arg("bytes"), nb::arg("name"), nb::arg("options"));
     module.def("environment_from_array", &from_array, nb::arg("array").none(), nb::arg("options"), nb::arg("keyword") = "array");
     module.def("sky", &sky, nb::arg("options"));
     module.def("axes", &axes, nb::arg("height"));

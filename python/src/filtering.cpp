@@ -96,7 +96,7 @@ nb::dict run_prefilter(const Environment& environment, const nb::dict& dictionar
     told["exponents"] = exponents;
     told["mirror"] = mirror;
     told["lobe"] = name_of(plan.lobe);
-    told["layout"] = name_of(plan.layout);
+    told["layout"] = directed ? std::string("directions") : name_of(plan.layout);
     told["texels"] = name_of(plan.texels);
     told["mean"] = tuple_of(result.mean);
     told["clamped"] = result.clamped;

@@ -140,3 +140,25 @@ def test_the_package_s_examples():
 
     for module in (dl, _environment, _sampling):
         assert doctest.testmod(module).failed == 0
+
+
+def test_a_chain_is_read_and_audited(light, tmp_path):
+    levels = dl.prefilter(light, size=32, levels=3)
+    dl.write(tmp_path / "c.ktx2", levels, encoding="rgba32f")
+    back = dl.read_levels(tmp_path / "c.ktx2")
+    assert all(np.array_equal(a, b) for a, b in zip(back, levels, strict=True))
+    assert np.allclose(back.roughness, levels.roughness) and (back.texels, back.lobe) == ("read", "ggx")
+    assert dl.audit(tmp_path / "c.ktx2", light, within=0.01).within
+    dl.write(tmp_path / "l.ktx2", dl.prefilter(light, size=64, levels=3, layout="latlong"))
+    assert dl.read_levels(tmp_path / "l.ktx2")[0].shape == (64, 128, 3)
+    with pytest.raises(dl.FileError):
+        dl.read_levels(tmp_path / "none.ktx2")
+
+
+def test_a_file_in_memory_is_read(light, tmp_path):
+    dl.write(tmp_path / "a.exr", light, half=False)
+    contents = (tmp_path / "a.exr").read_bytes()
+    for kind in (bytes, bytearray, memoryview):
+        assert np.array_equal(dl.read(kind(contents)).latlong(), light)
+    with pytest.raises(dl.FileError, match="the bytes: "):
+        dl.read(b"nothing")
