@@ -19,6 +19,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 using namespace domelight;
@@ -28,6 +29,55 @@ TEST_SUITE("c") {
     TEST_CASE("c: versions are those of the headers") {
         CHECK(domelight_c_abi_version() == DOMELIGHT_C_ABI_VERSION);
         CHECK(std::string(domelight_version()) == version());
+    }
+
+    // A struct may get fields at its end, and k_first_size then keeps the size that it has here. On 64-bit systems.
+    TEST_CASE("c: structs have the sizes of the first version of the interface") {
+        if (sizeof(void*) != 8) return;
+        CHECK(sizeof(domelight_pixels) == 40);
+        CHECK(sizeof(domelight_environment_options) == 104);
+        CHECK(sizeof(domelight_environment_info) == 120);
+        CHECK(sizeof(domelight_level) == 40);
+        CHECK(sizeof(domelight_prefilter_options) == 96);
+        CHECK(sizeof(domelight_sampler_options) == 40);
+        CHECK(sizeof(domelight_light_sample) == 36);
+        CHECK(sizeof(domelight_light_samples) == 72);
+        CHECK(sizeof(domelight_lights_options) == 48);
+        CHECK(sizeof(domelight_light) == 160);
+        CHECK(sizeof(domelight_encode_options) == 32);
+        CHECK(sizeof(domelight_texture_info) == 32);
+        CHECK(sizeof(domelight_encoding_report) == 40);
+        CHECK(sizeof(domelight_convert_options) == 48);
+        CHECK(sizeof(domelight_bake_options) == 176);
+    }
+
+    TEST_CASE("c: several threads may use one environment and one sampler") {
+        TestEnvironment environment(64);
+        OwnedSampler sampler;
+        CHECK_DONE(domelight_sampler_build(environment, nullptr, sampler.place()));
+        const auto levels = chain(16, 2);
+        std::vector<std::vector<float>> results(4);
+        std::vector<std::thread> threads;
+        for (std::vector<float>& result : results)
+            threads.emplace_back([&] {
+                domelight_prefilter_options options;
+                domelight_prefilter_options_init(&options);
+                options.levels = levels.data();
+                options.level_count = levels.size();
+                domelight_filtered* filtered = nullptr;
+                domelight_light_sample sample;
+                domelight_pixels map;
+                domelight_pixels_init(&map);
+                const bool done = !domelight_sampler_sample(sampler, 1u << 30, 3u << 30, &sample) &&
+                                  !domelight_prefilter(environment, &options, &filtered) &&
+                                  !domelight_filtered_level(filtered, 1, &map);
+                if (done) result.assign(floats_of(map).begin(), floats_of(map).end());
+                if (done) result.push_back(sample.pdf);
+                domelight_filtered_free(filtered);
+            });
+        for (std::thread& thread : threads) thread.join();
+        CHECK(results[0].size() > 100);
+        for (const auto& result : results) CHECK(result == results[0]);
     }
 
     TEST_CASE("c: prefilter, irradiance and harmonics have the bits of C++, for maps and for cubes") {

@@ -3,9 +3,10 @@
  *     soak ROUNDS
  *
  * Prints the number of calls and by how many KiB the memory in use grew after a tenth of the rounds; exits 1 where a call
- * did not answer as it should.
+ * did not answer as it should. With more than one round, it also asks for more memory than there is.
  */
 
+#define _POSIX_C_SOURCE 200809L
 #include <domelight/domelight_c.h>
 
 #include <math.h>
@@ -13,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 enum { width = 32, height = 16 };
 
@@ -164,6 +166,34 @@ static void one_round(const unsigned char* hdr, size_t size) {
     try_pixels();
 }
 
+/* More memory than there is: an error, and the next call works. */
+static void try_without_memory(const unsigned char* hdr, size_t size) {
+    struct rlimit limit, narrow;
+    domelight_level level;
+    domelight_prefilter_options options;
+    domelight_environment* environment = NULL;
+    domelight_filtered* filtered = NULL;
+    domelight_error* error;
+    domelight_level_init(&level);
+    domelight_prefilter_options_init(&options);
+    options.levels = &level;
+    options.level_count = 1;
+    level.size = 16384;
+    DONE(domelight_environment_open_memory(hdr, size, NULL, NULL, &environment));
+    if (getrlimit(RLIMIT_AS, &limit) != 0) wrong(__LINE__);
+    narrow = limit;
+    narrow.rlim_cur = (rlim_t)2 << 30;
+    if (setrlimit(RLIMIT_AS, &narrow) != 0) wrong(__LINE__);
+    error = domelight_prefilter(environment, &options, &filtered);
+    if (!error || filtered || strcmp(domelight_error_text(error), "out of memory") != 0) wrong(__LINE__);
+    domelight_error_free(error);
+    if (setrlimit(RLIMIT_AS, &limit) != 0) wrong(__LINE__);
+    level.size = 4;
+    DONE(domelight_prefilter(environment, &options, &filtered));
+    domelight_filtered_free(filtered);
+    domelight_environment_free(environment);
+}
+
 int main(int argc, char** argv) {
     static unsigned char hdr[200 + 4 * width * height];
     const size_t size = make_hdr(hdr);
@@ -174,6 +204,7 @@ int main(int argc, char** argv) {
         if (i == rounds / 10) before = memory_in_use();
         one_round(hdr, size);
     }
+    if (rounds > 1) try_without_memory(hdr, size);
     printf("%ld calls, %ld KiB more\n", calls, memory_in_use() - before);
     return 0;
 }

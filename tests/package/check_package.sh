@@ -29,10 +29,9 @@ package() { echo "$work"/packages/"$1"_*.deb; }
 depends() { dpkg-deb -f "$(package "$1")" Depends | tee /dev/stderr | grep -qE "(^|, )$2( |,|\$)"; }
 does_not_need() { ! depends "$1" "$2"; }
 make_root() {
-    # The system's own sources, so that no registry is named here.
-    cat /etc/apt/sources.list /etc/apt/sources.list.d/*.list /etc/apt/sources.list.d/*.sources 2>/dev/null >"$work/sources"
     # shellcheck disable=SC1091
-    mmdebstrap --quiet --variant=apt "$(. /etc/os-release && echo "$VERSION_CODENAME")" "$root" && cp /etc/resolv.conf "$root/etc/"
+    mmdebstrap --quiet --variant=apt "$(. /etc/os-release && echo "$VERSION_CODENAME")" "$root" && cp /etc/resolv.conf "$root/etc/" &&
+        chroot "$root" apt-get update
 }
 # Installs the packages by name from the folder /packages of the root.
 install_in_root() {
@@ -41,7 +40,9 @@ install_in_root() {
     for name in "$@"; do files+=("/packages/$(basename "$(package "$name")")"); done
     DEBIAN_FRONTEND=noninteractive chroot "$root" apt-get install -y --no-install-recommends "${files[@]}"
 }
-nothing_is_missing() { [ -z "$(chroot "$root" dpkg --audit)" ] && ! chroot "$root" ldd /usr/bin/domelight | grep 'not found'; }
+nothing_is_missing() {
+    [ -z "$(chroot "$root" dpkg --audit)" ] && chroot "$root" ldd /usr/bin/domelight >"$work/needs" && ! grep 'not found' "$work/needs"
+}
 bakes() {
     chroot "$root" domelight sky -o /sky.hdr --height 64 --quiet && chroot "$root" domelight bake /sky.hdr -o /out --size 64 --quiet &&
         [ -s "$root/out/specular.ktx2" ] && [ -s "$root/out/manifest.json" ]
