@@ -34,7 +34,7 @@ fi
 # A virtual environment with what the build and the tests need, and again only if that changes.
 venv=$folder/venv stamp=$folder/venv/installed.txt
 wanted=$("$python" -c 'import sys; print(sys.version)'; cat "$here/requirements.txt")
-if [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ]; then
+if [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ] || ! "$venv/bin/python" -c 'import nanobind' 2>/dev/null; then
     say "fetching nanobind, NumPy and pytest from PyPI"
     rm -rf "$venv"
     "$python" -m venv "$venv" >"$folder/pip.log" 2>&1 &&
