@@ -54,5 +54,5 @@ fi
 rm -rf "$folder/site"
 cmake --install "$build" --component python --prefix "$folder/site" >"$folder/install.log" 2>&1 || fail "installing the Python package"
 
-export PYTHONPATH=$folder/site PYTHONDONTWRITEBYTECODE=1
+export DOMELIGHT_BUILD=$build PYTHONPATH=$folder/site PYTHONDONTWRITEBYTECODE=1
 exec "$venv/bin/python" "$here/run_pytest.py" "$@"

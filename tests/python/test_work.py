@@ -159,3 +159,27 @@ def test_ten_thousand_calls_need_no_memory():
     before = resident_bytes()
     calls(2000)
     assert resident_bytes() - before < 4 << 20
+
+
+INTERRUPTED_BAKE = textwrap.dedent("""
+    import pathlib, signal, sys
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    import domelight as dl
+    sky, folder = dl.sky(512), pathlib.Path(sys.argv[1])
+    dl.bake(sky, folder, size=64)
+    before = {file.name: file.read_bytes() for file in folder.iterdir()}
+    print("ready", flush=True)
+    try:
+        dl.bake(sky, folder, size=4096, encoding="bc6h", encoding_quality="high")
+    except KeyboardInterrupt:
+        print("same" if {file.name: file.read_bytes() for file in folder.iterdir()} == before else "changed")
+""")
+
+
+def test_ctrl_c_in_a_bake_changes_nothing(tmp_path):
+    child = subprocess.Popen([sys.executable, "-c", INTERRUPTED_BAKE, str(tmp_path / "out")], stdout=subprocess.PIPE, text=True,
+                             preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+    assert child.stdout.readline() == "ready\n"
+    time.sleep(0.5)
+    child.send_signal(signal.SIGINT)
+    assert child.communicate(timeout=120)[0] == "same\n" and child.returncode == 0
