@@ -1,29 +1,30 @@
 // What the page does: opens files, has them filtered, and draws until the picture is done.
 
 import {Baker} from './bake/baker';
-import type {Latlong} from './bake/types';
+import {sizesDownTo} from './bake/chain';
+import type {Bake, BrdfTable} from './bake/types';
+import {builtIn, fromFile, type LightSource} from './light_source';
 import {readPane} from './render/read_back';
 import {Stage} from './render/stage';
 import {builtInModels, type Model} from './scene/built_in';
 import {viewOf} from './scene/framing';
 import {loadModel} from './scene/load_model';
-import {studio, whiteFurnace} from './scene/studio';
 import {Store, type Mode, type State} from './state';
 
 const isModel = (name: string) => /\.(glb|gltf)$/i.test(name);
-const builtInEnvironments: Record<string, () => Latlong> = {studio, furnace: whiteFurnace};
+const isGltf = (name: string) => /\.gltf$/i.test(name);
+const isEnvironment = (name: string) => /\.(hdr|exr|env|dds|ktx2?|jpe?g)$/i.test(name);
 /// Frames that are averaged until nothing would be seen to change.
 const k_frames = 64;
 const k_noisy_frames = 4096;
+const k_brdf_size = 64;
 
-/// What happens, for whoever shows it.
+/// Who shows what happens.
 export interface Events {
     /// Work that is under way, as a phrase; empty when there is none.
     working: (what: string) => void;
     /// A sentence on what is wrong with a file.
     failed: (sentence: string) => void;
-    /// Another model or environment is shown.
-    opened: () => void;
     /// A frame was drawn.
     drawn: () => void;
 }
@@ -33,12 +34,19 @@ export class App {
     readonly stage: Stage;
     model!: Model;
     environmentName = '';
-    /// Timings of the last environment, in milliseconds.
+    bake?: Bake;
+    brdf?: BrdfTable;
+    /// Of the Phong chain; 0 before it exists.
+    phongLevels = 0;
+    /// Milliseconds of the last environment.
     readonly timings = {open: 0, bake: 0};
-    private readonly jobs = new Set<string>();
-    private needed = {phong: false, tables: 0};
-    private dirty = false;
-    private environment = 0;
+    private readonly jobs = new Set<number>();
+    private jobCount = 0;
+    private needed = {phong: false, rows: 0};
+    private source: LightSource;
+    private light = 0;
+    private scheduled = false;
+    private readonly openedListeners: (() => void)[] = [];
     private waiting: {frames: number; index: number; resolve: (base64: string) => void}[] = [];
 
     constructor(
@@ -47,44 +55,81 @@ export class App {
         private readonly events: Events,
     ) {
         this.stage = new Stage(canvas);
+        this.source = builtIn(store.state.environment);
         store.listen(changed => this.react(changed));
     }
 
     get state(): State {
         return this.store.state;
     }
-    /// Whether everything that was asked for has been computed.
+    /// Whether everything that was asked for has been computed and drawn once.
     get ready(): boolean {
-        return this.jobs.size === 0 && this.stage.panes[0].count > 0;
+        return this.jobs.size === 0 && this.bake !== undefined && this.stage.panes[0].count > 0;
+    }
+    get levels(): number {
+        return this.bake?.specular.levels.length ?? 0;
+    }
+    /// Frames in the pane that has the fewest.
+    get least(): number {
+        return Math.min(...this.shown.map((_, k) => this.stage.panes[k]!.count));
+    }
+    /// Modes that are on the screen, the left one first.
+    get shown(): Mode[] {
+        const {view, mode, other} = this.state;
+        return view === 'one' || other === 'picture' ? [mode] : [mode, other];
+    }
+    /// Calls back whenever another model or environment is shown.
+    onOpened(listener: () => void): void {
+        this.openedListeners.push(listener);
+    }
+    private opened(): void {
+        for (const listener of this.openedListeners) listener();
     }
 
     async start(): Promise<void> {
-        const {state} = this;
-        this.showModel(builtInModels[state.model] ?? builtInModels.spheres!, true);
-        const brdf = this.work('BRDF table', async () => this.stage.setBrdf(await this.baker.brdf(64)));
-        await this.useBuiltIn(state.environment);
-        await brdf;
+        this.showModel((builtInModels[this.state.model] ?? builtInModels.spheres!)(), this.state.eye.some(v => v !== 0));
+        const table = this.work('computing the BRDF table', async () => this.stage.setBrdf((this.brdf = await this.baker.brdf(k_brdf_size))));
+        await this.relight();
+        await table;
     }
 
-    /// Opens whatever was dropped or chosen: a model, an environment, or both; the other files are those that a .gltf refers to.
+    /// Opens whatever was dropped or chosen: models, environments, or both. With a .gltf, pictures are its textures.
     async openFiles(files: Iterable<File>): Promise<void> {
-        const all = [...files], siblings = new Map(all.map(file => [file.name, file]));
-        const models = all.filter(file => isModel(file.name));
-        const environments = models.some(file => /\.gltf$/i.test(file.name)) ? all.filter(file => /\.(hdr|exr|env|dds)$/i.test(file.name))
-                                                                            : all.filter(file => !isModel(file.name));
-        for (const file of models) await this.work(`reading ${file.name}`, () => this.openModel(file, siblings));
-        for (const file of environments) await this.work(`reading ${file.name}`, () => this.openEnvironment(file));
+        const all = [...files], siblings = new Map(all.map(file => [file.name, file])), withGltf = all.some(file => isGltf(file.name));
+        const environments = all.filter(({name}) => !isModel(name) && (withGltf ? /\.(hdr|exr)$/i.test(name) : true));
+        for (const file of all.filter(({name}) => isModel(name))) await this.work(`reading ${file.name}`, async () => this.showModel(await loadModel(file.name, await file.arrayBuffer(), siblings)));
+        for (const file of environments) await this.openEnvironment(file);
+    }
+    private async openEnvironment(file: File): Promise<void> {
+        const before = this.source;
+        this.source = fromFile(file);
+        if (await this.relight(`reading ${file.name}`)) this.store.set({furnace: false});
+        else this.source = before;
+        if (!isEnvironment(file.name) && this.source !== before) this.opened();
+    }
+    /// A picture of the truth, to compare with.
+    openPicture(file: File): Promise<boolean> {
+        return this.work(`reading ${file.name}`, async () => {
+            this.stage.setPicture(await this.baker.picture(file.name, await file.arrayBuffer()));
+            this.store.set({other: 'picture', view: this.state.view === 'one' ? 'split' : this.state.view});
+        });
     }
 
-    showModel(make: (() => Model) | Model, keepView = false): void {
-        this.model = typeof make === 'function' ? make() : make;
-        const {state} = this, known = keepView && state.eye.some(v => v !== 0);
-        this.stage.setModel(this.model.root);
-        if (!known) this.resetView();
-        this.events.opened();
+    showModel(model: Model, keepView = false): void {
+        this.model = model;
+        this.stage.setModel(model.root);
+        if (!keepView) this.resetView();
+        this.opened();
+        this.redraw();
+    }
+    async useVariant(index: number | null): Promise<void> {
+        await this.work('changing the materials', async () => {
+            await this.model.useVariant?.(index);
+            this.stage.setModel(this.model.root);
+        });
     }
     resetView(): void {
-        const view = viewOf(this.model, this.stage.panes[0].width / this.stage.panes[0].height);
+        const view = viewOf(this.model, this.stage.freeAspect);
         this.store.set({eye: view.eye, target: view.target, fov: view.fovDeg});
     }
 
@@ -93,77 +138,68 @@ export class App {
         this.redraw();
     }
     redraw(): void {
-        if (!this.dirty) requestAnimationFrame(() => this.frame());
-        this.dirty = true;
+        if (!this.scheduled) requestAnimationFrame(() => this.frame());
+        this.scheduled = true;
     }
 
-    /// Modes that are on the screen.
-    get shown(): Mode[] {
-        return this.state.view === 'one' ? [this.state.mode] : [this.state.mode, this.state.other];
-    }
-
-    async useBuiltIn(name: string): Promise<void> {
-        const make = builtInEnvironments[name] ?? studio;
-        await this.work('filtering', async () => this.light(await this.baker.use(name, make())));
-    }
-    private async openModel(file: File, siblings: Map<string, File>): Promise<void> {
-        this.showModel(await loadModel(file.name, await file.arrayBuffer(), siblings));
-    }
-    private async openEnvironment(file: File): Promise<void> {
-        await this.light(await this.baker.open(file.name, await file.arrayBuffer()));
-    }
-
-    /// Lights the model by an environment that the worker has opened.
-    private async light(info: Awaited<ReturnType<Baker['open']>>): Promise<void> {
-        const bake = await this.baker.bake(this.state.size);
-        ++this.environment;
-        this.needed = {phong: false, tables: 0};
-        this.environmentName = info.name;
-        this.timings.open = info.milliseconds;
-        this.timings.bake = bake.milliseconds;
-        this.stage.setEnvironment(info);
-        this.stage.setBake(bake);
-        await this.provide();
-        this.events.opened();
-        this.redraw();
+    /// Reads and filters the environment that is chosen now. Whether that went well.
+    private relight(what = 'filtering the environment'): Promise<boolean> {
+        return this.work(what, async () => {
+            const info = await (this.state.furnace ? builtIn('furnace') : this.source)(this.baker), bake = await this.baker.bake(this.state.size);
+            ++this.light;
+            this.needed = {phong: false, rows: 0};
+            this.phongLevels = 0;
+            this.environmentName = info.name;
+            Object.assign(this.timings, {open: info.milliseconds, bake: bake.milliseconds});
+            this.stage.setEnvironment(info);
+            this.stage.setBake((this.bake = bake));
+            await this.provide();
+            this.opened();
+        });
     }
 
     /// Has the maps computed that the modes on the screen need and that do not exist yet.
     private async provide(): Promise<void> {
-        const {shown, state} = this, environment = this.environment;
-        const current = () => environment === this.environment;
+        const {shown, state, light} = this;
         if (shown.includes('phong') && !this.needed.phong) {
             this.needed.phong = true;
             const chain = await this.baker.phong(state.size);
-            if (current()) this.stage.setPhong(chain);
+            if (light !== this.light) return;
+            this.phongLevels = chain.levels.length;
+            this.stage.setPhong(chain);
         }
-        if (shown.includes('monte-carlo') && this.needed.tables !== state.rows) {
-            this.needed.tables = state.rows;
+        if (shown.includes('monte-carlo') && this.needed.rows !== state.rows) {
+            this.needed.rows = state.rows;
             const tables = await this.baker.tables(state.rows);
-            if (current()) this.stage.setTables(tables);
+            if (light === this.light) this.stage.setTables(tables);
         }
     }
 
     private react(changed: Set<keyof State>): void {
-        if (changed.has('environment')) void this.useBuiltIn(this.state.environment);
-        if (changed.has('model') && builtInModels[this.state.model]) this.showModel(builtInModels[this.state.model]!);
-        if (changed.has('size')) void this.work('filtering', async () => this.stage.setBake(await this.baker.bake(this.state.size)));
-        void this.work('filtering', () => this.provide());
-        const onlyShown = new Set<keyof State>(['exposure', 'tonemap', 'divider', 'panel']);
+        const {state} = this, make = builtInModels[state.model];
+        if (changed.has('model') && make && state.model !== this.model.name) this.showModel(make());
+        if (changed.has('environment') && state.environment !== this.environmentName) this.source = builtIn(state.environment);
+        if (changed.has('environment') || changed.has('furnace') || changed.has('size')) void this.relight();
+        else if (this.bake) void this.work('filtering the environment', () => this.provide());
+        const onlyShown = new Set<keyof State>(['exposure', 'tonemap', 'divider', 'panel', 'view', 'other']);
         if ([...changed].some(key => !onlyShown.has(key))) this.stage.restart();
+        else if (changed.has('other')) this.stage.panes[1].count = 0;
         this.redraw();
     }
 
-    /// Runs work that takes a while. What goes wrong is told, and the page stays as it is.
-    private async work(what: string, task: () => Promise<void>): Promise<void> {
-        const job = `${what} ${performance.now()}`;
+    /// Runs work that takes a while. What goes wrong is told, and the page stays as it is. Whether it went well.
+    private async work(what: string, task: () => Promise<void>): Promise<boolean> {
+        const job = ++this.jobCount;
         this.jobs.add(job);
-        this.events.working(what);
+        const slow = setTimeout(() => this.events.working(what), 150);
         try {
             await task();
+            return true;
         } catch (error) {
             this.events.failed((error as Error).message);
+            return false;
         } finally {
+            clearTimeout(slow);
             this.jobs.delete(job);
             if (this.jobs.size === 0) this.events.working('');
             this.redraw();
@@ -177,7 +213,8 @@ export class App {
     }
 
     private frame(): void {
-        this.dirty = false;
+        this.scheduled = false;
+        if (!this.bake) return;
         const {state, stage} = this;
         stage.apply(state);
         let unfinished = false;
@@ -186,9 +223,11 @@ export class App {
             if (pane.count < limit) stage.advance(pane, mode);
             unfinished ||= pane.count < limit;
         });
-        stage.show(state);
         this.events.drawn();
+        stage.show(state);
         this.waiting = this.waiting.filter(({frames, index, resolve}) => stage.panes[index]!.count !== frames || void resolve(readPane(stage, index)));
         if (unfinished) this.redraw();
     }
 }
+
+export const phongLevelCount = (size: number): number => sizesDownTo(size, 8).length;

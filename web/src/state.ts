@@ -2,6 +2,9 @@
 
 export const modes = ['split-sum', 'stretched', 'phong', 'mirror', 'refract', 'monte-carlo'] as const;
 export type Mode = (typeof modes)[number];
+/// What a mode is compared with: another, or a picture from a file.
+export const others = [...modes, 'picture'] as const;
+export type Other = (typeof others)[number];
 export const tonemaps = ['none', 'reinhard', 'aces', 'agx', 'neutral'] as const;
 export const lookups = ['environment', 'cube', 'latlong', 'sphere-map', 'dual-paraboloid'] as const;
 export const backgrounds = ['environment', 'blurred', 'colour'] as const;
@@ -12,7 +15,7 @@ export const tables = ['walk', 'guided'] as const;
 export interface State {
     mode: Mode;
     /// The right pane, and what the left one is compared with.
-    other: Mode;
+    other: Other;
     view: (typeof views)[number];
     divider: number;
     model: string;
@@ -31,11 +34,14 @@ export interface State {
     lookup: (typeof lookups)[number];
     ior: number;
     iorOutside: number;
+    /// Whether `ior` takes the place of the material's.
+    iorOverride: boolean;
     override: boolean;
     color: string;
     metalness: number;
     roughness: number;
-    exponent: number;
+    /// Base 2 logarithm of the Phong exponent.
+    exponentLog2: number;
     furnace: boolean;
     strategy: (typeof strategies)[number];
     tables: (typeof tables)[number];
@@ -54,14 +60,14 @@ export const defaults: State = {
     model: 'spheres', environment: 'studio',
     exposure: 0, tonemap: 'agx', background: 'environment', blur: 0.35, turn: 0, size: 256,
     multipleScattering: false, irradiance: 'cube', occlusion: true, bentLookup: false, diffuseWeight: 'energy',
-    lookup: 'environment', ior: 1.5, iorOutside: 1,
-    override: false, color: '#ffffff', metalness: 1, roughness: 0.3, exponent: 64,
+    lookup: 'environment', ior: 1.5, iorOutside: 1, iorOverride: false,
+    override: false, color: '#ffffff', metalness: 1, roughness: 0.3, exponentLog2: 6,
     furnace: false, strategy: 'mis', tables: 'guided', samples: 1, rows: 256, lookupSize: 512,
     eye: [0, 0, 0], target: [0, 0, 0], fov: 35, panel: true,
 };
 
 const accepted: Partial<Record<keyof State, readonly string[]>> = {
-    mode: modes, other: modes, view: views, tonemap: tonemaps, background: backgrounds, lookup: lookups, strategy: strategies,
+    mode: modes, other: others, view: views, tonemap: tonemaps, background: backgrounds, lookup: lookups, strategy: strategies,
     tables, irradiance: ['cube', 'sh'], diffuseWeight: ['energy', 'fresnel'],
 };
 
@@ -84,6 +90,14 @@ export class Store {
             if (this.changed.size === 0) requestAnimationFrame(() => this.tell());
             this.changed.add(key);
         }
+    }
+    reset(key: keyof State): void {
+        this.set({[key]: defaults[key]});
+    }
+    /// Tells the listeners as if everything had changed, once.
+    touch(): void {
+        this.changed = new Set(['panel']);
+        requestAnimationFrame(() => this.tell());
     }
     listen(listener: Listener): void {
         this.listeners.push(listener);

@@ -1,6 +1,6 @@
 // The page's side of the worker: promises in place of messages.
 
-import type {Bake, BrdfTable, Chain, EnvironmentInfo, Latlong, Replies, Request, Tables} from './types';
+import type {Bake, BrdfTable, Chain, EnvironmentInfo, Latlong, Replies, Request, Survey, Tables} from './types';
 
 type Waiting = {resolve: (reply: never) => void; reject: (error: Error) => void};
 
@@ -35,6 +35,18 @@ export class Baker {
     /// What shaders draw light directions with. rows: at most, of the map.
     tables(rows: number): Promise<Tables> {
         return this.ask({kind: 'tables', rows});
+    }
+
+    survey(rows: number): Promise<Survey> {
+        return this.ask({kind: 'survey', rows});
+    }
+    /// Where light directions fall: pairs (u, v).
+    samples(count: number): Promise<Float32Array> {
+        return this.ask({kind: 'samples', count});
+    }
+    /// A picture of any shape, RGB floats.
+    picture(name: string, bytes: ArrayBuffer): Promise<Latlong> {
+        return this.ask({kind: 'picture', name, bytes}, [bytes]);
     }
 
     private ask<R extends Request>(request: R, transfer: Transferable[] = []): Promise<Replies[R['kind']]> {

@@ -13,20 +13,24 @@ interface Decoded {
 
 /// The pixels of a lat-long file, as they are stored. Throws an Error with a sentence.
 export function readLatlong(name: string, bytes: ArrayBuffer): {format: string; latlong: Latlong} {
+    const read = readPicture(name, bytes), {width, height} = read.latlong;
+    if (width !== 2 * height)
+        throw new Error(`${name}: the image is ${width} x ${height}, but a lat-long map must be twice as wide as high.`);
+    return read;
+}
+
+/// The pixels of a picture of any shape.
+export function readPicture(name: string, bytes: ArrayBuffer): {format: string; latlong: Latlong} {
     const start = new Uint8Array(bytes, 0, Math.min(4, bytes.byteLength));
-    if (start[0] === 0x23 && start[1] === 0x3f) return {format: 'Radiance HDR', latlong: readHdr(name, bytes)};
-    if (start[0] === 0x76 && start[1] === 0x2f && start[2] === 0x31) return {format: 'OpenEXR', latlong: readExr(name, bytes)};
+    if (start[0] === 0x23 && start[1] === 0x3f) {
+        const decoded = told(name, () => new HDRLoader().setDataType(FloatType).parse(bytes) as Decoded);
+        return {format: 'Radiance HDR', latlong: rgbOf(decoded, false)};
+    }
+    if (start[0] === 0x76 && start[1] === 0x2f && start[2] === 0x31) {
+        const decoded = told(name, () => new EXRLoader().setDataType(FloatType).parse(bytes) as Decoded);
+        return {format: 'OpenEXR', latlong: rgbOf(decoded, true)};
+    }
     throw new Error(`${name}: this is not a Radiance HDR or OpenEXR file.`);
-}
-
-function readHdr(name: string, bytes: ArrayBuffer): Latlong {
-    const {width, height, data} = told(name, () => new HDRLoader().setDataType(FloatType).parse(bytes) as Decoded);
-    return rgbOf(name, width, height, data, false);
-}
-
-function readExr(name: string, bytes: ArrayBuffer): Latlong {
-    const {width, height, data} = told(name, () => new EXRLoader().setDataType(FloatType).parse(bytes) as Decoded);
-    return rgbOf(name, width, height, data, true);
 }
 
 function told<T>(name: string, read: () => T): T {
@@ -38,9 +42,7 @@ function told<T>(name: string, read: () => T): T {
 }
 
 /// RGB rows from the top. Negative values, NaN and infinities become 0, because no light is like them.
-function rgbOf(name: string, width: number, height: number, rgba: Float32Array, bottomFirst: boolean): Latlong {
-    if (width !== 2 * height)
-        throw new Error(`${name}: the image is ${width} x ${height}, but a lat-long map must be twice as wide as high.`);
+function rgbOf({width, height, data: rgba}: Decoded, bottomFirst: boolean): Latlong {
     const channels = rgba.length / (width * height);
     const pixels = new Float32Array(3 * width * height);
     for (let y = 0, to = 0; y < height; ++y) {

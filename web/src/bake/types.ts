@@ -65,6 +65,18 @@ export interface Tables {
     rows: Float32Array;
 }
 
+/// What the page shows of an environment.
+export interface Survey {
+    /// A small lat-long map: RGB floats.
+    thumbnail: Latlong;
+    /// The part of the sphere whose luminance lies in each third of a stop from 2^k_least_ev on.
+    histogram: Float32Array;
+    meanLuminance: number;
+    peakLuminance: number;
+}
+export const k_least_ev = -12;
+export const k_bins_per_ev = 3;
+
 /// A request to the worker. Each has a number that its reply carries.
 export type Request =
     | {kind: 'open'; name: string; bytes: ArrayBuffer}
@@ -72,7 +84,10 @@ export type Request =
     | {kind: 'bake'; size: number}
     | {kind: 'phong'; size: number}
     | {kind: 'brdf'; size: number}
-    | {kind: 'tables'; rows: number};
+    | {kind: 'tables'; rows: number}
+    | {kind: 'survey'; rows: number}
+    | {kind: 'samples'; count: number}
+    | {kind: 'picture'; name: string; bytes: ArrayBuffer};
 
 export interface Replies {
     open: EnvironmentInfo;
@@ -81,4 +96,8 @@ export interface Replies {
     phong: Chain;
     brdf: BrdfTable;
     tables: Tables;
+    survey: Survey;
+    /// Pairs u, v.
+    samples: Float32Array;
+    picture: Latlong;
 }

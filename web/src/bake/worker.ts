@@ -2,8 +2,8 @@
 
 import {levelExponent, levelRoughness, sizesDownTo} from './chain';
 import {Module, type Environment} from './module';
-import {readLatlong} from './read_environment';
-import {makeTables} from './tables';
+import {readLatlong, readPicture} from './read_environment';
+import {drawSamples, makeTables, survey} from './tables';
 import type {Bake, EnvironmentInfo, Latlong, Replies, Request} from './types';
 import moduleUrl from 'domelight.wasm?url';
 
@@ -23,6 +23,11 @@ function use(name: string, format: string, latlong: Latlong, loaded: Module, sta
 function opened(): Environment {
     if (!environment) throw new Error('No environment has been opened.');
     return environment;
+}
+
+function source(): Latlong {
+    if (!pixels) throw new Error('No environment has been opened.');
+    return pixels;
 }
 
 function bake(size: number): Bake {
@@ -57,8 +62,13 @@ async function answer(request: Request): Promise<Replies[Request['kind']]> {
         case 'brdf':
             return loaded.brdfTable(request.size);
         case 'tables':
-            opened();
-            return makeTables(pixels!, request.rows);
+            return makeTables(source(), request.rows);
+        case 'survey':
+            return survey(source(), request.rows);
+        case 'samples':
+            return drawSamples(source(), request.count);
+        case 'picture':
+            return readPicture(request.name, request.bytes).latlong;
     }
 }
 

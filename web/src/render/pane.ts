@@ -45,15 +45,14 @@ export class Pane {
         this.count = 0;
     }
 
-    /// Draws one more frame. `draw` renders the scene into the current target; noisy: do not spend time on the edges of its first frame.
-    advance(camera: THREE.PerspectiveCamera, noisy: boolean, draw: () => void): void {
+    /// Draws one more frame. `look` points the camera, moved by a part of a pixel; `draw` renders the scene into the current target; noisy: do
+    /// not spend time on the edges of its first frame.
+    advance(look: (x: number, y: number) => void, noisy: boolean, draw: () => void): void {
         const first = this.count === 0 && !noisy, target = first ? this.smooth : this.frame;
         const [x, y] = halton(this.count);
-        if (first) camera.clearViewOffset();
-        else camera.setViewOffset(this.width, this.height, x - 0.5, y - 0.5, this.width, this.height);
+        look(first ? 0 : x - 0.5, first ? 0 : y - 0.5);
         this.renderer.setRenderTarget(target);
         draw();
-        camera.clearViewOffset();
         Object.assign(this.add.uniforms, {u_mean: {value: this.mean.texture}, u_picture: {value: target.texture}, u_weight: {value: 1 / ++this.count}});
         this.add.run(this.renderer, this.next);
         [this.mean, this.next] = [this.next, this.mean];

@@ -9,6 +9,8 @@ import backgroundVertex from '../shading/background_vertex.glsl?raw';
 import diffuse from '../shading/diffuse.glsl?raw';
 import environment from '../shading/environment.glsl?raw';
 import fullscreenVertex from '../shading/fullscreen_vertex.glsl?raw';
+import identify from '../shading/identify.glsl?raw';
+import level from '../shading/level.glsl?raw';
 import lookup from '../shading/lookup.glsl?raw';
 import metallicRoughness from '../shading/metallic_roughness.glsl?raw';
 import mirror from '../shading/mirror.glsl?raw';
@@ -17,6 +19,7 @@ import modelVertex from '../shading/model_vertex.glsl?raw';
 import monteCarlo from '../shading/monte_carlo.glsl?raw';
 import phong from '../shading/phong.glsl?raw';
 import present from '../shading/present.glsl?raw';
+import probe from '../shading/probe.glsl?raw';
 import projectEnvironment from '../shading/project_environment.glsl?raw';
 import projections from '../shading/projections.glsl?raw';
 import refract from '../shading/refract.glsl?raw';
@@ -48,10 +51,13 @@ export interface Program {
     fragmentShader: string;
 }
 
-export const modelProgram = (mode: Mode): Program => ({
-    vertexShader: join(modelVertex),
-    fragmentShader: join(surface, ...lighting[mode], modelFragment),
-});
+/// What a model is drawn with: a method of shading, or what the page wants to know of a pixel.
+export type Purpose = Mode | 'probe' | 'identify';
+
+const fragments = (purpose: Purpose): string[] =>
+    purpose === 'probe' ? [surface, probe] : purpose === 'identify' ? [identify] : [surface, ...lighting[purpose], modelFragment];
+
+export const modelProgram = (purpose: Purpose): Program => ({vertexShader: join(modelVertex), fragmentShader: join(...fragments(purpose))});
 export const backgroundProgram: Program = {
     vertexShader: join(backgroundVertex),
     fragmentShader: join(environment, generic, backgroundFragment),
@@ -59,4 +65,5 @@ export const backgroundProgram: Program = {
 const fullscreen = (...parts: string[]): Program => ({vertexShader: join(fullscreenVertex), fragmentShader: join(...parts)});
 export const projectProgram = fullscreen(environment, projections, projectEnvironment);
 export const accumulateProgram = fullscreen(accumulate);
+export const levelProgram = fullscreen(environment, generic, tonemap, level);
 export const presentProgram = fullscreen(tonemap, present);

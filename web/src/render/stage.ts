@@ -3,14 +3,14 @@
 import * as THREE from 'three';
 import stretchedFit from '../../../src/render/shading/stretched_fit.cpp?raw';
 import {matchingRoughness} from '../bake/chain';
-import type {Bake, BrdfTable, Chain, EnvironmentInfo, Tables} from '../bake/types';
+import type {Bake, BrdfTable, Chain, EnvironmentInfo, Latlong, Tables} from '../bake/types';
 import {radians} from '../scene/framing';
 import {backgrounds, lookups, strategies, tables, tonemaps, type Mode, type State} from '../state';
 import {LookupMaps} from './lookup_maps';
 import {brdfTexture, chainTexture, cubeTexture, latlongTexture, stretchedTexture, tableTexture} from './maps';
 import {Pane} from './pane';
 import {Pass, triangle} from './passes';
-import {backgroundProgram, presentProgram} from './programs';
+import {backgroundProgram, presentProgram, type Purpose} from './programs';
 import {litMeshes, type LitMesh, type Uniforms} from './surfaces';
 
 const uniform = <T>(value: T) => ({value});
@@ -19,12 +19,14 @@ export class Stage {
     readonly renderer: THREE.WebGLRenderer;
     readonly camera = new THREE.PerspectiveCamera();
     readonly panes: [Pane, Pane];
+    /// Pixels that the panel covers: the model stands in the middle of the rest.
+    inset = {right: 0, bottom: 0};
     readonly uniforms: Uniforms = {
         u_eye: uniform(new THREE.Vector3()), u_turn: uniform(new THREE.Matrix3()), u_environment: uniform(new THREE.Matrix3()),
         u_specular: uniform(null), u_irradiance: uniform(null), u_brdf: uniform(null), u_last_level: uniform(1),
         u_sh: uniform(Array.from({length: 9}, () => new THREE.Vector3())), u_latlong: uniform(null),
         u_multiple_scattering: uniform(false), u_harmonics: uniform(false), u_bent_lookup: uniform(false), u_fresnel_weight: uniform(false),
-        u_occlusion: uniform(true), u_ior_outside: uniform(1), u_lookup: uniform(0), u_lookup_map: uniform(null), u_lookup_back: uniform(null),
+        u_occlusion: uniform(true), u_ior_outside: uniform(1), u_ior_inside: uniform(-1), u_lookup: uniform(0), u_lookup_map: uniform(null), u_lookup_back: uniform(null),
         u_phong: uniform(null), u_phong_roughness: uniform(new Float32Array(16)), u_phong_levels: uniform(1), u_exponent: uniform(-1),
         u_stretched_fit: uniform(stretchedTexture(stretchedFit)),
         u_envmap_frame: uniform(new THREE.Matrix3()), u_envmap: uniform(null), u_row_averages: uniform(null), u_total_average: uniform(1),
@@ -38,6 +40,9 @@ export class Stage {
     private readonly lookups: LookupMaps;
     private meshes: LitMesh[] = [];
     private model?: THREE.Object3D;
+    private picture?: THREE.DataTexture;
+    private readonly sky: THREE.Mesh;
+    private readonly pixel = new THREE.WebGLRenderTarget(1, 1, {type: THREE.FloatType});
 
     constructor(canvas: HTMLCanvasElement) {
         this.renderer = new THREE.WebGLRenderer({canvas, antialias: false, depth: false, stencil: false, alpha: false});
@@ -45,11 +50,11 @@ export class Stage {
         this.renderer.autoClear = true;
         this.panes = [new Pane(this.renderer), new Pane(this.renderer)];
         this.lookups = new LookupMaps(this.renderer, this.uniforms.u_latlong!);
-        const sky = triangle(new THREE.RawShaderMaterial({
+        this.sky = triangle(new THREE.RawShaderMaterial({
             ...backgroundProgram, glslVersion: THREE.GLSL3, uniforms: this.uniforms, depthWrite: false, depthFunc: THREE.LessEqualDepth,
         }));
-        sky.renderOrder = -1;
-        this.scene.add(sky);
+        this.sky.renderOrder = -1;
+        this.scene.add(this.sky);
         this.scene.matrixWorldAutoUpdate = true;
         this.present = new Pass(presentProgram, {
             u_left: uniform(null), u_right: uniform(null), u_map: uniform(null), u_divider: uniform(1), u_view: uniform(0),
@@ -63,7 +68,7 @@ export class Stage {
     }
 
     setModel(root: THREE.Object3D): void {
-        for (const mesh of this.meshes) mesh.dispose();
+        for (const mesh of this.meshes) mesh.dispose(root !== this.model);
         if (this.model) this.scene.remove(this.model);
         this.model = root;
         this.meshes = litMeshes(root, this.uniforms);
@@ -125,8 +130,9 @@ export class Stage {
         (u.u_override_color!.value as THREE.Color).setStyle(state.color);  // sRGB, as on the screen, to linear
         u.u_override_metalness!.value = state.metalness;
         u.u_override_roughness!.value = state.roughness;
-        u.u_exponent!.value = state.override ? state.exponent : -1;
+        u.u_exponent!.value = state.override ? 2 ** state.exponentLog2 : -1;
         u.u_ior_outside!.value = state.iorOutside;
+        u.u_ior_inside!.value = state.iorOverride ? state.ior : -1;
         u.u_strategy!.value = strategies.indexOf(state.strategy);
         u.u_tables!.value = tables.indexOf(state.tables);
         u.u_samples!.value = state.samples;
@@ -147,16 +153,27 @@ export class Stage {
         for (const pane of this.panes) pane.count = 0;
     }
 
+    /// Width over height of what the panel does not cover.
+    get freeAspect(): number {
+        const {width, height} = this.panes[0], {right, bottom} = this.inset;
+        return Math.max(1, width - right) / Math.max(1, height - bottom);
+    }
+    /// Points the camera at a part of the picture, from pixel (x, y) on.
+    private look(x: number, y: number, width: number, height: number): void {
+        const {width: all, height: high} = this.panes[0], {right, bottom} = this.inset;
+        // The field of view belongs to what is free; the picture goes on below the panel.
+        this.camera.aspect = this.freeAspect;
+        this.camera.setViewOffset(Math.max(1, all - right), Math.max(1, high - bottom), x, y, width, height);
+        this.camera.updateProjectionMatrix();
+    }
+
     /// One more frame of a pane.
     advance(pane: Pane, mode: Mode): void {
-        this.camera.aspect = pane.width / pane.height;
-        this.camera.updateProjectionMatrix();
         this.camera.updateMatrixWorld();
         for (const mesh of this.meshes) mesh.use(mode);
         this.uniforms.u_frame!.value = pane.count;
         (this.uniforms.u_eye!.value as THREE.Vector3).copy(this.camera.position);
-        pane.advance(this.camera, mode === 'monte-carlo', () => {
-            this.camera.updateProjectionMatrix();
+        pane.advance((x, y) => this.look(x, y, pane.width, pane.height), mode === 'monte-carlo', () => {
             const view = new THREE.Matrix4().extractRotation(this.camera.matrixWorld);
             (this.uniforms.u_unproject!.value as THREE.Matrix4).copy(view.multiply(this.camera.projectionMatrixInverse));
             this.renderer.clear();
@@ -164,13 +181,86 @@ export class Stage {
         });
     }
 
+    /// What stands on the right: the second pane, or a picture from a file.
+    side(state: State, index: number): THREE.Texture {
+        return index === 1 && state.other === 'picture' && this.picture ? this.picture : this.panes[index]!.target.texture;
+    }
+
     show(state: State): void {
-        const u = this.present.uniforms;
-        u.u_left!.value = this.panes[0].target.texture;
-        u.u_right!.value = this.panes[1].target.texture;
+        const u = this.present.uniforms, mapped = (state.view === 'difference' || state.view === 'flip') && u.u_map!.value !== null;
+        u.u_left!.value = this.side(state, 0);
+        u.u_right!.value = this.side(state, 1);
         u.u_divider!.value = state.view === 'split' ? state.divider : 2;
+        u.u_view!.value = mapped ? 1 : 0;
+        this.setDisplay(u, state);
+        this.present.run(this.renderer, null);
+    }
+    setDisplay(u: Uniforms, state: State): void {
         u.u_tonemap!.value = tonemaps.indexOf(state.tonemap);
         u.u_exposure!.value = 2 ** state.exposure;
-        this.present.run(this.renderer, null);
+    }
+
+    /// A side as the screen shows it: RGBA bytes, rows from the top.
+    readDisplayed(state: State, index: number): Uint8Array {
+        const {width, height} = this.panes[0], target = new THREE.WebGLRenderTarget(width, height, {depthBuffer: false});
+        const u = this.present.uniforms;
+        Object.assign(u.u_left!, {value: this.side(state, index)});
+        Object.assign(u.u_divider!, {value: 2});
+        Object.assign(u.u_view!, {value: 0});
+        this.setDisplay(u, state);
+        this.present.run(this.renderer, target);
+        return this.readBytes(target);
+    }
+    /// The number of the object in each pixel, rows from the top.
+    readObjects(): Uint16Array {
+        const {width, height} = this.panes[0], target = new THREE.WebGLRenderTarget(width, height);
+        this.look(0, 0, width, height);
+        this.drawFor('identify', target);
+        const bytes = this.readBytes(target);
+        return Uint16Array.from({length: width * height}, (_, k) => bytes[4 * k]! + 256 * bytes[4 * k + 1]!);
+    }
+    /// The bytes of a target, rows from the top. The target is given back.
+    readBytes(target: THREE.WebGLRenderTarget): Uint8Array {
+        const {width, height} = target, bottomFirst = new Uint8Array(4 * width * height), bytes = new Uint8Array(bottomFirst.length);
+        this.renderer.readRenderTargetPixels(target, 0, 0, width, height, bottomFirst);
+        for (let y = 0; y < height; ++y) bytes.set(bottomFirst.subarray(4 * (height - 1 - y) * width, 4 * (height - y) * width), 4 * y * width);
+        target.dispose();
+        return bytes;
+    }
+
+    /// The normal and the roughness at a pixel; null where no surface is.
+    probe(x: number, y: number): {normal: THREE.Vector3; roughness: number} | null {
+        const target = this.pixel, values = new Float32Array(4);
+        this.look(x, y, 1, 1);
+        this.drawFor('probe', target);
+        this.renderer.readRenderTargetPixels(target, 0, 0, 1, 1, values);
+        return values[3]! > 0 ? {normal: new THREE.Vector3().fromArray(values), roughness: values[3]!} : null;
+    }
+    private drawFor(purpose: Purpose, target: THREE.WebGLRenderTarget): void {
+        for (const mesh of this.meshes) mesh.use(purpose);
+        this.sky.visible = false;
+        this.renderer.setRenderTarget(target);
+        this.renderer.setClearColor(0, 0);
+        this.renderer.clear();
+        this.renderer.render(this.scene, this.camera);
+        this.sky.visible = true;
+    }
+
+    get objectNames(): string[] {
+        return this.meshes.map(({mesh}, k) => mesh.name || `object ${k + 1}`);
+    }
+    setMap(bytes: Uint8Array, width: number, height: number): void {
+        const texture = new THREE.DataTexture(bytes, width, height);
+        texture.needsUpdate = true;
+        this.present.uniforms.u_map!.value?.dispose();
+        this.present.uniforms.u_map!.value = texture;
+    }
+    /// A picture from a file, which is compared with what is drawn.
+    setPicture(pixels: Latlong): void {
+        const {width, height} = pixels, rgba = new Float32Array(4 * width * height);
+        for (let y = 0; y < height; ++y)
+            for (let x = 0; x < width; ++x) rgba.set(pixels.pixels.subarray(3 * (y * width + x), 3 * (y * width + x) + 3), 4 * ((height - 1 - y) * width + x));
+        this.picture?.dispose();
+        this.picture = tableTexture(rgba, width, height);
     }
 }

@@ -1,8 +1,7 @@
 // Materials of glTF as the uniforms and defines of shading/surface.glsl.
 
 import * as THREE from 'three';
-import type {Mode} from '../state';
-import {modelProgram} from './programs';
+import {modelProgram, type Purpose} from './programs';
 
 export type Uniforms = Record<string, THREE.IUniform>;
 
@@ -11,42 +10,48 @@ interface Surface {
     defines: Record<string, string>;
 }
 
-/// One mesh with its own uniforms, and a material for each mode, made when it is first drawn.
+/// One mesh with its own uniforms, and a material for each purpose, made when it is first drawn.
 export class LitMesh {
     private readonly surface: Surface;
-    private readonly materials = new Map<Mode, THREE.RawShaderMaterial>();
+    private readonly materials = new Map<Purpose, THREE.RawShaderMaterial>();
     private readonly transparent: boolean;
 
     constructor(
         readonly mesh: THREE.Mesh,
         source: THREE.MeshStandardMaterial,
         private readonly shared: Uniforms,
+        /// From 1: 0 is the background.
+        number: number,
     ) {
         this.surface = surfaceOf(mesh, source);
+        this.surface.uniforms.u_object = {value: number};
         this.transparent = source.transparent;
     }
 
-    use(mode: Mode): void {
-        let material = this.materials.get(mode);
-        if (!material) this.materials.set(mode, (material = this.make(mode)));
+    use(purpose: Purpose): void {
+        let material = this.materials.get(purpose);
+        if (!material) this.materials.set(purpose, (material = this.make(purpose)));
         this.mesh.material = material;
     }
 
-    dispose(): void {
+    /// whole: also what another set of materials of the same model would still need.
+    dispose(whole: boolean): void {
         for (const material of this.materials.values()) material.dispose();
+        if (!whole) return;
         this.mesh.geometry.dispose();
         for (const {value} of Object.values(this.surface.uniforms)) if (value instanceof THREE.Texture) value.dispose();
     }
 
-    private make(mode: Mode): THREE.RawShaderMaterial {
+    private make(purpose: Purpose): THREE.RawShaderMaterial {
+        const blended = this.transparent && purpose !== 'probe' && purpose !== 'identify';
         return new THREE.RawShaderMaterial({
-            ...modelProgram(mode),
+            ...modelProgram(purpose),
             glslVersion: THREE.GLSL3,
             uniforms: {...this.shared, ...this.surface.uniforms},
             defines: this.surface.defines,
             side: THREE.DoubleSide,
-            transparent: this.transparent,
-            depthWrite: !this.transparent,
+            transparent: blended,
+            depthWrite: !blended,
         });
     }
 }
@@ -59,7 +64,7 @@ export function litMeshes(root: THREE.Object3D, shared: Uniforms): LitMesh[] {
         const mesh = object as THREE.Mesh;
         if (!mesh.isMesh) return;
         const material = Array.isArray(mesh.material) ? mesh.material[0]! : mesh.material;
-        meshes.push(new LitMesh(mesh, material as THREE.MeshStandardMaterial, shared));
+        meshes.push(new LitMesh(mesh, material as THREE.MeshStandardMaterial, shared, meshes.length + 1));
     });
     return meshes;
 }

@@ -16,6 +16,8 @@ export interface Model {
     view?: View;
     /// Names of the material variants (KHR_materials_variants).
     variants: string[];
+    /// Gives every mesh the material of a variant; null: the file's own.
+    useVariant?: (index: number | null) => Promise<void>;
 }
 
 type Colour = [number, number, number];

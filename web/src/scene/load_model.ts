@@ -27,7 +27,8 @@ export async function loadModel(name: string, bytes: ArrayBuffer, siblings: Map<
     }
     if (!hasSurface(gltf.scene)) throw new Error(`${name}: the model has no surface to be lit.`);
     freeze(gltf.scene);
-    return {name, root: gltf.scene, variants: variantsOf(gltf)};
+    gltf.scene.traverse(object => (object.userData.sourceMaterial = (object as THREE.Mesh).material));
+    return {name, root: gltf.scene, variants: variantsOf(gltf), useVariant: index => useVariant(gltf, index)};
 }
 
 const sentence = (error: unknown) => String((error as Error).message ?? error).replace(/^THREE\.\w+: /, '').replace(/\.$/, '');
@@ -58,4 +59,20 @@ function freeze(root: THREE.Object3D): void {
 function variantsOf(gltf: GLTF): string[] {
     const extension = gltf.parser.json.extensions?.KHR_materials_variants;
     return (extension?.variants ?? []).map((variant: {name: string}) => variant.name);
+}
+
+interface VariantMapping {
+    material: number;
+    variants: number[];
+}
+
+/// KHR_materials_variants.
+async function useVariant(gltf: GLTF, index: number | null): Promise<void> {
+    const meshes: THREE.Mesh[] = [];
+    gltf.scene.traverse(object => (object as THREE.Mesh).isMesh && meshes.push(object as THREE.Mesh));
+    for (const mesh of meshes) {
+        const mappings: VariantMapping[] = mesh.userData.gltfExtensions?.KHR_materials_variants?.mappings ?? [];
+        const mapping = index === null ? undefined : mappings.find(({variants}) => variants.includes(index));
+        mesh.material = mapping ? await gltf.parser.getDependency('material', mapping.material) : mesh.userData.sourceMaterial;
+    }
 }

@@ -2,9 +2,10 @@
 // Schlick's Fresnel term (1994, eq. 15). The C++ is src/render/shading/shading_refract.cpp. Behind lookup.glsl.
 
 uniform float u_ior_outside;  // of what surrounds the model: 1 for air
+uniform float u_ior_inside;   // below 0: the material's
 
 vec3 shade(Surface s, vec3 v) {
-    float inside = s.ior, outside = u_ior_outside, NdotV = clamp(dot(s.normal, v), 0.0, 1.0);
+    float inside = u_ior_inside > 0.0 ? u_ior_inside : s.ior, outside = u_ior_outside, NdotV = clamp(dot(s.normal, v), 0.0, 1.0);
     float eta = s.front ? outside / inside : inside / outside;
     // Snell: sin t = eta sin i; beyond the critical angle all is reflected.
     float cos2 = 1.0 - eta * eta * (1.0 - NdotV * NdotV);

@@ -1,0 +1,13 @@
+// Environments: those that are computed in the page, and what the user opened.
+
+import type {Baker} from './bake/baker';
+import type {EnvironmentInfo, Latlong} from './bake/types';
+import {studio, sunset, whiteFurnace} from './scene/environments';
+
+export const builtInEnvironments: Record<string, () => Latlong> = {studio, sunset, furnace: whiteFurnace};
+
+/// Where an environment comes from, so that it can be opened again after the white furnace.
+export type LightSource = (baker: Baker) => Promise<EnvironmentInfo>;
+
+export const builtIn = (name: string): LightSource => baker => baker.use(name, (builtInEnvironments[name] ?? studio)());
+export const fromFile = (file: File): LightSource => async baker => baker.open(file.name, await file.arrayBuffer());

@@ -1,0 +1,43 @@
+// What is under the pointer: the pixel's radiance, and the lobe of the surface there.
+
+import * as THREE from 'three';
+import type {App} from '../app';
+import type {MapSection} from './map_section';
+import type {Status} from './status';
+
+export class Hover {
+    private place: [number, number] | null = null;
+    private reading = false;
+
+    constructor(
+        private readonly app: App,
+        private readonly status: Status,
+        private readonly map: MapSection,
+    ) {}
+
+    /// x, y: in CSS pixels.
+    at(x: number, y: number): void {
+        const {width, height} = this.app.stage.panes[0];
+        this.place = [Math.floor((x / innerWidth) * width), Math.floor((y / innerHeight) * height)];
+        void this.refresh();
+        if (this.map.wantsLobe) this.showLobe();
+    }
+
+    /// Reads the pixel again, because the picture has become better.
+    async refresh(): Promise<void> {
+        if (!this.place || this.reading || !this.app.ready) return;
+        this.reading = true;
+        const [x, y] = this.place, {stage, state} = this.app, split = state.view === 'split' && x / stage.panes[0].width > state.divider && state.other !== 'picture';
+        const {target, height} = stage.panes[split ? 1 : 0]!, values = new Float32Array(4);
+        await stage.renderer.readRenderTargetPixelsAsync(target, x, height - 1 - y, 1, 1, values).catch(() => {});
+        this.status.showPixel(x, y, [values[0]!, values[1]!, values[2]!]);
+        this.reading = false;
+    }
+
+    private showLobe(): void {
+        const [x, y] = this.place!, {stage} = this.app, found = stage.probe(x, y);
+        if (!found) return this.map.setLobe(null);
+        const view = new THREE.Vector3(0, 0, 0.5).unproject(stage.camera).sub(stage.camera.position).normalize();  // the probe looked at this pixel alone
+        this.map.setLobe({direction: view.reflect(found.normal), roughness: found.roughness});
+    }
+}

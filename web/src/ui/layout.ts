@@ -1,0 +1,104 @@
+// The parts of the page.
+
+import {modes, type Store} from '../state';
+import {button, ChoiceControl, element} from './controls';
+import type {keyTable} from './keys';
+import {modeNames, modeNotes} from './labels';
+
+export interface Layout {
+    canvas: HTMLCanvasElement;
+    caption: HTMLElement;
+    status: HTMLElement;
+    panel: HTMLElement;
+    tools: HTMLElement;
+    divider: HTMLElement;
+    /// Says what is being worked on; empty text hides it.
+    work: (what: string) => void;
+    /// Shows a sentence until it is closed.
+    complain: (sentence: string) => void;
+    drop: HTMLElement;
+    tags: [HTMLElement, HTMLElement];
+}
+
+export function layOut(store: Store): Layout {
+    const canvas = element('canvas', {tabIndex: 0});
+    canvas.setAttribute('role', 'img');
+    canvas.setAttribute('aria-label', 'The lit model. Arrow keys orbit, plus and minus come nearer and go farther, the question mark lists all keys.');
+    const view = element('main', {id: 'view'}, canvas);
+    const caption = element('p');
+    const header = element('header', {className: 'surface'}, element('h1', {}, 'Domelight'), caption);
+    const status = element('div', {id: 'status', className: 'surface'});
+    const tags: [HTMLElement, HTMLElement] = [element('div', {className: 'tag surface', hidden: true}), element('div', {className: 'tag surface', hidden: true})];
+
+    const choice = new ChoiceControl(store, 'mode', 'Method of shading', modes.map(mode => [mode, modeNames[mode], modeNotes[mode]] as const));
+    choice.querySelector('legend')!.className = 'sr';
+    choice.querySelectorAll('label span').forEach((span, k) => span.prepend(element('kbd', {ariaHidden: 'true'}, `${k + 1}`)));
+    const bar = element('nav', {id: 'modes', className: 'surface', ariaLabel: 'Methods'}, choice);
+
+    const tools = element('div', {id: 'tools'});
+    const panel = element('div', {tabIndex: -1});
+    const aside = element('aside', {id: 'panel', className: 'surface', ariaLabel: 'Settings'}, tools, panel);
+    const unfold = button('☰', () => store.set({panel: true}), 'Show the panel (H)');
+    unfold.id = 'unfold';
+    unfold.className = 'surface';
+    unfold.setAttribute('aria-label', 'Show the panel');
+    const divider = dividerOf(store);
+    const progress = element('div', {id: 'progress', hidden: true});
+    const spoken = element('div', {className: 'sr', role: 'status'});
+    const notes = element('div', {id: 'notes', role: 'alert'});
+    const drop = element('div', {id: 'drop', hidden: true}, element('p', {}, 'Drop environments and models anywhere'));
+    document.body.append(view, header, divider, ...tags, status, bar, unfold, aside, notes, drop, progress, spoken);
+
+    const fold = () => document.body.classList.toggle('folded', !store.state.panel);
+    fold();
+    store.listen(changed => changed.has('panel') && fold());
+    return {
+        canvas, caption, status, panel, tools, divider, drop, tags,
+        work: what => {
+            progress.hidden = what === '';
+            spoken.textContent = what;
+        },
+        complain: sentence => {
+            const note = element('div', {className: 'surface'}, element('p', {}, sentence), button('Close', () => note.remove()));
+            notes.append(note);
+            while (notes.children.length > 3) notes.firstElementChild!.remove();
+        },
+    };
+}
+
+/// The line between two panes, to be dragged or moved by arrow keys.
+function dividerOf(store: Store): HTMLElement {
+    const divider = element('div', {id: 'divider', tabIndex: 0, role: 'slider', ariaLabel: 'Divider between the two methods', ariaValueMin: '0', ariaValueMax: '100'});
+    const place = () => {
+        divider.hidden = store.state.view !== 'split';
+        divider.style.left = `${100 * store.state.divider}%`;
+        divider.ariaValueNow = String(Math.round(100 * store.state.divider));
+    };
+    place();
+    store.listen(place);
+    const to = (x: number) => store.set({divider: Math.min(1, Math.max(0, x))});
+    divider.addEventListener('pointerdown', event => divider.setPointerCapture(event.pointerId));
+    divider.addEventListener('pointermove', event => divider.hasPointerCapture(event.pointerId) && to(event.clientX / innerWidth));
+    divider.addEventListener('keydown', event => {
+        const step = {ArrowLeft: -0.02, ArrowRight: 0.02, Home: -1, End: 1}[event.key];
+        if (step === undefined) return;
+        event.preventDefault();
+        to(store.state.divider + step);
+    });
+    return divider;
+}
+
+export function helpDialog(keys: ReturnType<typeof keyTable>): HTMLDialogElement {
+    const list = element('dl');
+    const line = (shown: (Node | string)[], what: string) => list.append(element('dt', {}, ...shown), element('dd', {}, what));
+    line(['Drag'], 'orbit; with Shift, turn the light; with the right button or two fingers, move');
+    line(['Wheel, pinch'], 'nearer, farther');
+    for (const {shown, what} of keys)
+        if (what) line(shown.flatMap(key => (key === '…' ? [' … '] : [element('kbd', {}, key), ' '])), what);
+    const dialog = element('dialog', {ariaLabel: 'Help'}, element('h2', {}, 'Domelight'),
+        element('p', {}, 'See a model lit by a photograph, by every method of image-based lighting, and the error of each. Drop an environment (.hdr, .exr) and a model ' +
+                         '(.glb, .gltf with its files) anywhere. Everything is computed in this page: nothing is uploaded.'),
+        list, element('form', {method: 'dialog'}, element('button', {autofocus: true}, 'Close')));
+    document.body.append(dialog);
+    return dialog;
+}

@@ -1,0 +1,83 @@
+// The panel's sections: what is shown, how it is lit, and how that is computed.
+
+import type {App} from '../app';
+import {defaults, tonemaps, type Mode, type State} from '../state';
+import {CheckControl, ChoiceControl, ColourControl, element, onlyWhere, RangeControl, SelectControl} from './controls';
+import {fixed, modeNotes, signed, tonemapNames} from './labels';
+
+export function section(title: string, open: boolean, ...parts: HTMLElement[]): HTMLDetailsElement {
+    return element('details', {open}, element('summary', {}, title), element('div', {}, ...parts));
+}
+
+export const note = (...text: (string | Node)[]): HTMLParagraphElement => element('p', {className: 'note'}, ...text);
+
+const models = [['spheres', 'Spheres: gold, plastic'], ['grid', 'Grid: roughness × metalness'], ['ball', 'Ball on a plinth'], ['furnace', 'White metal ball']] as const;
+const environments = [['studio', 'Studio (computed here)'], ['sunset', 'Evening sky (computed here)']] as const;
+
+export function sceneSection(app: App): HTMLElement {
+    const {store} = app;
+    const model = new SelectControl(store, 'model', 'Model', models), environment = new SelectControl(store, 'environment', 'Environment', environments);
+    const variant = element('select', {id: 'variant'});
+    const variants = element('div', {className: 'select', hidden: true}, element('label', {htmlFor: 'variant'}, 'Material variant'), variant);
+    variant.addEventListener('change', () => void app.useVariant(variant.value === '' ? null : Number(variant.value)));
+    app.onOpened(() => {
+        const own = <T extends readonly (readonly [string, string])[]>(list: T, name: string): readonly (readonly [string, string])[] =>
+            list.some(([value]) => value === name) ? list : [...list, [name, name] as const];
+        model.fill(own(models, app.model.name));
+        model.querySelector('select')!.value = app.model.name;
+        environment.fill(own(environments, app.environmentName));
+        environment.querySelector('select')!.value = app.environmentName;
+        variants.hidden = app.model.variants.length === 0;
+        variant.replaceChildren(element('option', {value: ''}, 'as in the file'), ...app.model.variants.map((name, k) => element('option', {value: `${k}`}, name)));
+    });
+    return section('Scene', true, model, variants, environment, new CheckControl(store, 'furnace', 'White furnace', 'Light of radiance 1 from everywhere (W)'));
+}
+
+export function pictureSection({store}: App): HTMLElement {
+    return section('Light and picture', true,
+        new RangeControl(store, 'exposure', 'Exposure', {min: -8, max: 8, step: 0.1, text: v => `${signed(1)(v)} EV`}),
+        new RangeControl(store, 'turn', 'Turn of the light', {min: -180, max: 180, step: 1, text: v => `${v.toFixed(0)}°`, title: 'Shift and drag'}),
+        new SelectControl(store, 'tonemap', 'Tone map', tonemaps.map(name => [name, tonemapNames[name]] as const)),
+        new ChoiceControl(store, 'background', 'Background', [['environment', 'Sharp'], ['blurred', 'Blurred'], ['colour', 'White']]),
+        onlyWhere(store, new RangeControl(store, 'blur', 'Blur', {min: 0.05, max: 1, step: 0.01, text: fixed(2)}), s => s.background === 'blurred'));
+}
+
+/// Controls that belong to some of the methods.
+export function methodSection({store}: App): HTMLElement {
+    const text = note();
+    const tell = () => (text.textContent = modeNotes[store.state.mode]);
+    tell();
+    store.listen(tell);
+    const of = (...modes: Mode[]) => (s: State) => modes.includes(s.mode) || (s.view !== 'one' && modes.includes(s.other as Mode));
+    const where = (shown: (s: State) => boolean, ...parts: HTMLElement[]) => parts.map(part => onlyWhere(store, part, shown));
+    return section('Method', true, text,
+        ...where(of('split-sum', 'stretched', 'phong'),
+            new ChoiceControl(store, 'irradiance', 'Irradiance', [['cube', 'Cube'], ['sh', 'Nine harmonics']]),
+            new CheckControl(store, 'occlusion', 'Occlusion textures')),
+        ...where(of('split-sum', 'stretched'),
+            new CheckControl(store, 'multipleScattering', 'Multiple scattering', 'Fdez-Aguera 2019: rough metals do not darken'),
+            new ChoiceControl(store, 'diffuseWeight', 'Diffuse weight', [['energy', 'Energy'], ['fresnel', '1 − F(NdotV)']])),
+        ...where(of('split-sum'), new CheckControl(store, 'bentLookup', 'Bent lookup', 'Towards the normal on rough surfaces')),
+        ...where(of('mirror', 'refract'),
+            new SelectControl(store, 'lookup', 'Environment read as', [['environment', 'the map itself'], ['cube', 'cube'], ['latlong', 'lat-long'],
+                                                                       ['sphere-map', 'sphere map'], ['dual-paraboloid', 'dual paraboloid']])),
+        ...where(of('refract'),
+            new RangeControl(store, 'iorOutside', 'Index outside', {min: 1, max: 2.5, step: 0.01, text: fixed(2)}),
+            new CheckControl(store, 'iorOverride', 'Choose the index inside'),
+            new RangeControl(store, 'ior', 'Index inside', {min: 1, max: 2.5, step: 0.01, text: fixed(2)})),
+        ...where(of('monte-carlo'),
+            new ChoiceControl(store, 'strategy', 'Directions from', [['mis', 'Both (MIS)'], ['env', 'Light'], ['brdf', 'BRDF']]),
+            new ChoiceControl(store, 'tables', 'Drawn by', [['guided', 'Guide tables'], ['walk', 'Row, then column']]),
+            new RangeControl(store, 'samples', 'Samples a frame', {min: 1, max: 16, step: 1}),
+            new RangeControl(store, 'rows', 'Rows of the map', {min: 64, max: 512, step: 64})));
+}
+
+export function materialSection({store}: App, levelOfExponent: (exponent: number) => string): HTMLElement {
+    const parts = [
+        new ColourControl(store, 'color', 'Base colour'),
+        new RangeControl(store, 'metalness', 'Metalness', {min: 0, max: 1, step: 0.01, text: fixed(2)}),
+        new RangeControl(store, 'roughness', 'Roughness', {min: 0, max: 1, step: 0.01, text: fixed(2)}),
+        new RangeControl(store, 'exponentLog2', 'Phong exponent n_s', {min: 0, max: 14, step: 0.1, text: v => `${(2 ** v).toFixed(v < 4 ? 1 : 0)}, level ${levelOfExponent(2 ** v)}`}),
+    ].map(part => onlyWhere(store, part, s => s.override));
+    return section('Material', store.state.override !== defaults.override, new CheckControl(store, 'override', 'One material for everything'), ...parts);
+}
