@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from . import _core
-from ._environment import Environment, EnvironmentLike, PathLike, Warning, core_environment
+from ._environment import Environment, EnvironmentLike, PathLike, Warning, light_of, read
 from ._errors import _with_keywords
 from ._progress import Progress, callback
 
@@ -180,8 +180,13 @@ def bake(
         "hashes": hashes,
         "threads": threads,
     }
+    if isinstance(environment, (str, os.PathLike)):
+        environment = read(environment)
     reading = environment._reading if isinstance(environment, Environment) else {}
-    told = _core.bake(core_environment(environment), os.fspath(folder), options, reading, callback(progress))
+    with light_of(environment) as light:
+        told = _core.bake(light, os.fspath(folder), options, reading, callback(progress))
+    repairs = environment._told if isinstance(environment, Environment) else []
     for line in told["warnings"]:
-        warnings.warn(_with_keywords(line), Warning, stacklevel=2)
+        if line not in repairs:
+            warnings.warn(_with_keywords(line), Warning, stacklevel=2)
     return Bakes(told)

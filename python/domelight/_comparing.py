@@ -9,7 +9,7 @@ from typing import Any
 
 from . import _core
 from ._converting import read_levels
-from ._environment import ArrayLike, EnvironmentLike, FloatArray, PathLike, core_environment
+from ._environment import ArrayLike, EnvironmentLike, FloatArray, PathLike, light_of
 from ._filtering import Levels
 from ._progress import Progress, callback
 
@@ -216,6 +216,7 @@ def audit(
         "within": within,
         "threads": threads,
     }
-    told = _core.audit(list(levels), core_environment(environment), options, callback(progress))
+    with light_of(environment) as light:
+        told = _core.audit(list(levels), light, options, callback(progress))
     told["levels"] = [LevelAudit(**level) for level in told["levels"]]
     return Audit(**told)

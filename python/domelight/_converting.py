@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, conventions
-from ._environment import ArrayLike, Environment, EnvironmentLike, FloatArray, PathLike, core_environment
+from ._environment import ArrayLike, Environment, EnvironmentLike, FloatArray, PathLike, light_of
 from ._errors import Error
 from ._filtering import Levels
 from ._progress import Progress, callback
@@ -53,7 +53,8 @@ def convert(
     if turned_deg == 180:  # the picture of the light turned by half a turn about +Y
         matrix = np.diag([-1.0, 1.0, -1.0]) @ matrix
     options = {"size": size, "sharp": sharp, "turn": matrix.tolist(), "threads": threads}
-    array: FloatArray = _core.convert(core_environment(environment), name, options, callback(progress))["array"]
+    with light_of(environment) as light:
+        array: FloatArray = _core.convert(light, name, options, callback(progress))["array"]
     return array
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, Union
 
 import numpy as np
@@ -47,7 +48,7 @@ class Environment:
     (64, 128, 3)
     """
 
-    __slots__ = ("_environment", "_latlong", "_reading")
+    __slots__ = ("_environment", "_latlong", "_reading", "_told")
 
     def __init__(
         self, array: ArrayLike, projection: str = "auto", *, rotate_y_deg: float = 0, threads: int = 0
@@ -57,6 +58,7 @@ class Environment:
         self._environment = _core.environment_from_array(array, words, "array")
         self._latlong: FloatArray | None = None
         self._reading: dict[str, Any] = {}
+        self._told: list[str] = []
 
     @classmethod
     def _wrap(cls, environment: _core.Environment, reading: dict[str, Any] | None = None) -> Environment:
@@ -64,7 +66,18 @@ class Environment:
         wrapped._environment = environment
         wrapped._latlong = None
         wrapped._reading = reading or {}
+        wrapped._told = []
         return wrapped
+
+    def _tell(self, level: int) -> None:
+        """Warns of what has been repaired in the file since the last time. A lat-long file is read row by row, and only
+        where its light is asked for."""
+        from ._errors import _with_keywords
+
+        for line in self._environment.report()["lines"]:
+            if line not in self._told:
+                self._told.append(line)
+                warnings.warn(_with_keywords(line), Warning, stacklevel=level)
 
     @property
     def file(self) -> str:
@@ -130,6 +143,7 @@ class Environment:
                     if environment.is_default
                     else environment.world_latlong(environment.latlong_height, threads)
                 )
+                self._tell(3)
             return self._latlong
         from ._errors import Error
 
@@ -176,13 +190,16 @@ class Environment:
 EnvironmentLike = Union[Environment, ArrayLike, PathLike]
 
 
-def core_environment(environment: EnvironmentLike, keyword: str = "environment") -> _core.Environment:
-    """The library's environment for what a user passed."""
-    if isinstance(environment, Environment):
-        return environment._environment
+@contextlib.contextmanager
+def light_of(environment: EnvironmentLike, keyword: str = "environment") -> Iterator[_core.Environment]:
+    """The library's environment for what a user passed. Afterwards, warnings tell of repairs."""
     if isinstance(environment, (str, os.PathLike)):
-        return read(environment)._environment
-    return _core.environment_from_array(environment, {}, keyword)
+        environment = read(environment)
+    if isinstance(environment, Environment):
+        yield environment._environment
+        environment._tell(5)
+    else:
+        yield _core.environment_from_array(environment, {}, keyword)
 
 
 def read(
@@ -257,15 +274,9 @@ def read(
     else:
         files = [file] if isinstance(file, (str, os.PathLike)) else list(file)
         environment = _core.open_environment([os.fspath(each) for each in files], options)
-    _warn(environment.report()["lines"], 3)
-    return Environment._wrap(environment, options)
-
-
-def _warn(lines: Iterable[str], level: int) -> None:
-    from ._errors import _with_keywords
-
-    for line in lines:
-        warnings.warn(_with_keywords(line), Warning, stacklevel=level)
+    opened = Environment._wrap(environment, options)
+    opened._tell(3)
+    return opened
 
 
 def sky(

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._environment import ArrayLike, EnvironmentLike, FloatArray, core_environment
+from ._environment import ArrayLike, EnvironmentLike, FloatArray, light_of
 from ._progress import Progress, callback
 
 
@@ -123,7 +123,8 @@ def prefilter(
         "directions": directions,
         "threads": threads,
     }
-    return Levels(_core.prefilter(core_environment(environment), options, callback(progress)))
+    with light_of(environment) as light:
+        return Levels(_core.prefilter(light, options, callback(progress)))
 
 
 def irradiance(
@@ -160,7 +161,8 @@ def irradiance(
         "directions": directions,
         "threads": threads,
     }
-    return _core.irradiance(core_environment(environment), options, callback(progress))
+    with light_of(environment) as light:
+        return _core.irradiance(light, options, callback(progress))
 
 
 def spherical_harmonics(
@@ -191,7 +193,8 @@ def spherical_harmonics(
     float64 of shape (sh_bands ** 2, 3).
     """
     options = {"sh_bands": sh_bands, "sh_window": sh_window, "irradiance": irradiance, "threads": threads}
-    return _core.spherical_harmonics(core_environment(environment), options, callback(progress))
+    with light_of(environment) as light:
+        return _core.spherical_harmonics(light, options, callback(progress))
 
 
 def brdf_table(

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._environment import Environment, EnvironmentLike, core_environment
+from ._environment import Environment, EnvironmentLike, light_of
 
 Vector = npt.NDArray[np.float64]
 
@@ -117,4 +117,5 @@ def lights(
         "merge_deg": merge_deg,
         "threads": threads,
     }
-    return Lights(_core.lights(core_environment(environment), options))
+    with light_of(environment) as light:
+        return Lights(_core.lights(light, options))

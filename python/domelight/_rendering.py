@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from . import _core
-from ._environment import EnvironmentLike, FloatArray, PathLike, Warning, core_environment
+from ._environment import EnvironmentLike, FloatArray, PathLike, Warning, light_of
 from ._progress import Progress, callback
 
 
@@ -124,7 +124,8 @@ def render(
         "seed": seed,
         "threads": threads,
     }
-    told = _render.render(os.fspath(scene), core_environment(environment), options, callback(progress))
+    with light_of(environment) as light:
+        told = _render.render(os.fspath(scene), light, options, callback(progress))
     for line in told["warnings"]:
         warnings.warn(line, Warning, stacklevel=2)
     return Render(told)

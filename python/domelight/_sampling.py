@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._environment import ArrayLike, EnvironmentLike, FloatArray, core_environment
+from ._environment import ArrayLike, EnvironmentLike, FloatArray, light_of
 
 
 class Samples:
@@ -109,7 +109,8 @@ class Sampler:
             "uniform_share": uniform_share,
             "threads": threads,
         }
-        self._sampler = _core.build_sampler(core_environment(environment), options)
+        with light_of(environment) as light:
+            self._sampler = _core.build_sampler(light, options)
         self.method = method
 
     @property

@@ -1,6 +1,7 @@
 """Bad input: one clear sentence, which names the keyword, and no crash."""
 
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -160,6 +161,12 @@ def test_bad_texels_of_a_file_are_told_of(tmp_path):
     image[2, 3] = np.nan
     dl.write(tmp_path / "bad.exr", image)
     environment = dl.read(tmp_path / "bad.exr")
+    with pytest.warns(dl.Warning, match="1 not a number") as told:
+        dl.irradiance(environment, size=2)
+    assert told[0].filename == __file__  # the warning points at the caller's line
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # once is enough
+        dl.irradiance(environment, size=2)
     assert np.isfinite(environment.latlong()).all()
     assert environment.report["not_a_number"] == 1
 
