@@ -349,7 +349,7 @@ Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) 
 
 Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& options) {
     const LargeMemoryReuse reuse;
-    const FilterPlan plan = make_filter_plan(options, false);
+    const FilterPlan plan = make_filter_plan(options, false, least_degrees(source.size()));
     FilterResult result;
     result.specular.resize(options.specular.size());
     for (std::size_t l = 0; l < options.specular.size(); ++l) {

@@ -1,4 +1,5 @@
 #include "domelight/filtering/prefilter.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/projection/projection.h"
 
 #include "base/gauss_legendre.h"
@@ -92,5 +93,37 @@ TEST_CASE("prefilter: a cube is filtered as the integral over its own reconstruc
         MESSAGE("level " << l << ": RMSE " << std::sqrt(error2 / truth2) << ", max " << worst);
         CHECK(std::sqrt(error2 / truth2) < 1e-4);
         CHECK(worst < 2e-3);
+    }
+}
+
+TEST_CASE("prefilter: small cubes of a photograph with a sun, as a scene's own light is baked many times a second") {
+    DOMELIGHT_DATA_FILE(file, "env_latlong/noon_grass_1k.hdr");
+    const auto photograph = open_environment({file});
+    REQUIRE(photograph);
+    FilterOptions face;
+    face.sh_bands = 0;
+    face.specular = {{64, true, {}}, {32, true, {}}};
+    const auto cubes = prefilter(*photograph, face);
+    REQUIRE(cubes);
+    for (const FilteredMap& captured : cubes->specular) {
+        const Cubemap source = captured.cube();
+        const CubeTruth truth(source);
+        FilterOptions options;
+        options.sh_bands = 0;
+        for (const double roughness : {0.25, 0.5, 1.0}) options.specular.push_back({8, false, ZonalKernel::ggx(roughness)});
+        const auto result = prefilter(source, options);
+        REQUIRE(result);
+        for (std::size_t l = 0; l < options.specular.size(); ++l) {
+            double error2 = 0, truth2 = 0;
+            for (int f = 0; f < 6; ++f)
+                for (const auto& [x, y] : {std::pair{1, 2}, {6, 4}}) {
+                    const Vec3d d = normalize(cube_direction(f, {(x + 0.5) / 8, (y + 0.5) / 8}));
+                    const double t = truth.convolve(options.specular[l].kernel, d).y,
+                                 e = result->specular[l].face(f).at(x, y)[1] - t;
+                    error2 += e * e, truth2 += t * t;
+                }
+            INFO("faces of " << source.size() << "^2, level " << l);
+            CHECK(std::sqrt(error2 / truth2) < 2e-4);
+        }
     }
 }

@@ -51,7 +51,7 @@ using D = hn::CappedTag<float, 16>;
 
 /// Where a direction falls between the grid's points, and the weights there.
 struct Place {
-    Place(const GridView& grid, const TapTable& table, double column, double row) {
+    HWY_INLINE Place(const GridView& grid, const TapTable& table, double column, double row) {
         const int c0 = int(column), r0 = int(std::floor(row));
         this->column = c0;
         const double fc = (column - c0) * TapTable::k_steps, fr = (row - r0) * TapTable::k_steps;
@@ -61,7 +61,11 @@ struct Place {
         t = float(fc - ic);
         const float* w = table.down.data() + std::size_t(ir) * k_taps;
         const float tr = float(fr - ir);
-        for (int k = 0; k < k_taps; ++k) down[k] = w[k] + tr * (w[k + k_taps] - w[k]);
+        const hn::CappedTag<float, k_taps> d;
+        for (int k = 0; k < k_taps; k += int(hn::Lanes(d))) {
+            const auto low = hn::LoadU(d, w + k), high = hn::LoadU(d, w + k + k_taps);
+            hn::Store(hn::Add(low, hn::Mul(hn::Set(d, tr), hn::Sub(high, low))), d, down + k);
+        }
     }
     /// Vector v of the weights along a row.
     HWY_INLINE hn::Vec<D> across_weights(int v) const {
@@ -107,10 +111,13 @@ HWY_INLINE void lookup_one(const GridView& grid, const Place& place, float* rgb)
 HWY_INLINE void scatter_one(const GridView& grid, float* rgbx, const Place& place, const float* rgb) {
     const D d;
     constexpr int lanes = int(hn::MaxLanes(d)), vectors = k_quads / lanes;
-    alignas(64) float value[k_quads];
-    for (int i = 0; i < k_quads; ++i) value[i] = i % 4 < 3 ? rgb[i % 4] : 0;
+    alignas(16) const float rgbx_value[4] = {rgb[0], rgb[1], rgb[2], 0};
     hn::Vec<D> row[vectors];
-    for (int v = 0; v < vectors; ++v) row[v] = hn::Mul(place.across_weights(v), hn::Load(d, value + v * lanes));
+    for (int v = 0; v < vectors; ++v) {
+        // A texel in each quarter of the vector, or the part of it that a shorter vector holds.
+        const auto value = lanes >= 4 ? hn::LoadDup128(d, rgbx_value) : hn::LoadU(d, rgbx_value + v * lanes % 4);
+        row[v] = hn::Mul(place.across_weights(v), value);
+    }
     float* to = rgbx + place.offset;
     for (int k = 0; k < k_taps; ++k, to += grid.stride) {
         const auto weight = hn::Set(d, place.down[k]);
