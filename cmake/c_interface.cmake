@@ -15,6 +15,10 @@ add_library(domelight::c ALIAS domelight_c)
 target_include_directories(domelight_c PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>" $<INSTALL_INTERFACE:include> PRIVATE ${PROJECT_SOURCE_DIR}/src)
 target_compile_features(domelight_c PRIVATE cxx_std_20)
 target_link_libraries(domelight_c PRIVATE $<BUILD_INTERFACE:domelight_bake> $<BUILD_INTERFACE:domelight_flags>)
-target_link_options(domelight_c PRIVATE -Wl,--version-script=${CMAKE_CURRENT_LIST_DIR}/domelight_c.map $<$<NOT:$<BOOL:${DOMELIGHT_SANITIZE}>>:-Wl,-z,defs>)
-set_target_properties(domelight_c PROPERTIES EXPORT_NAME c CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON LINK_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/domelight_c.map
+set_target_properties(domelight_c PROPERTIES EXPORT_NAME c CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
                       SOVERSION ${domelight_c_abi} VERSION ${domelight_c_abi}.${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+# The components are compiled with visible symbols, because they may be shared libraries themselves. The linkers of ELF hide them by a list.
+if(UNIX AND NOT APPLE)
+  target_link_options(domelight_c PRIVATE -Wl,--version-script=${CMAKE_CURRENT_LIST_DIR}/domelight_c.map $<$<NOT:$<BOOL:${DOMELIGHT_SANITIZE}>>:-Wl,-z,defs>)
+  set_target_properties(domelight_c PROPERTIES LINK_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/domelight_c.map)
+endif()

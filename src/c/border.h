@@ -21,11 +21,14 @@
 
 namespace domelight::c {
 
-/// The error as the caller gets it; the one of domelight_error_free() that needs no memory where there is none left.
+/// An error for the caller, who frees it. Where there is no memory for it, the result is out_of_memory().
 domelight_error* make_error(const Error& error) noexcept;
+domelight_error* make_error(const char* what) noexcept;
+/// The error that says so. It takes no memory, and freeing it does nothing.
 domelight_error* out_of_memory() noexcept;
 
-/// Runs the body of a function of the interface, which returns a Result<void>.
+/// Runs the body of a function of the interface, which returns a Result<void>. Everything that it throws becomes an
+/// error; a build without exceptions (WebAssembly) has nothing to catch.
 template <typename Body>
 domelight_error* guarded(Body&& body) noexcept {
 #if defined(__cpp_exceptions)
@@ -37,9 +40,9 @@ domelight_error* guarded(Body&& body) noexcept {
     } catch (const std::bad_alloc&) {
         return out_of_memory();
     } catch (const std::exception& failure) {
-        return make_error({failure.what(), "", ""});
+        return make_error(failure.what());
     } catch (...) {
-        return make_error({"failed for an unknown reason", "", ""});
+        return make_error("failed for an unknown reason");
     }
 #endif
 }

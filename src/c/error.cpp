@@ -10,29 +10,37 @@ struct domelight_error {
 namespace domelight::c {
 namespace {
 
-/// Stands for the error that there is no memory for.
-char no_memory_left;
+/// Its address is the error for which there is no memory; nothing is ever read from it.
+char g_out_of_memory;
 
-domelight_error* no_memory() {
-    return reinterpret_cast<domelight_error*>(&no_memory_left);
+/// Makes an error from what `make` returns, an Error.
+template <typename Make>
+domelight_error* new_error(const Make& make) noexcept {
+#if defined(__cpp_exceptions)
+    try {
+#endif
+        Error error = make();
+        std::string text = error.format();
+        return new domelight_error{std::move(error), std::move(text)};
+#if defined(__cpp_exceptions)
+    } catch (...) {
+        return out_of_memory();
+    }
+#endif
 }
 
 }  // namespace
 
 domelight_error* out_of_memory() noexcept {
-    return no_memory();
+    return reinterpret_cast<domelight_error*>(&g_out_of_memory);
 }
 
 domelight_error* make_error(const Error& error) noexcept {
-#if defined(__cpp_exceptions)
-    try {
-        return new domelight_error{error, error.format()};
-    } catch (...) {
-        return no_memory();
-    }
-#else
-    return new domelight_error{error, error.format()};
-#endif
+    return new_error([&] { return error; });
+}
+
+domelight_error* make_error(const char* what) noexcept {
+    return new_error([&] { return Error{what, "", ""}; });
 }
 
 }  // namespace domelight::c
@@ -44,7 +52,7 @@ namespace {
 constexpr const char* k_no_memory = "out of memory";
 
 bool is_object(const domelight_error* error) {
-    return error && error != c::no_memory();
+    return error && error != c::out_of_memory();
 }
 
 }  // namespace

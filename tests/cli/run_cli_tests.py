@@ -130,6 +130,20 @@ def test_version(folder):
     assert re.fullmatch(r"domelight \d+\.\d+\.\d+\n", run("--version", folder=folder).stdout)
 
 
+def test_completions_name_every_command_and_option(folder):
+    scripts = {shell: run("completion", shell, folder=folder).stdout for shell in ["bash", "zsh", "fish"]}
+    for words in ["bake", "irradiance-size", "phong-plain", "completion"]:
+        for shell, script in scripts.items():
+            assert words in script, (shell, words)
+    (folder / "script").write_text(scripts["bash"])
+    assert subprocess.run(["bash", "-n", folder / "script"]).returncode == 0
+    for words in [["completion"], ["completion", "csh"], ["completion", "bash", "zsh"]]:
+        assert "bash, zsh, fish" in run(*words, folder=folder, code=2).stderr
+    (folder / "pages").mkdir()
+    run("manual", "pages", folder=folder)
+    assert ".SH NAME\ndomelight\\-sky" in (folder / "pages/domelight-sky.1").read_text()
+
+
 def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
     cases = [
         (["nonsense"], "bake, brdf, compare, convert, info, render, lights, sample, sky"),
