@@ -14,7 +14,7 @@ from . import _core, conventions
 from ._baking import Bake, Bakes, bake, engines
 from ._comparing import Audit, Comparison, LevelAudit, audit, compare, flip
 from ._converting import convert, read_levels, write
-from ._environment import Environment, Warning, axes, read, sky
+from ._environment import DomelightWarning, Environment, axes, read, sky
 from ._errors import Cancelled, Error, FileError, WrongType
 from ._filtering import Levels, brdf_table, irradiance, prefilter, spherical_harmonics
 from ._lights import Light, Lights, lights
@@ -29,6 +29,7 @@ __all__ = [
     "Bakes",
     "Cancelled",
     "Comparison",
+    "DomelightWarning",
     "Environment",
     "Error",
     "FileError",
@@ -39,7 +40,6 @@ __all__ = [
     "Render",
     "Sampler",
     "Samples",
-    "Warning",
     "WrongType",
     "audit",
     "axes",

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from . import _core
-from ._environment import Environment, EnvironmentLike, PathLike, Warning, light_of, read
+from ._environment import DomelightWarning, Environment, EnvironmentLike, PathLike, light_of, read
 from ._errors import _with_keywords
 from ._progress import Progress, callback
 
@@ -188,5 +188,5 @@ def bake(
     repairs = environment._told if isinstance(environment, Environment) else []
     for line in told["warnings"]:
         if line not in repairs:
-            warnings.warn(_with_keywords(line), Warning, stacklevel=2)
+            warnings.warn(_with_keywords(line), DomelightWarning, stacklevel=2)
     return Bakes(told)

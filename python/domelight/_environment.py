@@ -20,7 +20,7 @@ FloatArray = npt.NDArray[np.float32]
 PathLike = Union[str, "os.PathLike[str]"]
 
 
-class Warning(UserWarning):
+class DomelightWarning(UserWarning):
     """Something that was repaired or assumed when a file was read."""
 
 
@@ -77,7 +77,7 @@ class Environment:
         for line in self._environment.report()["lines"]:
             if line not in self._told:
                 self._told.append(line)
-                warnings.warn(_with_keywords(line), Warning, stacklevel=level)
+                warnings.warn(_with_keywords(line), DomelightWarning, stacklevel=level)
 
     @property
     def file(self) -> str:
@@ -219,7 +219,7 @@ def read(
 ) -> Environment:
     """Opens an environment: Radiance HDR, OpenEXR, PNG, JPEG, or a cube texture (KTX2, KTX, DDS, .env).
 
-    Bad texels (NaN, infinite, negative) are repaired; a `domelight.Warning` tells of them.
+    Bad texels (NaN, infinite, negative) are repaired; a `DomelightWarning` tells of them.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from . import _core
-from ._environment import EnvironmentLike, FloatArray, PathLike, Warning, light_of
+from ._environment import DomelightWarning, EnvironmentLike, FloatArray, PathLike, light_of
 from ._progress import Progress, callback
 
 
@@ -127,5 +127,5 @@ def render(
     with light_of(environment) as light:
         told = _render.render(os.fspath(scene), light, options, callback(progress))
     for line in told["warnings"]:
-        warnings.warn(line, Warning, stacklevel=2)
+        warnings.warn(line, DomelightWarning, stacklevel=2)
     return Render(told)

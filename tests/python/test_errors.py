@@ -161,7 +161,7 @@ def test_bad_texels_of_a_file_are_told_of(tmp_path):
     image[2, 3] = np.nan
     dl.write(tmp_path / "bad.exr", image)
     environment = dl.read(tmp_path / "bad.exr")
-    with pytest.warns(dl.Warning, match="1 not a number") as told:
+    with pytest.warns(dl.DomelightWarning, match="1 not a number") as told:
         dl.irradiance(environment, size=2)
     assert told[0].filename == __file__  # the warning points at the caller's line
     with warnings.catch_warnings():
