@@ -71,6 +71,23 @@ def environment(name, python, *packages):
     return inside
 
 
+def unpack(sdist, folder):
+    """Unpacks an archive over the folder of a build before this one. Only files that differ are written, because all in the archive have
+    one date: what has been built from the others stays."""
+    wanted = {}
+    with tarfile.open(sdist) as archive:
+        for member in archive.getmembers():
+            if member.isfile():
+                wanted[folder / member.name.partition("/")[2]] = archive.extractfile(member).read()
+    for file in list(folder.rglob("*")):
+        if file.is_file() and file not in wanted and folder / "build" not in file.parents:
+            file.unlink()
+    for file, contents in wanted.items():
+        if not file.is_file() or file.read_bytes() != contents:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(contents)
+
+
 def build_sdist(python):
     """The source distribution; returns it and the folder that it is unpacked to."""
     shutil.rmtree(WORK / "dist", ignore_errors=True)
@@ -78,15 +95,7 @@ def build_sdist(python):
     run("sdist", tools, "-m", "build", "--sdist", "--no-isolation", "--outdir", WORK / "dist", ROOT)
     (sdist,) = (WORK / "dist").glob("*.tar.gz")
     unpacked = WORK / "source"
-    kept = unpacked / "build"  # objects of a build before this one
-    for entry in unpacked.iterdir() if unpacked.exists() else []:
-        if entry != kept:
-            shutil.rmtree(entry) if entry.is_dir() else entry.unlink()
-    with tarfile.open(sdist) as archive:
-        for member in archive.getmembers():
-            member.name = member.name.partition("/")[2]
-            if member.name:
-                archive.extract(member, unpacked)
+    unpack(sdist, unpacked)
     return sdist, unpacked, tools
 
 
