@@ -72,6 +72,8 @@ def from_library(what: str, where: str, hint: str) -> Error:
         return Cancelled("cancelled by the progress callback")
     message, place, advice = _with_keywords(what), _with_keywords(where), _with_keywords(hint)
     field = place if re.fullmatch(r"`[a-z_]+`", where) else ""
+    if where == "fov":  # of a mirror ball, in the name of its projection
+        return Error(f"{where}: {message}", "projection", advice, "projection")
     if where and not field:
         return FileError(message, place, advice)
     return Error(message, place, advice, field)

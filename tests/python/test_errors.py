@@ -44,6 +44,7 @@ CASES = [
     (lambda light: dl.Sampler(light).pdf([1, 2]), "directions", "shape is (2,), expected (..., 3)"),
     (lambda light: dl.lights(light, max_lights=-1), "max_lights", "-1 is not from 0 to 1024"),
     (lambda light: dl.convert(light, "mercator"), "to", 'unknown projection "mercator"'),
+    (lambda light: dl.Environment(light[:, :32], "mirror-ball/fov=200"), "projection", "fov: a mirror ball's fov must lie"),
     (lambda light: dl.convert(light, size=0), "size", "0 is not from 1 to 32768"),
     (lambda light: dl.convert(light, turn=np.ones((3, 3))), "turn", "expected an orthogonal 3 x 3 matrix"),
     (lambda light: dl.compare(light, light[:, :8]), "test", "is 64 x 32, but the reference is 8 x 32"),
