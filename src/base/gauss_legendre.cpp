@@ -2,12 +2,13 @@
 
 #include "domelight/base/vec.h"
 
+#include "base/mutex.h"
+
 #include <array>
 #include <cassert>
 #include <cmath>
 #include <map>
 #include <memory>
-#include <mutex>
 
 namespace domelight {
 namespace {
@@ -69,9 +70,9 @@ GaussLegendre compute(int n) {
 
 const GaussLegendre& gauss_legendre(int n) {
     assert(n >= 1);
-    static std::mutex mutex;
+    static Mutex mutex;
     static std::map<int, std::unique_ptr<GaussLegendre>> cache;
-    const std::lock_guard lock(mutex);
+    const Lock lock(mutex);
     auto& rule = cache[n];
     if (!rule) rule = std::make_unique<GaussLegendre>(compute(n));
     return *rule;

@@ -1,16 +1,32 @@
 #include "domelight/base/parallel.h"
 
+#include <algorithm>
+
+#ifndef DOMELIGHT_ONE_THREAD
 #include <sched.h>
 
-#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <memory>
 #include <system_error>
 #include <thread>
 #include <vector>
+#endif
 
 namespace domelight {
+
+#ifdef DOMELIGHT_ONE_THREAD
+
+int resolve_threads(int) {
+    return 1;
+}
+
+void parallel_for(int count, int, const std::function<void(int)>& task) {
+    for (int i = 0; i < count; ++i) task(i);
+}
+
+#else
+
 namespace {
 
 /// A thread that runs one piece of work after the other and sleeps in between. Starting a thread takes about 50 us, and
@@ -113,6 +129,8 @@ void parallel_for(int count, int threads, const std::function<void(int)>& task) 
     for (std::size_t t = 0; t < started; ++t) helpers[t]->finish();
     if (failure) std::rethrow_exception(failure);
 }
+
+#endif
 
 void parallel_ranges(int count, int grain, int threads, const std::function<void(int, int)>& task) {
     const int pieces = (count + grain - 1) / grain;

@@ -3,11 +3,11 @@
 #include "domelight/filtering/resample/area_resample.h"
 #include "domelight/projection/projection.h"
 
+#include "base/mutex.h"
 #include "base/text.h"
 #include "projection/bilinear.h"
 
 #include <algorithm>
-#include <mutex>
 #include <optional>
 
 namespace domelight {
@@ -42,7 +42,7 @@ struct Environment::State {
     std::int64_t max_bytes = 0;
     int threads = 0;
 
-    std::mutex mutex;  // over the rest
+    Mutex mutex;  // over the rest
     RepairReport report;
     std::shared_ptr<const ImageF> latlong;
     std::shared_ptr<const BorderedCube> bordered;
@@ -50,12 +50,12 @@ struct Environment::State {
     /// The stored cube or picture as a lat-long image.
     Result<std::shared_ptr<const ImageF>> resampled() const;
     std::shared_ptr<const BorderedCube> bordered_cube() {
-        const std::lock_guard lock(mutex);
+        const Lock lock(mutex);
         if (!bordered) bordered = std::make_shared<const BorderedCube>(*cube);
         return bordered;
     }
     std::shared_ptr<const ImageF> kept() {
-        const std::lock_guard lock(mutex);
+        const Lock lock(mutex);
         return latlong;
     }
 };
@@ -186,7 +186,7 @@ Result<std::unique_ptr<RowSource>> Environment::rows() const {
     if (!rows) return rows.error();
     return std::unique_ptr<RowSource>(
         std::make_unique<ReportedRows>(*std::move(rows), report, [state = state_](const RepairReport& complete) {
-            const std::lock_guard lock(state->mutex);
+            const Lock lock(state->mutex);
             state->report = complete;
         }));
 }
@@ -204,7 +204,7 @@ Result<std::shared_ptr<const ImageF>> Environment::latlong() const {
         image = std::make_shared<const ImageF>(*std::move(pixels));
     }
     if (!image) return image.error();
-    const std::lock_guard lock(state_->mutex);
+    const Lock lock(state_->mutex);
     if (!state_->latlong) state_->latlong = *image;
     return state_->latlong;
 }
@@ -218,7 +218,7 @@ Result<Vec3f> Environment::radiance(const Vec3d& direction) const {
 }
 
 RepairReport Environment::report() const {
-    const std::lock_guard lock(state_->mutex);
+    const Lock lock(state_->mutex);
     return state_->report;
 }
 

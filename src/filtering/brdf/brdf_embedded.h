@@ -1,5 +1,7 @@
 #pragma once
 
+#include "domelight/image/image.h"
+
 #include <cstdint>
 
 namespace domelight {
@@ -8,5 +10,8 @@ namespace domelight {
 /// floats.
 inline constexpr int k_brdf_embedded_size = 128;
 extern const std::uint32_t k_brdf_embedded[k_brdf_embedded_size * k_brdf_embedded_size * 3];
+
+/// The same as an image. The WebAssembly module computes it instead (wasm/brdf_embedded.cpp).
+ImageF embedded_brdf_table();
 
 }  // namespace domelight

@@ -8,7 +8,6 @@
 
 #include <cassert>
 #include <cmath>
-#include <cstring>
 
 namespace domelight {
 namespace {
@@ -68,15 +67,16 @@ double montecarlo_sheen(double NdotV, double alpha, const PointSet& points) {
 }  // namespace
 
 ImageF brdf_table(const BrdfTableOptions& options) {
-    const ImageF& embedded = brdf_table_default();
-    const bool same_sheen = options.size == embedded.width();  // the sheen lobe does not depend on G
-    if (same_sheen && options.g == BrdfG::correlated) return embedded;
+    const bool same_sheen = options.size == k_brdf_embedded_size;  // the sheen lobe does not depend on G
+    if (same_sheen && options.g == BrdfG::correlated) return brdf_table_default();
     ImageF table = fill(options.size, options.threads, [&](double NdotV, double alpha) {
         const BrdfTerms terms = integrate_brdf(NdotV, alpha, options.g);
         return Vec3d{terms.scale, terms.bias, same_sheen ? 0 : integrate_sheen(NdotV, alpha)};
     });
-    if (same_sheen)
+    if (same_sheen) {
+        const ImageF& embedded = brdf_table_default();
         for (std::size_t i = 2; i < table.pixels().size(); i += 3) table.pixels()[i] = embedded.pixels()[i];
+    }
     return table;
 }
 
@@ -101,11 +101,7 @@ ImageF brdf_table_montecarlo(const BrdfTableOptions& options, const PointSet& po
 }
 
 const ImageF& brdf_table_default() {
-    static const ImageF table = [] {
-        ImageF image(k_brdf_embedded_size, k_brdf_embedded_size, 3);
-        std::memcpy(image.pixels().data(), k_brdf_embedded, image.pixels().size_bytes());
-        return image;
-    }();
+    static const ImageF table = embedded_brdf_table();
     return table;
 }
 

@@ -5,7 +5,7 @@
 // clang-format off: the order is Highway's
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-#include <hwy/aligned_allocator.h>
+#include "base/aligned.h"
 #include "filtering/harmonic/batch_fft.h"
 #include <cmath>
 #include <numbers>
@@ -142,8 +142,8 @@ HWY_INLINE void stage(const BatchFft& plan, float* data, int sub, int twiddle_st
 template <int sign>
 void stage_any(const BatchFft& plan, float* data, int r, int sub, int twiddle_step) {
     const D d;
-    hwy::AlignedFreeUniquePtr<float[]> buffer = hwy::AllocateAligned<float>(std::size_t(2) * r * k_element);
-    float *x = buffer.get(), *y = x + r * k_element;
+    AlignedArray<float> buffer(std::size_t(2) * r * k_element, false);
+    float *x = buffer.data(), *y = x + r * k_element;
     const auto twist = [&](float* v, int j) {
         for (int q = 1; q < r; ++q) {
             const float* t = plan.twiddles() + 2 * std::size_t(j) * q * twiddle_step;

@@ -5,6 +5,7 @@
 // clang-format off: the order is Highway's
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+#include "base/float64-inl.h"
 #include <hwy/contrib/math/math-inl.h>
 #include "filtering/harmonic/legendre_kernels.h"
 // clang-format on

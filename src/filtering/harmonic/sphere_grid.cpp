@@ -3,12 +3,12 @@
 #include "domelight/base/parallel.h"
 #include "domelight/projection/projection.h"
 
+#include "base/mutex.h"
 #include "filtering/harmonic/row_kernels.h"
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <mutex>
 #include <numeric>
 #include <span>
 
@@ -144,9 +144,9 @@ void SphereGrid::wrap() {
 
 std::shared_ptr<const simd::TapTable> lookup_table(double band) {
     constexpr std::size_t most = 16;
-    static std::mutex mutex;
+    static Mutex mutex;
     static std::deque<std::pair<double, std::shared_ptr<const simd::TapTable>>> tables;
-    const std::lock_guard lock(mutex);
+    const Lock lock(mutex);
     for (const auto& [of, table] : tables)
         if (of == band) return table;
     if (tables.size() == most) tables.pop_front();

@@ -6,6 +6,7 @@
 #include "filtering/resample/area_pieces.h"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+#include "base/float64-inl.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();

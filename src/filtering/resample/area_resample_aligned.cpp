@@ -4,12 +4,12 @@
 #include "domelight/projection/projection.h"
 
 #include "base/aligned.h"
+#include "base/mutex.h"
 #include "filtering/resample/area_resample_tile.h"
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <mutex>
 
 namespace domelight::area {
 
@@ -94,7 +94,7 @@ class AlignedResampler : public AreaResampler {
     simd::RowRing ring_;
     int batch_ = 0, received_ = 0, processed_ = 0;
     ImageF out_;
-    std::mutex builders_mutex_;
+    Mutex builders_mutex_;
     std::vector<std::unique_ptr<TileBuilder>> builders_;
     StencilArena arena_;
 };
@@ -335,7 +335,7 @@ void AlignedResampler::run(const Job& job) {
     if (!job.south) {
         std::unique_ptr<TileBuilder> builder;
         {
-            const std::lock_guard lock(builders_mutex_);
+            const Lock lock(builders_mutex_);
             if (!builders_.empty()) {
                 builder = std::move(builders_.back());
                 builders_.pop_back();
@@ -343,7 +343,7 @@ void AlignedResampler::run(const Job& job) {
         }
         if (!builder) builder = std::make_unique<TileBuilder>(grid_, size_, arena_);
         tile.stencils = builder->build(tile.shape, groups_[tile.group].columns);
-        const std::lock_guard lock(builders_mutex_);
+        const Lock lock(builders_mutex_);
         builders_.push_back(std::move(builder));
     }
     apply(tile, job.south ? tile.south : tile.north, job.south);

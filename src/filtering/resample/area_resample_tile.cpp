@@ -317,7 +317,7 @@ Tile TileBuilder::finish(int first_mirrored, double total) {
 
 std::byte* StencilArena::allocate(std::size_t bytes) {
     bytes = (bytes + 63) / 64 * 64;
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     if (blocks_.empty() || used_ + bytes > blocks_.back().size()) {
         blocks_.emplace_back(std::max(k_block, bytes), false);
         used_ = 0;

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "base/aligned.h"
+#include "base/mutex.h"
 #include "filtering/resample/area_apply.h"
 #include "filtering/resample/area_pieces.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <mutex>
 #include <span>
 #include <vector>
 namespace domelight::area {
@@ -61,7 +61,7 @@ class StencilArena {
 
   private:
     static constexpr std::size_t k_block = std::size_t(4) << 20;
-    std::mutex mutex_;
+    Mutex mutex_;
     std::vector<AlignedArray<std::byte>> blocks_;
     std::size_t used_ = 0;
 };

@@ -2,6 +2,7 @@
 
 #include "domelight/base/parallel.h"
 
+#include "base/mutex.h"
 #include "filtering/resample/reproject_interpolate.h"
 #include "filtering/resample/reproject_plain.h"
 #include "filtering/resample/reproject_sides.h"
@@ -12,7 +13,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <mutex>
 
 namespace domelight {
 
@@ -317,14 +317,14 @@ ProjectedImage reproject_by(Method method, const ProjectedImage& source, const P
     const Reprojector work(from, target, width, height, method, out.pixels);
     const int down = (height + k_tile - 1) / k_tile, across = (width + k_tile - 1) / k_tile;
     std::atomic<int> done = 0;
-    std::mutex telling;
+    Mutex telling;
     parallel_for(charts * down, threads, [&](int row) {
         const int chart = row / down, y0 = row % down * k_tile, y1 = std::min(height, y0 + k_tile);
         Workspace workspace;
         for (int t = 0; t < across; ++t)
             work.block(chart, t * k_tile, y0, std::min(width, (t + 1) * k_tile), y1, workspace);
         if (progress) {
-            const std::lock_guard lock(telling);
+            const Lock lock(telling);
             progress("convert", double(++done) / (charts * down));
         }
     });

@@ -7,6 +7,7 @@
 
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+#include "base/float64-inl.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();

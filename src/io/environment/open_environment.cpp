@@ -3,6 +3,7 @@
 #include "domelight/image/row_source.h"
 
 #include "base/field_place.h"
+#include "base/mutex.h"
 #include "io/environment/cube_face_names.h"
 #include "io/environment/cube_input.h"
 #include "io/environment/cube_texture_reader.h"
@@ -19,7 +20,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <mutex>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -311,7 +311,7 @@ class LatlongFile {
     /// The reader that opening the environment made, and new ones after that.
     Result<std::unique_ptr<ImageReader>> reader() {
         {
-            const std::lock_guard lock(mutex_);
+            const Lock lock(mutex_);
             if (first_) return std::exchange(first_, nullptr);
         }
         return open_image_reader(bytes_, reader_options(request_.options));
@@ -319,7 +319,7 @@ class LatlongFile {
 
     std::filesystem::path file_;
     std::shared_ptr<const FileBytes> bytes_;
-    std::mutex mutex_;
+    Mutex mutex_;
     std::unique_ptr<ImageReader> first_;
     Request request_;
     LatlongConvention::Grid grid_;

@@ -1,8 +1,7 @@
 #include "domelight/base/parallel.h"
 
-#include "image/colour_primaries.h"
-#include "image/repair.h"
 #include "io/exr/exr_channels.h"
+#include "io/exr/exr_facts.h"
 #include "io/exr/exr_header_reader.h"
 #include "io/exr/exr_stream.h"
 #include "io/file/printable.h"
@@ -37,7 +36,7 @@ class ExrReader : public ImageReader {
     Result<bool> read(ImageView<float> rows) override;
 
   private:
-    void take_facts(const Imf::Header& header);
+    ExrHeader facts_of(const Imf::Header& header) const;
     void read_rgb(ImageView<float> rows, int y);
     void read_luminance_chroma(ImageView<float> rows, int y);
 
@@ -68,19 +67,11 @@ Result<void> ExrReader::open() {
     if (!file_->partComplete(colour_.part))
         return Error{"file is incomplete: some of its texels were never written", "", ""};
 
+    const ExrHeader facts = facts_of(header);
+    const auto window = exr_picture_window(facts, options_);
+    if (!window) return window.error();
     data_ = header.dataWindow();
-    const bool envmap = Imf::hasEnvmap(header);
-    // An environment is its data window (ImfEnvmap.h); a picture is its display window.
-    window_ = envmap ? data_ : header.displayWindow();
-    const std::int64_t width = std::int64_t(window_.max.x) - window_.min.x + 1,
-                       height = std::int64_t(window_.max.y) - window_.min.y + 1;
-    if (const auto sized = check_image_size(width, height); !sized) return sized.error();
-    if (!window_.intersects(data_))
-        return Error{"the data window lies outside the display window: no texel would be seen", "", ""};
-    if (const auto checked = check_exr_black(exr_window(window_), exr_window(data_), options_); !checked)
-        return checked.error();
-    facts_.width = int(width);
-    facts_.height = int(height);
+    window_ = Imath::Box2i({(*window)[0], (*window)[1]}, {(*window)[2], (*window)[3]});
 
     if (colour_.kind == ExrColour::Kind::luminance_chroma) {
         if (colour_.part != 0) return Error{"luminance and chroma are read from the first part only", "", ""};
@@ -97,49 +88,30 @@ Result<void> ExrReader::open() {
         }
         part_ = std::make_unique<Imf::InputPart>(*file_, colour_.part);
     }
-    if (colour_.chosen_by_us)
-        facts_.warnings.push_back(fmt::format("the layer {} is read, of: {} (`layer` names another)",
-                                              printable(colour_.layer), channels.layer_list()));
-    const bool named =
-        colour_.kind != ExrColour::Kind::rgb ||
-        std::none_of(std::begin(colour_.names), std::end(colour_.names), [](const auto& n) { return n.empty(); });
-    fills_rows_ = named && data_.min.x <= window_.min.x && data_.min.y <= window_.min.y &&
-                  data_.max.x >= window_.max.x && data_.max.y >= window_.max.y;
-    take_facts(header);
+    fills_rows_ = exr_is_filled(colour_, *window, facts.data);
+    facts_ = exr_facts(facts, *window, colour_, channels);
     return {};
 }
 
-void ExrReader::take_facts(const Imf::Header& header) {
-    facts_.format = "OpenEXR";
-    facts_.layer = colour_.layer;
-    facts_.largest = k_largest_radiance;
+/// What the header of the part states.
+ExrHeader ExrReader::facts_of(const Imf::Header& header) const {
+    ExrHeader facts;
+    facts.display = exr_window(header.displayWindow());
+    facts.data = exr_window(header.dataWindow());
     const Imf::Channel* first = nullptr;
     for (const std::string& name : colour_.names)
         if (!first && !name.empty()) first = header.channels().findChannel(name);
-    if (rgba_ || (first && first->type == Imf::HALF)) facts_.largest = 65504;
+    // OpenEXR turns luminance and chroma into half floats.
+    facts.half = colour_.kind == ExrColour::Kind::luminance_chroma || (first && first->type == Imf::HALF);
     if (Imf::hasEnvmap(header))
-        facts_.envmap =
+        facts.envmap =
             Imf::envmap(header) == Imf::ENVMAP_CUBE ? ImageFacts::Envmap::cube : ImageFacts::Envmap::latlong;
-
-    if (colour_.kind == ExrColour::Kind::rgb)
-        for (int c = 0; c < 3; ++c)
-            if (colour_.names[c].empty())
-                facts_.warnings.push_back(fmt::format("channel {} is missing: read as 0", "RGB"[c]));
-    if (!window_.isEmpty() && !(data_.min.x <= window_.min.x && data_.min.y <= window_.min.y &&
-                                data_.max.x >= window_.max.x && data_.max.y >= window_.max.y))
-        facts_.warnings.push_back("the data window does not fill the display window: the rest is black");
-    if (!Imf::hasChromaticities(header) || colour_.kind == ExrColour::Kind::vector) return;
-    const Imf::Chromaticities& c = Imf::chromaticities(header);
-    const auto xy = [](const Imath::V2f& v) { return ColourPrimaries::Xy{v.x, v.y}; };
-    const ColourPrimaries primaries{xy(c.red), xy(c.green), xy(c.blue), xy(c.white)};
-    const auto matrix = rgb_to_rec709(primaries);
-    if (!matrix) {
-        facts_.warnings.push_back("the chromaticities do not describe a colour space: ignored");
-    } else if (!is_nearly_identity(*matrix)) {
-        facts_.to_rec709 = matrix;
-        facts_.warnings.push_back(are_xyz(primaries) ? "CIE XYZ was converted to linear Rec. 709"
-                                                     : "the file's chromaticities were converted to linear Rec. 709");
+    if (Imf::hasChromaticities(header)) {
+        const Imf::Chromaticities& c = Imf::chromaticities(header);
+        const auto xy = [](const Imath::V2f& v) { return ColourPrimaries::Xy{v.x, v.y}; };
+        facts.primaries = ColourPrimaries{xy(c.red), xy(c.green), xy(c.blue), xy(c.white)};
     }
+    return facts;
 }
 
 /// Rows y .. of the file, all of them within the data window, into `rows` (window_ wide).

@@ -6,6 +6,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
+#include "base/float64-inl.h"
 #include "sampling/distribution/bilinear_simd.h"
 #include "sampling/distribution/float-inl.h"
 #include "sampling/distribution/bilinear_place.h"

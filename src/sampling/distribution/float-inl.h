@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include "base/float64-inl.h"
+
 #include <algorithm>
 
 HWY_BEFORE_NAMESPACE();

@@ -1,0 +1,337 @@
+// The library in a worker: every call is a promise, and the page keeps moving. index.d.ts has the types, with units and shapes.
+
+import {aborted, DomelightError} from './errors.js';
+
+export {DomelightError};
+
+const isNode = typeof process === 'object' && !!process.versions?.node && !globalThis.Deno;
+const settings = {module: undefined, worker: undefined};
+
+/// What the next worker is started with. Call it before anything else.
+///
+/// module   the WebAssembly module: a URL, its bytes, or a WebAssembly.Module; the default is domelight.wasm beside this file
+/// worker   the URL of worker.js; the default is the one beside this file
+export function configure({module, worker} = {}) {
+    Object.assign(settings, {module, worker});
+}
+
+/// A worker of browsers or of Node, by the few functions that are used of either.
+async function startWorker(url) {
+    if (isNode) {
+        const {Worker} = await import('node:worker_threads');
+        const worker = new Worker(url);
+        worker.unref();
+        return {
+            listen: (onMessage, onEnd) => {
+                worker.on('message', onMessage);
+                worker.on('error', onEnd);
+                worker.on('exit', () => onEnd());
+            },
+            post: (message, transfer) => worker.postMessage(message, transfer),
+            busy: yes => (yes ? worker.ref() : worker.unref()),
+            terminate: () => worker.terminate(),
+        };
+    }
+    let worker;
+    try {
+        worker = new Worker(url, {type: 'module'});
+    } catch {
+        // A page may not start a worker from another origin, but it may import from there.
+        worker = new Worker(URL.createObjectURL(new Blob([`import ${JSON.stringify(String(url))};`], {type: 'text/javascript'})), {type: 'module'});
+    }
+    return {
+        listen: (onMessage, onEnd) => {
+            worker.addEventListener('message', ({data}) => onMessage(data));
+            worker.addEventListener('error', event => onEnd(event));
+        },
+        post: (message, transfer) => worker.postMessage(message, transfer),
+        busy: () => {},
+        terminate: () => worker.terminate(),
+    };
+}
+
+/// One worker at a time, and the calls that wait for it. A worker that ends takes its objects with it: they are made
+/// again from what the page gave, when they are used the next time.
+class Host {
+    #queue = [];
+    #current;
+    #worker;
+    #last = 0;
+    /// Grows with each worker: the objects of an earlier one do not exist any more.
+    generation = 0;
+
+    /// Calls a function of worker.js. `prepare` makes what it is given, when its turn has come.
+    call(name, prepare, {progress, signal, transfer} = {}) {
+        if (signal?.aborted) return Promise.reject(aborted(signal));
+        if (progress !== undefined && typeof progress !== 'function') return Promise.reject(new DomelightError('is not a function', 'progress'));
+        return new Promise((resolve, reject) => {
+            const call = {name, prepare, progress, signal, transfer, resolve, reject};
+            call.onAbort = () => this.#abort(call);
+            signal?.addEventListener('abort', call.onAbort);
+            this.#queue.push(call);
+            this.#next();
+        });
+    }
+
+    async #next() {
+        if (this.#current || this.#queue.length === 0) return;
+        const call = this.#current = this.#queue.shift();
+        try {
+            if (!this.#worker) await this.#start();
+            if (this.#current !== call) return;
+            const given = await call.prepare(this);
+            if (this.#current !== call) return;
+            const reply = await this.#send(call.name, given, call);
+            if (this.#current === call) this.#settle(call, () => call.resolve(reply));
+        } catch (error) {
+            if (this.#current === call) this.#settle(call, () => call.reject(error));
+        }
+    }
+
+    #settle(call, how) {
+        call.signal?.removeEventListener('abort', call.onAbort);
+        this.#current = undefined;
+        how();
+        this.#next();
+    }
+
+    async #start() {
+        const url = settings.worker ?? new URL('./worker.js', import.meta.url);
+        const worker = await startWorker(url);
+        this.#worker = worker;
+        ++this.generation;
+        await new Promise((resolve, reject) => {
+            worker.listen(
+                message => (message.ready ? resolve() : this.#receive(worker, message)),
+                event => {
+                    const why = event?.message ? ` (${event.message})` : '';
+                    reject(new DomelightError(`The worker ${url} cannot be started${why}`, '', '`worker` of configure() names another place.'));
+                    this.#ended(worker, why);
+                });
+        });
+        await this.#send('start', {module: settings.module instanceof URL ? settings.module.href : settings.module}, {});
+    }
+
+    /// Sends one message and waits for its answer. Also used by `prepare`, while its call has the worker.
+    send(name, given, transfer) {
+        return this.#send(name, given, {transfer});
+    }
+    #send(name, given, {progress, transfer}) {
+        const worker = this.#worker, id = ++this.#last;
+        if (!worker) return Promise.reject(new DomelightError('The worker ended before the work began', '', 'The next call starts another.'));
+        return new Promise((resolve, reject) => {
+            worker.waiting ??= new Map();
+            worker.waiting.set(id, {resolve, reject, progress});
+            worker.busy(true);
+            worker.post({id, name, given}, transfer ?? []);
+        });
+    }
+
+    #receive(worker, {id, reply, error, broken, progress}) {
+        const waiting = worker.waiting?.get(id);
+        if (!waiting || worker.stopped) return;
+        if (progress) {
+            try {
+                waiting.progress?.(progress.done, progress.stage);
+            } catch (thrown) {
+                this.#stop(worker);
+                waiting.reject(thrown);
+            }
+            return;
+        }
+        worker.waiting.delete(id);
+        if (worker.waiting.size === 0) worker.busy(false);
+        if (broken) this.#stop(worker);
+        if (error) waiting.reject(new DomelightError(error.what, error.field, error.hint));
+        else waiting.resolve(reply);
+    }
+
+    #stop(worker) {
+        if (this.#worker === worker) this.#worker = undefined;
+        worker.stopped = true;
+        worker.terminate();
+    }
+
+    #ended(worker, why) {
+        if (worker.stopped) return;
+        if (this.#worker === worker) this.#worker = undefined;
+        worker.stopped = true;
+        for (const {reject} of worker.waiting?.values() ?? [])
+            reject(new DomelightError(`The worker ended in the middle of the work${why}`, '', 'The next call starts another.'));
+    }
+
+    /// What is being computed can only be stopped by ending the worker: it reads no messages until it is done.
+    #abort(call) {
+        const place = this.#queue.indexOf(call);
+        if (place >= 0) {
+            this.#queue.splice(place, 1);
+            call.signal.removeEventListener('abort', call.onAbort);
+            call.reject(aborted(call.signal));
+        } else if (this.#current === call) {
+            if (this.#worker) this.#stop(this.#worker);
+            this.#settle(call, () => call.reject(aborted(call.signal)));
+        }
+    }
+
+    /// Ends the worker, and with it all memory that it holds.
+    terminate() {
+        const worker = this.#worker;
+        if (!worker) return;
+        this.#ended(worker, ', because terminate() was called');
+        worker.terminate();
+    }
+}
+
+const host = new Host();
+
+/// Ends the worker. The next call starts another; environments are opened again when they are used.
+export const terminate = () => host.terminate();
+
+/// An object in the worker. `make` makes it there, and returns {id, ...}.
+class Remote {
+    #id;
+    #generation = -1;
+    #make;
+    #closed = false;
+    constructor(make, first) {
+        this.#make = make;
+        if (first) this.#adopt(first);
+    }
+    #adopt({id}) {
+        this.#id = id;
+        this.#generation = host.generation;
+    }
+    /// Its number in the worker that now runs; for `prepare`.
+    async in(worker) {
+        if (this.#closed) throw new DomelightError('This object has been closed');
+        if (this.#generation !== worker.generation) this.#adopt(await this.#make(worker));
+        return this.#id;
+    }
+    /// Frees its memory.
+    close() {
+        if (this.#closed) return;
+        this.#closed = true;
+        const id = this.#id, generation = this.#generation;
+        // Nothing is to be freed where the worker has ended meanwhile.
+        host.call('close', worker => ({id: worker.generation === generation ? id : -1})).catch(() => {});
+    }
+}
+
+/// Light from every direction. read() and fromPixels() make one.
+export class Environment extends Remote {
+    constructor(make, {id, info, warnings}) {
+        super(make, {id});
+        Object.assign(this, info);
+        this.openingWarnings = warnings;
+    }
+    /// Radiance that arrives from a direction of three numbers: [r, g, b].
+    radiance(direction) {
+        return host.call('radiance', async worker => ({id: await this.in(worker), direction: [...direction]}));
+    }
+    /// All of it as a lat-long map of RGB floats: {data, width, height}.
+    latlong() {
+        return host.call('latlong', async worker => ({id: await this.in(worker)}));
+    }
+    /// Warnings about its file, and what was repaired, complete once it has been read.
+    warnings() {
+        return host.call('warnings', async worker => ({id: await this.in(worker)}));
+    }
+}
+
+async function made(open) {
+    let first;
+    await host.call('memory', async worker => {
+        first = await open(worker);
+        return {};
+    });
+    return new Environment(open, first);
+}
+
+/// Bytes of what names a file: a URL or path, a Blob or File, a Response, or the bytes themselves.
+async function load(source) {
+    if (typeof source === 'string' || source instanceof URL) return loadUrl(source);
+    if (typeof Response === 'function' && source instanceof Response) {
+        if (!source.ok) throw new DomelightError(`cannot be fetched (HTTP ${source.status})`, source.url);
+        return {bytes: await source.arrayBuffer(), name: fileName(source.url)};
+    }
+    if (typeof Blob === 'function' && source instanceof Blob) return {bytes: await source.arrayBuffer(), name: source.name};
+    const {bytesOf} = await import('./library.js');
+    const view = bytesOf(source);
+    return {bytes: view.slice().buffer};
+}
+
+const fileName = url => decodeURIComponent(String(url).split(/[?#]/)[0].split('/').pop()) || undefined;
+
+async function loadUrl(source) {
+    const isPath = isNode && !/^(https?|data|blob):/.test(String(source));
+    if (isPath) {
+        const {readFile} = await import('node:fs/promises');
+        const bytes = await readFile(source).catch(error => {
+            throw new DomelightError(`cannot be read (${error.code})`, String(source));
+        });
+        return {bytes: bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length), name: fileName(source)};
+    }
+    let response;
+    try {
+        response = await fetch(source);
+    } catch (error) {
+        throw new DomelightError(`cannot be fetched (${error.message})`, String(source));
+    }
+    if (!response.ok) throw new DomelightError(`cannot be fetched (HTTP ${response.status})`, String(source));
+    return {bytes: await response.arrayBuffer(), name: fileName(source)};
+}
+
+export async function read(source, {signal, ...options} = {}) {
+    if (signal?.aborted) throw aborted(signal);
+    const {bytes, name} = await load(source);
+    return made(worker => worker.send('read', {source: bytes, options: {name, ...options}}));
+}
+
+export async function fromPixels(pixels, options) {
+    // The worker gets a copy, and so does this object, in case that the worker ends.
+    const copy = {...pixels, data: pixels?.data?.slice?.()};
+    return made(worker => worker.send('fromPixels', {pixels: copy, options}));
+}
+
+function check(environment, kind = Environment) {
+    if (!(environment instanceof kind)) throw new DomelightError('The first argument is not an environment', '', 'read() and fromPixels() make one.');
+}
+
+/// A call about an environment, whose options may have `progress` and `signal`.
+function about(name) {
+    return async (environment, {progress, signal, ...options} = {}) => {
+        check(environment);
+        return host.call(name, async worker => ({id: await environment.in(worker), options}), {progress, signal});
+    };
+}
+
+export const prefilter = about('prefilter');
+export const bake = about('bake');
+export const irradiance = about('irradiance');
+export const sphericalHarmonics = about('sphericalHarmonics');
+export const lights = about('lights');
+
+export const brdfTable = ({signal, ...options} = {}) => host.call('brdfTable', () => ({options}), {signal});
+export const encode = (levels, {signal, ...options} = {}) => host.call('encode', () => ({levels, options}), {signal});
+
+/// Draws light directions in proportion to the radiance.
+export class Sampler extends Remote {
+    static async build(environment, {signal, ...options} = {}) {
+        check(environment);
+        let first;
+        const make = async worker => worker.send('sampler', {id: await environment.in(worker), options});
+        await host.call('memory', async worker => {
+            first = await make(worker);
+            return {};
+        }, {signal});
+        return new Sampler(make, first);
+    }
+    /// Many directions at once: {u, v, x, y, z, r, g, b, pdf}, arrays of as many numbers.
+    sample(points) {
+        return host.call('sample', async worker => ({id: await this.in(worker), points}));
+    }
+    /// Radiance and density in directions: a Float32Array of three numbers each. {u, v, r, g, b, pdf}.
+    lookUp(directions) {
+        return host.call('lookUp', async worker => ({id: await this.in(worker), directions}));
+    }
+}

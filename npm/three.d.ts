@@ -1,0 +1,16 @@
+import type {Texture as ThreeTexture, WebGLCubeRenderTarget, WebGLRenderer} from 'three';
+import type {BakeOptions, Environment, ReadOptions} from './index.js';
+
+/**
+ * Filters an environment exactly, in a worker, in place of PMREMGenerator. Needs three.js r187 or later.
+ *
+ *     scene.environment = await bakeEnvironment(renderer, file);
+ *
+ * renderer: only asked for pixels where `source` is a render target; otherwise it may be null.
+ * source: a file, an equirectangular texture of HDRLoader or EXRLoader, a cube that three.js has drawn, or an Environment.
+ */
+export function bakeEnvironment(
+    renderer: WebGLRenderer | null,
+    source: string | URL | Blob | Response | ArrayBuffer | ArrayBufferView | ThreeTexture | WebGLCubeRenderTarget | Environment,
+    options?: BakeOptions & {file?: ReadOptions},
+): Promise<ThreeTexture>;

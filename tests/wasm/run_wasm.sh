@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Builds the WebAssembly module and the npm package, and tests the package as it is packed, in a folder of its own. Closes with
+# "wasm: N passed, N failed, N skipped".
+set -uo pipefail
+here=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
+root=$(cd -- "$here/../.." && pwd)
+. "$root/scripts/build.sh"
+
+skip() {
+    printf 'skipped: the WebAssembly module: %s\nwasm: 0 passed, 0 failed, 1 skipped\n' "$*"
+    exit 0
+}
+
+mapfile -t missing < <(missing_packages "${wasm_packages[@]}")
+for package in nodejs npm; do command -v "${command_of[$package]:-$package}" >/dev/null || missing+=("$package"); done
+[ ${#missing[@]} -eq 0 ] || apt_install "${missing[@]}" || skip "no ${missing[*]} to be had"
+build_preset wasm
+
+module=$root/build/wasm/domelight.wasm
+folder=$root/build/npm
+rm -rf "$folder"
+mkdir -p "$folder/package" "$folder/app"
+cp -r "$root"/npm/. "$root/LICENSE" "$root/NOTICE" "$module" "$folder/package/"
+(cd "$folder" && npm pack --silent ./package) >"$folder/pack.log" 2>&1 || { cat "$folder/pack.log"; exit 1; }
+(cd "$folder/app" && npm init -y && npm install --no-audit --no-fund ../domelight-*.tgz) >"$folder/install.log" 2>&1 || { cat "$folder/install.log"; exit 1; }
+cp -r "$folder/app/node_modules/domelight/test" "$folder/app/test"
+cp "$here"/*.mjs "$folder/app/test/"
+
+cd "$folder/app" || exit
+DOMELIGHT_PROGRAM=${DOMELIGHT_PROGRAM:-$root/build/dev/cli/domelight} DOMELIGHT_MODULE=$module node --test test/ >"$folder/test.log" 2>&1
+grep -vE '^ *(---|\.\.\.|duration_ms|type:)' "$folder/test.log"
+count() { sed -nE "s/^# $1 ([0-9]+)$/\1/p" "$folder/test.log" | tail -n 1; }
+printf 'wasm: %d passed, %d failed, %d skipped\n' "$(count pass)" "$(count fail)" "$(count skipped)"
+[ "$(count fail)" = 0 ]

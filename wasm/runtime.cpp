@@ -1,0 +1,17 @@
+// What the module has in place of a runtime library that its sources mention and that WebAssembly lacks.
+
+#include <cstddef>
+#include <cstdlib>
+
+extern "C" {
+
+// `throw` is compiled to these calls. Only memory that cannot be had is thrown here; the trap reaches JavaScript, which
+// reports it and abandons the instance.
+void* __cxa_allocate_exception(std::size_t) noexcept {
+    std::abort();
+}
+void __cxa_throw(void*, void*, void (*)(void*)) {
+    std::abort();
+}
+
+}  // extern "C"
