@@ -121,24 +121,6 @@ void copy_strided(const char* from, float* to, int width, int channels, std::int
         for (int c = 0; c < channels; ++c) *to++ = number_at<T>(from + x * column + c * channel);
 }
 
-class ArrayRows : public RowSource {
-  public:
-    ArrayRows(ArrayPixels pixels, std::string keyword) : pixels_(std::move(pixels)), keyword_(std::move(keyword)) {}
-    int width() const override { return pixels_.width(); }
-    int height() const override { return pixels_.height(); }
-    Result<void> read(ImageView<float> rows) override {
-        pixels_.copy_rows(next_row_, rows);
-        const int first = next_row_;
-        next_row_ += rows.height;
-        return check_radiance(rows, first, keyword_);
-    }
-
-  private:
-    ArrayPixels pixels_;
-    std::string keyword_;
-    int next_row_ = 0;
-};
-
 bool is_light(float value) {
     return value >= 0 && value <= std::numeric_limits<float>::max();
 }
@@ -153,6 +135,41 @@ bool all_are_light(const float* values, int count) {
     }
     return signs >> 31 == 0 || std::all_of(values, values + count, is_light);  // -0 is light
 }
+
+/// Copies values, and returns whether all_are_light(): in one pass, while they are in registers.
+bool copy_light(const float* from, float* to, int count) {
+    std::uint32_t signs = 0;
+    for (int i = 0; i < count; ++i) {
+        const std::uint32_t bits = std::bit_cast<std::uint32_t>(from[i]);
+        signs |= bits | (bits + 0x00800000u);
+        to[i] = std::bit_cast<float>(bits);
+    }
+    return signs >> 31 == 0 || std::all_of(to, to + count, is_light);
+}
+
+class ArrayRows : public RowSource {
+  public:
+    ArrayRows(ArrayPixels pixels, std::string keyword) : pixels_(std::move(pixels)), keyword_(std::move(keyword)) {}
+    int width() const override { return pixels_.width(); }
+    int height() const override { return pixels_.height(); }
+    Result<void> read(ImageView<float> rows) override {
+        const int first = next_row_;
+        next_row_ += rows.height;
+        if (!pixels_.viewable()) {
+            pixels_.copy_rows(first, rows);
+            return check_radiance(rows, first, keyword_);
+        }
+        const ImageView<const float> from = pixels_.view().rows(first, rows.height);
+        bool light = true;
+        for (int y = 0; y < rows.height; ++y) light &= copy_light(from.row(y), rows.row(y), rows.width * rows.channels);
+        return light ? Result<void>() : check_radiance(rows, first, keyword_);
+    }
+
+  private:
+    ArrayPixels pixels_;
+    std::string keyword_;
+    int next_row_ = 0;
+};
 
 template <typename T>
 nb::object numpy_owning(Image<T> image, std::size_t axes, const std::size_t* shape) {
