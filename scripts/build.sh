@@ -113,3 +113,20 @@ build_preset() {
     [ "${PIPESTATUS[0]}" = 0 ] || build_failed "$folder/build.log" building
     exec 9>&-
 }
+
+# without_command PACKAGE...: those whose command is not there, whoever installed it.
+without_command() {
+    local package
+    for package in "$@"; do
+        command -v "${command_of[$package]:-$package}" >/dev/null || printf '%s\n' "$package"
+    done
+}
+
+# build_app: brings the WebAssembly module and the browser app (build/web) up to date.
+build_app() {
+    local tools
+    mapfile -t tools < <(without_command nodejs npm)
+    need_packages wasm "${wasm_packages[@]}" "${tools[@]}"
+    build_preset wasm
+    DOMELIGHT_WASM=$root/build/wasm/domelight.wasm "$root/web/build.sh" || build_failed "$root/build/web.log" "building the browser app"
+}

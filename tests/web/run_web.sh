@@ -12,11 +12,8 @@ skip() {
     exit 0
 }
 
-wanted=()
-for package in "${web_packages[@]}"; do
-    command -v "${command_of[$package]:-$package}" >/dev/null || wanted+=("$package")
-done
-if [ ${#wanted[@]} -gt 0 ]; then
+mapfile -t wanted < <(without_command "${web_packages[@]}")
+if [${#wanted[@]} -gt 0 ]; then
     say "installing the missing Debian packages: ${wanted[*]}"
     apt_install "${wanted[@]}" || skip "no ${wanted[*]} to be had"
 fi
