@@ -59,6 +59,8 @@ export class Library {
     read(bytes, options) {
         const {name = 'memory', rotateYDeg, exposure, maxBytes, ...words} = check(options, 'name', 'rotateYDeg', 'exposure', 'maxBytes', ...environmentWords);
         const array = bytesOf(bytes);
+        if (!this.#instance.exports.domelight_environment_open_memory)
+            throw new DomelightError('The WebAssembly module has no decoders of files', name === 'memory' ? '' : name, 'Decode the picture, and call fromPixels().');
         return this.#instance.scope(scope => {
             const values = {rotateYDeg: number(rotateYDeg, 'rotateYDeg'), exposure: number(exposure, 'exposure'), maxBytes: integer64(maxBytes, 'maxBytes')};
             for (const field of environmentWords) if (words[field] !== undefined) values[field] = scope.word(words[field], field);

@@ -24,10 +24,12 @@ cp -r "$root"/npm/. "$root/LICENSE" "$root/NOTICE" "$module" "$folder/package/"
 (cd "$folder" && npm pack --silent ./package) >"$folder/pack.log" 2>&1 || { cat "$folder/pack.log"; exit 1; }
 (cd "$folder/app" && npm init -y && npm install --no-audit --no-fund ../domelight-*.tgz) >"$folder/install.log" 2>&1 || { cat "$folder/install.log"; exit 1; }
 cp -r "$folder/app/node_modules/domelight/test" "$folder/app/test"
-cp "$here"/*.mjs "$folder/app/test/"
+cp "$here"/*.mjs "$here"/*.html "$folder/app/test/"
+# The engines that the adapters are for, and what drives the browser. Without them those tests say that they skip.
+(cd "$folder/app" && npm install --ignore-scripts --no-audit --no-fund three@0.187.0 playwright-core@1.65.1) >>"$folder/install.log" 2>&1 || say "npm does not serve three.js"
 
 cd "$folder/app" || exit
-DOMELIGHT_PROGRAM=${DOMELIGHT_PROGRAM:-$root/build/dev/cli/domelight} DOMELIGHT_MODULE=$module node --test test/ >"$folder/test.log" 2>&1
+DOMELIGHT_PROGRAM=${DOMELIGHT_PROGRAM:-$root/build/dev/cli/domelight} DOMELIGHT_MODULE=$module DOMELIGHT_ROOT=$root node --test test/*.test.mjs >"$folder/test.log" 2>&1
 grep -vE '^ *(---|\.\.\.|duration_ms|type:)' "$folder/test.log"
 count() { sed -nE "s/^# $1 ([0-9]+)$/\1/p" "$folder/test.log" | tail -n 1; }
 printf 'wasm: %d passed, %d failed, %d skipped\n' "$(count pass)" "$(count fail)" "$(count skipped)"
