@@ -9,7 +9,7 @@ sphere_l.glb, knot_l.glb and sunsky_2048.exr of the folder $DOMELIGHT_DATA/bench
 versions correlate them: at roughness 0.6 that is 0.2 % of the light, so a second line of each metal has the same model in both. speed: one thread, tone-mapped RMSE, each against its own converged
 picture; scene and tables are built before the clock starts, on both sides.
 
-Needs Debian's blender; the programs come from `cmake --build --preset dev`.
+Needs Debian's blender; the programs come from `cmake --build --preset dev --target benchmarks`.
 """
 
 import argparse

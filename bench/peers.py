@@ -8,7 +8,7 @@ harmonics, as Filament loads them (KTX1, R11F_G11F_B10F). Time is user and syste
 domelight and of one or more for cmgen. The error is that of a second pair of runs that stores floats (domelight) and halves (cmgen's EXR), so that the filters are
 compared and not the encoding. Without SOURCE: the five photographs of bench/photographs.py, their median and their worst, and beside them the built-in sky.
 
-cmgen comes with Debian's libfilament-tools; the programs come from `cmake --build --preset dev`.
+cmgen comes with Debian's libfilament-tools; the programs come from `cmake --build --preset dev --target benchmarks`.
 """
 
 import argparse
