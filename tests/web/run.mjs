@@ -7,6 +7,7 @@ import path from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {launch, serve} from '../engines/browser/browser.mjs';
 import {testFrames} from './frames.mjs';
+import {testLearn} from './learn.mjs';
 import {testMonteCarlo} from './monte_carlo.mjs';
 
 const [program, chromium, ...names] = process.argv.slice(2);
@@ -38,20 +39,25 @@ const server = await serve({'/app/': path.join(root, 'build/web'), '/work/': wor
                            {'Content-Security-Policy': policy});
 const browser = await launch(path.join(root, 'web/node_modules'), chromium);
 
-/// Opens the app. `hash`: its state. What the console says, other than the time that something took, is in page.complaints.
-async function open(hash = '', options = {}) {
-    const page = await browser.newPage({viewport: {width: 640, height: 360}, ...options});
+/// Collects what the console says of a page, other than the time that something took, in page.complaints.
+function watch(page) {
     page.complaints = [];
     const complain = text => page.complaints.length < 5 && !page.complaints.includes(text) && page.complaints.push(text.slice(0, 2000));
     page.on('console', message => ['error', 'warning'].includes(message.type()) && complain(message.text()));
     page.on('pageerror', error => complain(String(error)));
+    return page;
+}
+
+/// Opens the app. `hash`: its state.
+async function open(hash = '', options = {}) {
+    const page = watch(await browser.newPage({viewport: {width: 640, height: 360}, ...options}));
     await page.goto(`${server.url}/app/index.html${hash}`);
     await page.waitForFunction(() => window.domelight?.ready, undefined, {timeout: 30_000});
     return page;
 }
 
-const tests = {frames: testFrames, 'monte-carlo': testMonteCarlo};
-const app = {program, root, work, server, browser, open, claim, skip, data: process.env.DOMELIGHT_DATA};
+const tests = {frames: testFrames, 'monte-carlo': testMonteCarlo, learn: testLearn};
+const app = {program, root, work, server, browser, open, watch, claim, skip, data: process.env.DOMELIGHT_DATA};
 for (const [name, test] of Object.entries(tests)) {
     if (names.length && !names.some(n => name.includes(n))) continue;
     try {

@@ -17,6 +17,7 @@ import {materialSection, methodSection, pictureSection, sceneSection} from './ui
 import {bindPointer} from './ui/pointer';
 import {Hover} from './ui/hover';
 import {Status} from './ui/status';
+import {whatIsMissing} from './ui/missing';
 import {bindDrops, chooser} from './ui/files';
 
 const store = new Store(location.hash);
@@ -82,7 +83,7 @@ function start(): void {
             paneAt: (frames: number, index: number) => app.paneAt(frames, index),
         },
     });
-    store.touch();
+    store.touch('panel');
     void app.start();
 }
 
@@ -96,8 +97,6 @@ function phongLevel(exponent: number, count: number): number {
     return count - 1;
 }
 
-const probe = document.createElement('canvas').getContext('webgl2');
-if (probe?.getExtension('EXT_color_buffer_float')) start();
-else document.body.append(element('p', {className: 'surface', id: 'unable', role: 'alert'},
-    probe ? 'This graphics card cannot draw into floating-point pictures (EXT_color_buffer_float), which this page needs.'
-          : 'This browser has no WebGL2, which this page needs. Try another browser, or switch on hardware acceleration.'));
+const lack = whatIsMissing();
+if (lack) document.body.append(element('p', {className: 'surface', id: 'unable', role: 'alert'}, lack));
+else start();

@@ -66,40 +66,42 @@ export const defaults: State = {
     eye: [0, 0, 0], target: [0, 0, 0], fov: 35, panel: true,
 };
 
-const accepted: Partial<Record<keyof State, readonly string[]>> = {
+/// Of values that are words, those that there are.
+export type Words<T> = Partial<Record<keyof T, readonly string[]>>;
+const accepted: Words<State> = {
     mode: modes, other: others, view: views, tonemap: tonemaps, background: backgrounds, lookup: lookups, strategy: strategies,
     tables, irradiance: ['cube', 'sh'], diffuseWeight: ['energy', 'fresnel'],
 };
 
-type Listener = (changed: Set<keyof State>) => void;
+type Listener<T> = (changed: Set<keyof T>) => void;
 
-/// The state, and who wants to know of its changes. Changes are told once a frame.
-export class Store {
-    readonly state: State;
-    private readonly listeners: Listener[] = [];
-    private changed = new Set<keyof State>();
+/// Values that the user chooses, and who wants to know of their changes. Changes are told once a frame.
+export class Values<T extends object> {
+    readonly state: T;
+    private readonly listeners: Listener<T>[] = [];
+    private changed = new Set<keyof T>();
 
-    constructor(hash: string) {
-        this.state = {...defaults, ...readHash(hash)};
+    constructor(initial: T, private readonly usual: T) {
+        this.state = initial;
     }
 
-    set(changes: Partial<State>): void {
-        for (const [key, value] of Object.entries(changes) as [keyof State, never][]) {
+    set(changes: Partial<T>): void {
+        for (const [key, value] of Object.entries(changes) as [keyof T, never][]) {
             if (same(this.state[key], value)) continue;
             this.state[key] = value;
             if (this.changed.size === 0) requestAnimationFrame(() => this.tell());
             this.changed.add(key);
         }
     }
-    reset(key: keyof State): void {
-        this.set({[key]: defaults[key]});
+    reset(key: keyof T): void {
+        this.set({[key]: this.usual[key]} as unknown as Partial<T>);
     }
-    /// Tells the listeners as if everything had changed, once.
-    touch(): void {
-        this.changed = new Set(['panel']);
+    /// Tells the listeners once, as if a value had changed.
+    touch(key: keyof T): void {
+        this.changed = new Set([key]);
         requestAnimationFrame(() => this.tell());
     }
-    listen(listener: Listener): void {
+    listen(listener: Listener<T>): void {
         this.listeners.push(listener);
     }
     private tell(): void {
@@ -109,33 +111,39 @@ export class Store {
     }
 }
 
+/// Those of the app, as its address has them.
+export class Store extends Values<State> {
+    constructor(hash: string) {
+        super({...defaults, ...readHash(hash)}, defaults);
+    }
+}
+
 const same = (a: unknown, b: unknown) => (Array.isArray(a) ? String(a) === String(b) : a === b);
 
 /// `#mode=phong&eye=0,0,5`, without what is the default.
-export function writeHash(state: State): string {
+export function writeHash<T extends object = State>(state: T, usual: T = defaults as never): string {
     const parts = Object.entries(state)
-        .filter(([key, value]) => !same(value, defaults[key as keyof State]))
+        .filter(([key, value]) => !same(value, usual[key as keyof T]))
         .map(([key, value]) => `${key}=${Array.isArray(value) ? value.map(v => +v.toFixed(4)).join() : encodeURIComponent(value)}`);
     return parts.length ? `#${parts.join('&')}` : '';
 }
 
 /// What of an address is understood. The rest is left out, because an address may come from another version.
-export function readHash(hash: string): Partial<State> {
+export function readHash<T extends object = State>(hash: string, usual: T = defaults as never, words: Words<T> = accepted as never): Partial<T> {
     const read: Record<string, unknown> = {};
     for (const [key, text] of new URLSearchParams(hash.replace(/^#/, ''))) {
-        const value = key in defaults ? parse(key as keyof State, text) : undefined;
+        const value = key in usual ? parse(text, usual[key as keyof T], words[key as keyof T]) : undefined;
         if (value !== undefined) read[key] = value;
     }
-    return read;
+    return read as Partial<T>;
 }
 
-function parse(key: keyof State, text: string): unknown {
-    const usual = defaults[key];
+function parse(text: string, usual: unknown, words?: readonly string[]): unknown {
     if (typeof usual === 'boolean') return text === 'true' ? true : text === 'false' ? false : undefined;
     if (typeof usual === 'number') return text !== '' && Number.isFinite(+text) ? +text : undefined;
     if (Array.isArray(usual)) {
         const numbers = text.split(',').map(Number);
         return numbers.length === usual.length && numbers.every(Number.isFinite) ? numbers : undefined;
     }
-    return accepted[key] && !accepted[key].includes(text) ? undefined : text;
+    return words && !words.includes(text) ? undefined : text;
 }

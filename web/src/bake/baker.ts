@@ -1,6 +1,6 @@
 // The page's side of the worker: promises in place of messages.
 
-import type {Bake, BrdfTable, Chain, EnvironmentInfo, Latlong, Replies, Request, Survey, Tables} from './types';
+import type {Bake, BrdfTable, Chain, EnvironmentInfo, Latlong, Lobe, Replies, Request, Survey, Tables} from './types';
 
 type Waiting = {resolve: (reply: never) => void; reject: (error: Error) => void};
 
@@ -37,6 +37,10 @@ export class Baker {
         return this.ask({kind: 'tables', rows});
     }
 
+    /// The light in some directions (three numbers each), exactly. parameter: the roughness, or the exponent.
+    filtered(lobe: Lobe, parameter: number, directions: Float64Array): Promise<Float32Array> {
+        return this.ask({kind: 'filtered', lobe, parameter, directions});
+    }
     survey(rows: number): Promise<Survey> {
         return this.ask({kind: 'survey', rows});
     }

@@ -1,7 +1,7 @@
 // The WebAssembly module by its C interface (include/domelight/domelight_c.h): the few calls that the app makes. Structs are written
 // as a 32-bit machine lays them out.
 
-import type {BrdfTable, Chain, CubeLevel, Latlong} from './types';
+import type {BrdfTable, Chain, CubeLevel, Latlong, Lobe} from './types';
 
 type Call = (...args: number[]) => number;
 
@@ -194,6 +194,33 @@ export class Environment {
             const filtered = m.words(handle)[0]!;
             try {
                 return this.collect(filtered, lobe, parameters, irradianceSize > 0);
+            } finally {
+                m.call('domelight_filtered_free', filtered);
+            }
+        });
+    }
+
+    /// The light in directions, three numbers each, without a map between: RGB of each. parameter: the roughness, or the exponent.
+    inDirections(lobe: Lobe, parameter: number, directions: Float64Array): Float32Array {
+        const m = this.module;
+        return m.scope(scope => {
+            const level = scope.bytes(k_level_bytes);
+            m.call('domelight_level_init_sized', level, k_level_bytes);
+            m.words(level)[1] = scope.string(lobe);
+            m.doubles(level + 8, 2)[lobe === 'ggx' ? 0 : 1] = parameter;
+            m.words(level)[6] = 1;
+            const places = scope.bytes(directions.byteLength);
+            m.doubles(places, directions.length).set(directions);
+            const options = scope.bytes(k_options_bytes);
+            m.call('domelight_prefilter_options_init_sized', options, 52);
+            m.words(options).set([level, 1, places, directions.length / 3], 3);
+            const handle = scope.bytes(4);
+            m.check(m.call('domelight_prefilter', this.handle, options, handle));
+            const filtered = m.words(handle)[0]!, pixels = scope.bytes(k_pixels_bytes);
+            try {
+                m.call('domelight_pixels_init_sized', pixels, k_pixels_bytes);
+                m.check(m.call('domelight_filtered_level', filtered, 0, pixels));
+                return m.floats(m.words(pixels)[1]!, directions.length).slice();
             } finally {
                 m.call('domelight_filtered_free', filtered);
             }

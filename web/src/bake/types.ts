@@ -13,6 +13,9 @@ export interface CubeLevel {
     texels: Uint16Array;
 }
 
+/// Those of `domelight bake --lobe`, and the one without the BRDF's cosine: phong-plain of exponent 1 is E / pi.
+export type Lobe = 'ggx' | 'phong' | 'phong-plain';
+
 /// A chain of levels that is read by roughness, or by the exponent of a modified Phong lobe.
 export interface Chain {
     lobe: 'ggx' | 'phong';
@@ -87,6 +90,7 @@ export type Request =
     | {kind: 'tables'; rows: number}
     | {kind: 'survey'; rows: number}
     | {kind: 'samples'; count: number}
+    | {kind: 'filtered'; lobe: Lobe; parameter: number; directions: Float64Array}
     | {kind: 'picture'; name: string; bytes: ArrayBuffer};
 
 export interface Replies {
@@ -99,5 +103,7 @@ export interface Replies {
     survey: Survey;
     /// Pairs u, v.
     samples: Float32Array;
+    /// RGB of each direction.
+    filtered: Float32Array;
     picture: Latlong;
 }

@@ -67,6 +67,8 @@ async function answer(request: Request): Promise<Replies[Request['kind']]> {
             return survey(source(), request.rows);
         case 'samples':
             return drawSamples(source(), request.count);
+        case 'filtered':
+            return opened().inDirections(request.lobe, request.parameter, request.directions);
         case 'picture':
             return readPicture(request.name, request.bytes).latlong;
     }

@@ -1,7 +1,7 @@
 // Passes over the whole picture.
 
 import * as THREE from 'three';
-import type {Program} from './programs';
+import type {Program} from './program';
 import type {Uniforms} from './surfaces';
 
 const camera = new THREE.Camera();

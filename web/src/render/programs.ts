@@ -6,12 +6,13 @@ import sphericalEnvmap from '../../../docs/shaders/spherical_envmap.glsl?raw';
 import accumulate from '../shading/accumulate.glsl?raw';
 import backgroundFragment from '../shading/background_fragment.glsl?raw';
 import backgroundVertex from '../shading/background_vertex.glsl?raw';
+import bilinear from '../shading/bilinear.glsl?raw';
 import diffuse from '../shading/diffuse.glsl?raw';
 import environment from '../shading/environment.glsl?raw';
-import fullscreenVertex from '../shading/fullscreen_vertex.glsl?raw';
 import identify from '../shading/identify.glsl?raw';
 import level from '../shading/level.glsl?raw';
 import lookup from '../shading/lookup.glsl?raw';
+import material from '../shading/material.glsl?raw';
 import metallicRoughness from '../shading/metallic_roughness.glsl?raw';
 import mirror from '../shading/mirror.glsl?raw';
 import modelFragment from '../shading/model_fragment.glsl?raw';
@@ -28,12 +29,7 @@ import stretched from '../shading/stretched.glsl?raw';
 import surface from '../shading/surface.glsl?raw';
 import tonemap from '../shading/tonemap.glsl?raw';
 import type {Mode} from '../state';
-
-const head = 'precision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp samplerCube;\n';
-const join = (...parts: string[]) => head + parts.join('\n');
-
-/// The lat-long shaders have +Z up in the space of their map, so their u_environment is another matrix than that of the cubes.
-const ownFrame = (text: string) => text.replaceAll('u_environment', 'u_envmap_frame');
+import {fullscreen, join, ownFrame, type Program} from './program';
 
 const sharp = [generic, environment, projections, lookup];
 /// What computes a surface's light, by mode.
@@ -43,26 +39,20 @@ const lighting: Record<Mode, string[]> = {
     phong: [generic, diffuse, phong],
     mirror: [...sharp, mirror],
     refract: [...sharp, refract],
-    'monte-carlo': [ownFrame(sphericalEnvmap), sampleEnvmap, monteCarlo],
+    'monte-carlo': [ownFrame(sphericalEnvmap), sampleEnvmap, bilinear, monteCarlo],
 };
-
-export interface Program {
-    vertexShader: string;
-    fragmentShader: string;
-}
 
 /// What a model is drawn with: a method of shading, or what the page wants to know of a pixel.
 export type Purpose = Mode | 'probe' | 'identify';
 
 const fragments = (purpose: Purpose): string[] =>
-    purpose === 'probe' ? [surface, probe] : purpose === 'identify' ? [identify] : [surface, ...lighting[purpose], modelFragment];
+    purpose === 'probe' ? [material, surface, probe] : purpose === 'identify' ? [identify] : [material, surface, ...lighting[purpose], modelFragment];
 
 export const modelProgram = (purpose: Purpose): Program => ({vertexShader: join(modelVertex), fragmentShader: join(...fragments(purpose))});
 export const backgroundProgram: Program = {
     vertexShader: join(backgroundVertex),
     fragmentShader: join(environment, generic, backgroundFragment),
 };
-const fullscreen = (...parts: string[]): Program => ({vertexShader: join(fullscreenVertex), fragmentShader: join(...parts)});
 export const projectProgram = fullscreen(environment, projections, projectEnvironment);
 export const accumulateProgram = fullscreen(accumulate);
 export const levelProgram = fullscreen(environment, generic, tonemap, level);

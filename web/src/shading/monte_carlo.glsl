@@ -1,6 +1,6 @@
 // The reflected light itself, by random samples, which the panes average: the integral of f L cos over the hemisphere, without shadows, as
 // `domelight render --shading reference --bounces 0 --occlusion off` computes it. Behind docs/shaders/spherical_envmap.glsl and
-// sample_envmap.glsl, whose loops over row averages and along a row draw from the environment.
+// sample_envmap.glsl, whose loops over row averages and along a row draw from the environment, and bilinear.glsl.
 
 uniform int u_strategy;    // 0 both (MIS), 1 the environment, 2 the BRDF
 uniform int u_tables;      // 0 the loops, 1 guide tables
@@ -22,14 +22,7 @@ vec4 random4() {
 
 /// Radiance at a point of the map, bilinear between texels: what all strategies integrate. (The densities are constant in each texel.)
 vec3 radiance_at(vec2 point) {
-    ivec2 size = textureSize(u_envmap, 0);
-    vec2 p = point * vec2(size) - 0.5;
-    ivec2 low = ivec2(floor(p));
-    vec2 t = p - vec2(low);
-    int x0 = (low.x + size.x) % size.x, x1 = (low.x + 1) % size.x, y0 = max(low.y, 0), y1 = min(low.y + 1, size.y - 1);
-    vec3 above = mix(texelFetch(u_envmap, ivec2(x0, y0), 0).rgb, texelFetch(u_envmap, ivec2(x1, y0), 0).rgb, t.x);
-    vec3 below = mix(texelFetch(u_envmap, ivec2(x0, y1), 0).rgb, texelFetch(u_envmap, ivec2(x1, y1), 0).rgb, t.x);
-    return mix(above, below, t.y);
+    return bilinear(u_envmap, point);
 }
 
 /// A direction by inversion of the two cumulative functions. The guide says for each cell of random numbers where its search begins.

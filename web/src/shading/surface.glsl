@@ -1,22 +1,6 @@
 // What a material says of a point: glTF's metallic-roughness model with its textures, KHR_materials_ior, KHR_materials_specular and
-// KHR_materials_unlit. The C++ is src/render/surface/surface.cpp, surface_at().
-
-struct Surface {
-    vec3 position;
-    vec3 normal;       // as lit (interpolated, normal-mapped), unit length, on the viewer's side
-    vec3 diffuse;      // albedo of the diffuse layer: the base colour times 1 - metalness
-    vec3 f0;           // of the specular layer, seen from straight above
-    vec3 f90;          // and at grazing angles
-    vec3 dielectric_f0;
-    vec3 dielectric_f90;
-    float roughness;
-    float occlusion;   // 1: open
-    float ior;
-    bool front;
-    bool unlit;
-    vec3 emission;
-    float opacity;
-};
+// KHR_materials_unlit. The C++ is src/render/surface/surface.cpp, surface_at(). Behind
+// material.glsl.
 
 in vec3 v_position;
 in vec3 v_normal;

@@ -1,9 +1,9 @@
-// Controls: native elements with a label, each bound to one value of the state. Plain custom elements without a shadow, so that the page's
+// Controls: native elements with a label, each bound to one of the values that the user chooses. Plain custom elements without a shadow, so that the page's
 // style and its labels apply.
 
-import type {State, Store} from '../state';
+import type {State, Store, Values} from '../state';
 
-type Keys<T> = {[K in keyof State]: State[K] extends T ? K : never}[keyof State];
+type Keys<S, T> = {[K in keyof S]: S[K] extends T ? K : never}[keyof S];
 
 let next = 0;
 const uniqueId = () => `control-${next++}`;
@@ -16,8 +16,8 @@ export function element<K extends keyof HTMLElementTagNameMap>(
     return made;
 }
 
-/// Shows a value of the state now and whenever it changes.
-function follow(store: Store, key: keyof State, show: () => void): void {
+/// Shows a value now and whenever it changes.
+function follow<S extends object>(store: Values<S>, key: keyof S, show: () => void): void {
     show();
     store.listen(changed => changed.has(key) && show());
 }
@@ -32,19 +32,19 @@ interface RangeOptions {
 }
 
 /// A slider with its value. A double click on the label sets the default.
-export class RangeControl extends HTMLElement {
-    constructor(store: Store, key: Keys<number>, label: string, {min, max, step, text = String, title = ''}: RangeOptions) {
+export class RangeControl<S extends object = State> extends HTMLElement {
+    constructor(store: Values<S>, key: Keys<S, number>, label: string, {min, max, step, text = String, title = ''}: RangeOptions) {
         super();
         const id = uniqueId();
         const input = element('input', {type: 'range', id, min: `${min}`, max: `${max}`, step: `${step}`});
         const output = element('output');
         output.htmlFor.add(id);
         const name = element('label', {htmlFor: id, title}, label);
-        input.addEventListener('input', () => store.set({[key]: Number(input.value)}));
+        input.addEventListener('input', () => store.set({[key]: Number(input.value)} as Partial<S>));
         name.addEventListener('dblclick', () => store.reset(key));
         follow(store, key, () => {
             input.value = String(store.state[key]);
-            output.value = text(store.state[key]);
+            output.value = text(store.state[key] as number);
             input.setAttribute('aria-valuetext', output.value);
         });
         this.append(name, output, input);
@@ -52,14 +52,14 @@ export class RangeControl extends HTMLElement {
 }
 
 /// One of a few words, side by side.
-export class ChoiceControl extends HTMLElement {
-    constructor(store: Store, key: Keys<string>, label: string, choices: readonly (readonly [value: string, text: string, title?: string])[]) {
+export class ChoiceControl<S extends object = State> extends HTMLElement {
+    constructor(store: Values<S>, key: Keys<S, string>, label: string, choices: readonly (readonly [value: string, text: string, title?: string])[]) {
         super();
         const name = uniqueId();
         const row = element('div'), set = element('fieldset', {}, element('legend', {}, label), row);
         for (const [value, text, title = ''] of choices) {
             const input = element('input', {type: 'radio', name, value});
-            input.addEventListener('change', () => store.set({[key]: value}));
+            input.addEventListener('change', () => store.set({[key]: value} as Partial<S>));
             row.append(element('label', {title}, input, element('span', {}, text)));
         }
         follow(store, key, () => {
@@ -70,14 +70,14 @@ export class ChoiceControl extends HTMLElement {
 }
 
 /// One of many words, in a list that opens.
-export class SelectControl extends HTMLElement {
+export class SelectControl<S extends object = State> extends HTMLElement {
     private readonly select = element('select', {id: uniqueId()});
-    constructor(store: Store, key: Keys<string>, label: string, choices: readonly (readonly [value: string, text: string])[]) {
+    constructor(store: Values<S>, key: Keys<S, string>, label: string, choices: readonly (readonly [value: string, text: string])[]) {
         super();
         this.append(element('label', {htmlFor: this.select.id}, label), this.select);
         this.fill(choices);
-        this.select.addEventListener('change', () => store.set({[key]: this.select.value}));
-        follow(store, key, () => (this.select.value = store.state[key]));
+        this.select.addEventListener('change', () => store.set({[key]: this.select.value} as Partial<S>));
+        follow(store, key, () => (this.select.value = store.state[key] as string));
     }
     fill(choices: readonly (readonly [value: string, text: string])[]): void {
         this.select.replaceChildren(...choices.map(([value, text]) => element('option', {value}, text)));
@@ -85,23 +85,23 @@ export class SelectControl extends HTMLElement {
 }
 
 /// On or off.
-export class CheckControl extends HTMLElement {
-    constructor(store: Store, key: Keys<boolean>, label: string, title = '') {
+export class CheckControl<S extends object = State> extends HTMLElement {
+    constructor(store: Values<S>, key: Keys<S, boolean>, label: string, title = '') {
         super();
         const input = element('input', {type: 'checkbox'});
-        input.addEventListener('change', () => store.set({[key]: input.checked}));
-        follow(store, key, () => (input.checked = store.state[key]));
+        input.addEventListener('change', () => store.set({[key]: input.checked} as Partial<S>));
+        follow(store, key, () => (input.checked = store.state[key] as boolean));
         this.append(element('label', {title}, input, element('span', {}, label)));
     }
 }
 
 /// A colour of sRGB.
-export class ColourControl extends HTMLElement {
-    constructor(store: Store, key: Keys<string>, label: string) {
+export class ColourControl<S extends object = State> extends HTMLElement {
+    constructor(store: Values<S>, key: Keys<S, string>, label: string) {
         super();
         const id = uniqueId(), input = element('input', {type: 'color', id});
-        input.addEventListener('input', () => store.set({[key]: input.value}));
-        follow(store, key, () => (input.value = store.state[key]));
+        input.addEventListener('input', () => store.set({[key]: input.value} as Partial<S>));
+        follow(store, key, () => (input.value = store.state[key] as string));
         this.append(element('label', {htmlFor: id}, label), input);
     }
 }

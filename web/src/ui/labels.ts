@@ -18,5 +18,7 @@ export const modeNotes: Record<Mode, string> = {
 
 export const tonemapNames: Record<State['tonemap'], string> = {none: 'None', reinhard: 'Reinhard', aces: 'ACES', agx: 'AgX', neutral: 'Khronos neutral'};
 
+export const environmentNames = [['studio', 'Studio (computed here)'], ['sunset', 'Evening sky (computed here)']] as const;
+
 export const signed = (digits: number) => (v: number) => `${v > 0 ? '+' : ''}${v.toFixed(digits)}`;
 export const fixed = (digits: number) => (v: number) => v.toFixed(digits);

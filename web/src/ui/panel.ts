@@ -3,7 +3,7 @@
 import type {App} from '../app';
 import {defaults, tonemaps, type Mode, type State} from '../state';
 import {CheckControl, ChoiceControl, ColourControl, element, onlyWhere, RangeControl, SelectControl} from './controls';
-import {fixed, modeNotes, signed, tonemapNames} from './labels';
+import {environmentNames, fixed, modeNotes, signed, tonemapNames} from './labels';
 
 export function section(title: string, open: boolean, ...parts: HTMLElement[]): HTMLDetailsElement {
     return element('details', {open}, element('summary', {}, title), element('div', {}, ...parts));
@@ -12,11 +12,10 @@ export function section(title: string, open: boolean, ...parts: HTMLElement[]): 
 export const note = (...text: (string | Node)[]): HTMLParagraphElement => element('p', {className: 'note'}, ...text);
 
 const models = [['spheres', 'Spheres: gold, plastic'], ['grid', 'Grid: roughness × metalness'], ['ball', 'Ball on a plinth'], ['furnace', 'White metal ball']] as const;
-const environments = [['studio', 'Studio (computed here)'], ['sunset', 'Evening sky (computed here)']] as const;
 
 export function sceneSection(app: App): HTMLElement {
     const {store} = app;
-    const model = new SelectControl(store, 'model', 'Model', models), environment = new SelectControl(store, 'environment', 'Environment', environments);
+    const model = new SelectControl(store, 'model', 'Model', models), environment = new SelectControl(store, 'environment', 'Environment', environmentNames);
     const variant = element('select', {id: 'variant'});
     const variants = element('div', {className: 'select', hidden: true}, element('label', {htmlFor: 'variant'}, 'Material variant'), variant);
     variant.addEventListener('change', () => void app.useVariant(variant.value === '' ? null : Number(variant.value)));
@@ -25,7 +24,7 @@ export function sceneSection(app: App): HTMLElement {
             list.some(([value]) => value === name) ? list : [...list, [name, name] as const];
         model.fill(own(models, app.model.name));
         model.querySelector('select')!.value = app.model.name;
-        environment.fill(own(environments, app.environmentName));
+        environment.fill(own(environmentNames, app.environmentName));
         environment.querySelector('select')!.value = app.environmentName;
         variants.hidden = app.model.variants.length === 0;
         variant.replaceChildren(element('option', {value: ''}, 'as in the file'), ...app.model.variants.map((name, k) => element('option', {value: `${k}`}, name)));
