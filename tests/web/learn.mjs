@@ -22,6 +22,23 @@ const near = (what, value, expected, tolerance) => (Math.abs(value - expected) <
 
 /// Of each page: a slider that changes its main number, and claims about its numbers.
 const lessons = {
+    projections: {
+        slider: ['Direction: elevation', -10], number: 'v0',
+        check: async (page, claim) => {
+            await slide(page, 'Direction: azimuth', 90);
+            await slide(page, 'Direction: elevation', 30);
+            // d = (0, 1/2, √3/2): the sphere map has p = d.xy / √(2 (1 + z)), the paraboloid d.xy / (1 + z), the octahedron (x, z) / Σ|.|
+            const n = await numbers(page), z = Math.sqrt(3) / 2, points = {0: [0.75, 1 / 3], 1: [(1 + 0.5) / 3, (1 + 0.5 - 0.25 / z) / 2], 2: [0.5, 0.5 - 0.25 / Math.sqrt(2 * (1 + z))],
+                                                                           3: [0.25, 0.5 - 0.25 / (1 + z)], 4: [0.5, 0.5 - (0.5 * z) / (0.5 + z)]};
+            claim('projections: the five points are those of the formulas', Object.entries(points).flatMap(([k, [u, v]]) => [...near(`u of ${k}`, n[`u${k}`], u, 1e-4), ...near(`v of ${k}`, n[`v${k}`], v, 1e-4)]));
+            claim('projections: a lat-long texel covers 2π² sin θ, one of a sphere map 4π over the disc', [...near('lat-long', n.spread0, (Math.PI / 2) * z, 1e-3), ...near('sphere map', n.spread2, 4 / Math.PI, 2e-3)]);
+            const box = await page.getByRole('img', {name: /^Lat-long/}).boundingBox();
+            await page.mouse.move(box.x + 0.25 * box.width, box.y + 0.5 * box.height);
+            await settled(page);
+            const {u0, v0} = await numbers(page);
+            claim('projections: the direction is that under the pointer', [...near('u', u0, 0.25, 0.004), ...near('v', v0, 0.5, 0.008)]);
+        },
+    },
     irradiance: {
         slider: ['J: steps of θ', 9], number: 'sum',
         check: async (page, claim) => {
@@ -35,6 +52,33 @@ const lessons = {
             // π²/4 Σ cos θ sin θ at the four middles is 3.2237.
             const even = await numbers(page);
             claim('irradiance: an even light has E = π, and the sum of J = 4 is 3.2237', [...near('E', even.exact, Math.PI, 1e-5), ...near('the sum', even.sum, 3.22365, 1e-4)]);
+        },
+    },
+    phong: {
+        slider: ['Exponent', 7], number: 'level',
+        check: async (page, claim) => {
+            // 128 is the exponent of level 3: the chain has it without a mix.
+            const at = await numbers(page);
+            claim('phong: at the exponent of a level, the level has the exact light', [...near('the level', at.level, 3, 1e-6), ...near('the ratio', at.light / at.exact, 1, 0.02)], `${(100 * (at.light / at.exact - 1)).toFixed(2)} %`);
+            await slide(page, 'Exponent', 8);
+            const between = await numbers(page);
+            claim('phong: between two levels the exact light is that of the exponent', between.exact !== at.exact && Math.abs(between.light / between.exact - 1) < 0.2 ? [] : [`${between.light}, exactly ${between.exact}`]);
+        },
+    },
+    importance: {
+        slider: ['v: which row', 0.5], number: 'row',
+        check: async (page, claim) => {
+            const {error, exact} = await numbers(page);
+            claim('importance: 512 samples of the shader\'s loops give the exact diffuse light, within 1 %', exact > 0 && error < 0.01 ? [] : [`the error is ${error}`], `${(100 * error).toFixed(2)} %`);
+            const wrong = await page.evaluate(() => {
+                const {rows, columns, width, height} = lesson.light.tables, {row, column, density} = lesson.numbers, {u, v} = lesson.state;
+                const found = [...Array(height).keys()].find(j => rows[2 * j] > v), place = [...Array(width).keys()].find(i => columns[2 * (row * width + i)] > u);
+                const share = (rows[2 * row] - rows[2 * row - 2]) * (columns[2 * (row * width + column)] - columns[2 * (row * width + column) - 2]);
+                const over = (density * 2 * Math.PI ** 2 * Math.sin((Math.PI * (row + 0.5)) / height)) / (share * width * height) - 1;
+                return [found !== row && `the row is ${row}, by its cumulative function ${found}`, place !== column && `the column is ${column}, by its cumulative function ${place}`,
+                        Math.abs(over) > 0.02 && `the density is off by ${over}`].filter(Boolean);
+            });
+            claim('importance: the loops find the texel of the cumulative functions, with its density', wrong);
         },
     },
 };

@@ -1,7 +1,7 @@
 // Starts the app.
 
 import {App} from './app';
-import {matchingRoughness, levelExponent} from './bake/chain';
+import {phongLevel} from './bake/chain';
 import {phongLevelCount} from './app';
 import {Store, writeHash} from './state';
 import {CompareSection} from './ui/compare_section';
@@ -85,16 +85,6 @@ function start(): void {
     });
     store.touch('panel');
     void app.start();
-}
-
-/// The level, between two levels too, whose lobe has an exponent.
-function phongLevel(exponent: number, count: number): number {
-    const r = matchingRoughness(exponent);
-    for (let l = 1; l < count; ++l) {
-        const low = matchingRoughness(levelExponent(l - 1)), high = matchingRoughness(levelExponent(l));
-        if (r < high) return l - (high - r) / (high - low);
-    }
-    return count - 1;
 }
 
 const lack = whatIsMissing();

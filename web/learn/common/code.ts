@@ -5,7 +5,7 @@ import {element} from '../../src/ui/controls';
 /// A function or struct of a text, with the comment above it. GLSL and TypeScript close it by a brace at the start of a line.
 export function excerpt(text: string, name: string): string {
     const lines = text.split('\n');
-    const head = lines.findIndex(line => new RegExp(`^[a-z][^;(]*\\b${name}\\b`).test(line) && !line.endsWith(';'));
+    const head = lines.findIndex(line => new RegExp(`^[A-Za-z][^;(]*\\b${name}\\b`).test(line) && !line.endsWith(';'));
     if (head < 0) throw new Error(`there is no ${name} in this text`);
     let from = head;
     while (from > 0 && lines[from - 1]!.startsWith('//')) --from;

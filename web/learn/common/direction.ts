@@ -41,8 +41,8 @@ export function directionControls<T extends Direction>(values: Values<T>, what: 
     ];
 }
 
-/// Calls back with the point of a canvas, (0 to 1, 0 to 1), that is pressed or dragged to. Scrolling by touch stays possible above and below.
-export function onDrag(canvas: HTMLElement, moved: (point: [number, number]) => void): void {
+/// Calls back with the point of an element, 0 to 1 each, that is pressed or dragged to. hover: also where a mouse is above it.
+export function onDrag(canvas: HTMLElement, moved: (point: [number, number]) => void, hover = false): void {
     const tell = (event: PointerEvent) => {
         const box = canvas.getBoundingClientRect(), part = (v: number) => Math.min(1, Math.max(0, v));
         moved([part((event.clientX - box.left) / box.width), part((event.clientY - box.top) / box.height)]);
@@ -51,7 +51,7 @@ export function onDrag(canvas: HTMLElement, moved: (point: [number, number]) => 
         canvas.setPointerCapture(event.pointerId);
         tell(event);
     });
-    canvas.addEventListener('pointermove', event => canvas.hasPointerCapture(event.pointerId) && tell(event));
+    canvas.addEventListener('pointermove', event => (canvas.hasPointerCapture(event.pointerId) || (hover && event.pointerType === 'mouse')) && tell(event));
 }
 
 /// A ring at a point of a canvas, 0 to 1 each, that is seen on light and dark.

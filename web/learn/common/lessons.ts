@@ -8,5 +8,8 @@ export interface LessonEntry {
 }
 
 export const lessons: readonly LessonEntry[] = [
+    {name: 'projections', title: 'Environment maps and projections', about: 'One direction in five maps at once: lat-long, cube, sphere map, dual paraboloid, octahedral.'},
     {name: 'irradiance', title: 'Irradiance and its Riemann sum', about: 'The cosine integral as a sum of K steps around the normal and J steps down from it, and how far that is from the exact value.'},
+    {name: 'phong', title: 'Modified Phong and its levels', about: 'A lobe over the map, the map filtered by it, and what is lost between two levels.'},
+    {name: 'importance', title: 'Importance sampling of an environment', about: 'A random point finds a row, then a column: both cumulative functions, and the loops of a shader.'},
 ];

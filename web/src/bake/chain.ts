@@ -31,3 +31,13 @@ export function levelExponent(level: number): number {
 export function matchingRoughness(exponent: number): number {
     return exponent === Infinity ? 0 : (2 / (exponent + 2)) ** 0.25;
 }
+
+/// The level, between two levels too, whose lobe has an exponent.
+export function phongLevel(exponent: number, count: number): number {
+    const r = matchingRoughness(exponent);
+    for (let l = 1; l < count; ++l) {
+        const low = matchingRoughness(levelExponent(l - 1)), high = matchingRoughness(levelExponent(l));
+        if (r < high) return l - (high - r) / (high - low);
+    }
+    return count - 1;
+}

@@ -55,5 +55,5 @@ export const backgroundProgram: Program = {
 };
 export const projectProgram = fullscreen(environment, projections, projectEnvironment);
 export const accumulateProgram = fullscreen(accumulate);
-export const levelProgram = fullscreen(environment, generic, tonemap, level);
+export const levelProgram = fullscreen(environment, generic, projections, tonemap, level);
 export const presentProgram = fullscreen(tonemap, present);

@@ -1,5 +1,5 @@
-// One level of a map as a picture: as a ball, as six faces, or as a lat-long map. Behind environment.glsl, docs/shaders/generic.glsl and
-// tonemap.glsl.
+// One level of a map as a picture: as a ball, as six faces, or as a lat-long map. Behind environment.glsl, docs/shaders/generic.glsl,
+// projections.glsl and tonemap.glsl.
 
 uniform samplerCube u_cube;
 uniform float u_level;
@@ -11,19 +11,6 @@ out vec4 out_color;
 
 vec3 light_of(vec3 d) {
     return u_by_harmonics ? domelight_diffuse_sh(d) : textureLod(u_cube, u_environment * d, u_level).rgb * u_scale;
-}
-
-/// Faces of 3 x 2: +X -X +Y above, -Y +Z -Z below, as docs/conventions.md draws them.
-vec3 face_direction(vec2 p) {
-    ivec2 cell = ivec2(p * vec2(3.0, 2.0));
-    vec2 st = fract(p * vec2(3.0, 2.0)) * 2.0 - 1.0;
-    int face = cell.y * 3 + cell.x;
-    if (face == 0) return vec3(1.0, -st.y, -st.x);
-    if (face == 1) return vec3(-1.0, -st.y, st.x);
-    if (face == 2) return vec3(st.x, 1.0, st.y);
-    if (face == 3) return vec3(st.x, -1.0, -st.y);
-    if (face == 4) return vec3(st.x, -st.y, 1.0);
-    return vec3(-st.x, -st.y, -1.0);
 }
 
 void main() {
@@ -38,7 +25,7 @@ void main() {
         vec3 n = vec3(q, sqrt(max(0.0, 1.0 - r2)));
         d = reflect(vec3(0.0, 0.0, -1.0), n);
     } else if (u_shape == 1) {
-        d = face_direction(p);
+        d = faces_direction(p);
     } else {
         float phi = (p.x - 0.5) * k_turn, theta = p.y * 0.5 * k_turn;
         d = vec3(sin(theta) * cos(phi), cos(theta), sin(theta) * sin(phi));
