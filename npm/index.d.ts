@@ -15,6 +15,8 @@ export class DomelightError extends Error {
 export function configure(settings?: {
     /** The WebAssembly module: a URL, its bytes, or a compiled one. Default: domelight.wasm beside index.js. */
     module?: string | URL | ArrayBuffer | ArrayBufferView | WebAssembly.Module;
+    /** The same of the module that read() uses, which has the decoders. Default: domelight-files.wasm beside index.js. */
+    files?: string | URL | ArrayBuffer | ArrayBufferView | WebAssembly.Module;
     /** The URL of worker.js. Default: beside index.js. */
     worker?: string | URL;
 }): void;
@@ -88,7 +90,7 @@ export class Environment {
     close(): void;
 }
 
-/** Reads a file: a URL, in Node also a path, a File or Blob, a Response, or its bytes. */
+/** Reads a Radiance .hdr or OpenEXR file: a URL, in Node also a path, a File or Blob, a Response, or its bytes. */
 export function read(source: string | URL | Blob | Response | ArrayBuffer | ArrayBufferView, options?: ReadOptions): Promise<Environment>;
 /** Makes an environment of radiance in memory, which is copied. NaN, infinite and negative values are errors. */
 export function fromPixels(pixels: Pixels, options?: {worldToSource?: ArrayLike<number>}): Promise<Environment>;

@@ -5,14 +5,15 @@ import {aborted, DomelightError} from './errors.js';
 export {DomelightError};
 
 const isNode = typeof process === 'object' && !!process.versions?.node && !globalThis.Deno;
-const settings = {module: undefined, worker: undefined};
+const settings = {module: undefined, files: undefined, worker: undefined};
 
 /// What the next worker is started with. Call it before anything else.
 ///
 /// module   the WebAssembly module: a URL, its bytes, or a WebAssembly.Module; the default is domelight.wasm beside this file
+/// files    the same of the module that read() uses; the default is domelight-files.wasm beside this file
 /// worker   the URL of worker.js; the default is the one beside this file
-export function configure({module, worker} = {}) {
-    Object.assign(settings, {module, worker});
+export function configure({module, files, worker} = {}) {
+    Object.assign(settings, {module, files, worker});
 }
 
 /// A worker of browsers or of Node, by the few functions that are used of either.
@@ -109,7 +110,8 @@ class Host {
                     this.#ended(worker, why);
                 });
         });
-        await this.#send('start', {module: settings.module instanceof URL ? settings.module.href : settings.module}, {});
+        const place = module => (module instanceof URL ? module.href : module);
+        await this.#send('start', {module: place(settings.module), files: place(settings.files)}, {});
     }
 
     /// Sends one message and waits for its answer. Also used by `prepare`, while its call has the worker.

@@ -60,7 +60,7 @@ export class Library {
         const {name = 'memory', rotateYDeg, exposure, maxBytes, ...words} = check(options, 'name', 'rotateYDeg', 'exposure', 'maxBytes', ...environmentWords);
         const array = bytesOf(bytes);
         if (!this.#instance.exports.domelight_environment_open_memory)
-            throw new DomelightError('The WebAssembly module has no decoders of files', name === 'memory' ? '' : name, 'Decode the picture, and call fromPixels().');
+            throw new DomelightError('The WebAssembly module has no decoders of files', name === 'memory' ? '' : name, 'domelight-files.wasm has them: load() it as `module`.');
         return this.#instance.scope(scope => {
             const values = {rotateYDeg: number(rotateYDeg, 'rotateYDeg'), exposure: number(exposure, 'exposure'), maxBytes: integer64(maxBytes, 'maxBytes')};
             for (const field of environmentWords) if (words[field] !== undefined) values[field] = scope.word(words[field], field);
@@ -325,6 +325,7 @@ function handleOf(value, kind) {
 export class LibraryEnvironment extends Handle {
     constructor(library, instance, address) {
         super(instance, address, 'domelight_environment_free');
+        this.library = library;
         const {structSize, ...info} = instance.scope(scope => {
             const at = scope.struct(environmentInfoStruct, {});
             instance.run('domelight_environment_get_info', address, at);

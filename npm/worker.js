@@ -3,7 +3,11 @@
 import {DomelightError} from './errors.js';
 import {load} from './library.js';
 
-let library;
+/// The library without decoders, and the one with them, which is a third larger: each is loaded when it is first used.
+let given = {};
+let small, large;
+const smallLibrary = async () => (small ??= await load(given.module ? {module: given.module} : {}));
+const largeLibrary = async () => (large ??= await load({module: given.files ?? new URL('./domelight-files.wasm', import.meta.url)}));
 const objects = new Map();
 let last = 0;
 
@@ -12,38 +16,39 @@ const keep = object => {
     return last;
 };
 const environment = id => objects.get(id);
+/// The library that an environment is in.
+const home = id => environment(id).library;
 
 const calls = {
-    async start({module}) {
-        library = await load(module ? {module} : {});
-        return {version: library.version};
+    start(settings) {
+        given = settings;
     },
     async read({source, options}) {
-        const opened = library.read(source, options);
+        const opened = (await largeLibrary()).read(source, options);
         return {id: keep(opened), info: opened.info, warnings: opened.warnings};
     },
-    fromPixels({pixels, options}) {
-        const opened = library.fromPixels(pixels, options);
+    async fromPixels({pixels, options}) {
+        const opened = (await smallLibrary()).fromPixels(pixels, options);
         return {id: keep(opened), info: opened.info, warnings: []};
     },
     close({id}) {
         objects.get(id)?.close();
         objects.delete(id);
     },
-    prefilter: ({id, options}, progress) => library.prefilter(environment(id), {...options, progress}),
-    bake: ({id, options}, progress) => library.bake(environment(id), {...options, progress}),
-    irradiance: ({id, options}) => library.irradiance(environment(id), options),
-    sphericalHarmonics: ({id, options}) => library.sphericalHarmonics(environment(id), options),
-    lights: ({id, options}) => library.lights(environment(id), options),
+    prefilter: ({id, options}, progress) => home(id).prefilter(environment(id), {...options, progress}),
+    bake: ({id, options}, progress) => home(id).bake(environment(id), {...options, progress}),
+    irradiance: ({id, options}) => home(id).irradiance(environment(id), options),
+    sphericalHarmonics: ({id, options}) => home(id).sphericalHarmonics(environment(id), options),
+    lights: ({id, options}) => home(id).lights(environment(id), options),
     radiance: ({id, direction}) => environment(id).radiance(direction),
     latlong: ({id}) => environment(id).latlong(),
     warnings: ({id}) => environment(id).warnings,
-    brdfTable: ({options}) => library.brdfTable(options),
-    encode: ({levels, options}) => library.encode(levels, options),
-    sampler: ({id, options}) => ({id: keep(library.sampler(environment(id), options))}),
+    brdfTable: async ({options}) => (large ?? await smallLibrary()).brdfTable(options),
+    encode: async ({levels, options}) => (large ?? await smallLibrary()).encode(levels, options),
+    sampler: ({id, options}) => ({id: keep(home(id).sampler(environment(id), options))}),
     sample: ({id, points}) => objects.get(id).sample(points),
     lookUp: ({id, directions}) => objects.get(id).lookUp(directions),
-    memory: () => library.memoryBytes,
+    memory: () => (small?.memoryBytes ?? 0) + (large?.memoryBytes ?? 0),
 };
 
 /// All array buffers in a value, which are handed over and not copied.
@@ -63,7 +68,7 @@ async function answer({id, name, given}) {
         send({id, reply}, [...new Set(buffersOf(reply))]);
     } catch (error) {
         const {what, field, hint} = error instanceof DomelightError ? error : {what: String(error?.message ?? error), field: '', hint: ''};
-        send({id, error: {what, field, hint}, broken: !!library?.broken});
+        send({id, error: {what, field, hint}, broken: !!(small?.broken || large?.broken)});
     }
 }
 

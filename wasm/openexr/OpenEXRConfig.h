@@ -1,0 +1,19 @@
+#pragma once
+// OpenEXR 3.5's configuration, as its own build would write it for a static library without threads.
+#define OPENEXR_VERSION_MAJOR 3
+#define OPENEXR_VERSION_MINOR 5
+#define OPENEXR_VERSION_PATCH 3
+#define OPENEXR_VERSION_STRING "3.5.3"
+#define OPENEXR_LIB_VERSION_STRING "3.5.3"
+#define OPENEXR_VERSION_EXTRA ""
+#define OPENEXR_IMF_NAMESPACE Imf
+#define OPENEXR_IMF_INTERNAL_NAMESPACE Imf
+#define OPENEXR_VERSION_HEX ((3 << 24) | (5 << 16) | (3 << 8))
+#define OPENEXR_EXPORT
+#define OPENEXR_HIDDEN
+#define OPENEXR_EXPORT_TYPE
+#define OPENEXR_EXPORT_ENUM
+#define OPENEXR_EXPORT_EXTERN_TEMPLATE
+#define OPENEXR_EXPORT_TEMPLATE_TYPE
+#define OPENEXR_EXPORT_TEMPLATE_INSTANCE
+#define OPENEXR_DEPRECATED(message)

@@ -1,0 +1,2 @@
+#pragma once
+#define OPENEXR_USE_INTERNAL_DEFLATE 1
