@@ -132,8 +132,7 @@ def test_wheel(version, python, wheel):
 def check_types(python, wheel):
     """The package by mypy; tests/python/test_stubs.py compares the stubs with the extensions."""
     inside = environment("types", python, wheel, "mypy", "numpy", "tqdm")
-    package = subprocess.run([inside, "-c", "import domelight; print(*domelight.__path__)"], capture_output=True, text=True).stdout.strip()
-    run("types", inside, "-m", "mypy", "--strict", "--config-file", ROOT / "python" / "mypy.ini", package)
+    run("types", inside, "-m", "mypy", "--strict", "--config-file", ROOT / "python" / "mypy.ini", "-p", "domelight", cwd=WORK)
 
 
 def claim(what, work, *arguments):
