@@ -65,6 +65,20 @@ const lessons = {
             claim('phong: between two levels the exact light is that of the exponent', between.exact !== at.exact && Math.abs(between.light / between.exact - 1) < 0.2 ? [] : [`${between.light}, exactly ${between.exact}`]);
         },
     },
+    'split-sum': {
+        slider: ['Point: n · v', 0.1], number: 'split',
+        check: async (page, claim) => {
+            const coarse = await numbers(page);
+            await slide(page, 'N: samples of the table', 512);
+            const fine = await numbers(page);
+            claim('split-sum: the sampled table converges to the library\'s', fine.tableError < 0.01 && fine.tableError < 0.5 * coarse.tableError ? [] : [`the RMS error was ${coarse.tableError} and is ${fine.tableError}`], `${fine.tableError.toFixed(4)}`);
+            claim('split-sum: at a grazing angle it is off by more than 10 %', Math.abs(fine.split / fine.truth - 1) > 0.1 && fine.truthError < 0.01 * fine.truth ? [] : [`${fine.split} for ${fine.truth}`], `${(100 * (fine.split / fine.truth - 1)).toFixed(0)} %`);
+            await page.getByRole('combobox', {name: 'Environment'}).selectOption('furnace');
+            await settled(page);
+            const even = await numbers(page);
+            claim('split-sum: in an even light it is exact', near('the ratio', even.split / even.truth, 1, 0.002 + (4 * even.truthError) / even.truth));
+        },
+    },
     importance: {
         slider: ['v: which row', 0.5], number: 'row',
         check: async (page, claim) => {
@@ -79,6 +93,21 @@ const lessons = {
                         Math.abs(over) > 0.02 && `the density is off by ${over}`].filter(Boolean);
             });
             claim('importance: the loops find the texel of the cumulative functions, with its density', wrong);
+        },
+    },
+    mis: {
+        slider: ['Roughness', 0.05], number: 'environment',
+        check: async (page, claim) => {
+            const smooth = await numbers(page);
+            await slide(page, 'Roughness', 0.5);
+            const middle = await numbers(page);
+            const apart = ['brdf', 'environment'].flatMap(key => near(`the mean by ${key}`, middle[`${key}Mean`], middle.bothMean, 4.5 * Math.hypot(middle[`${key}Error`], middle.bothError)));
+            claim('mis: all strategies have one mean', apart);
+            await slide(page, 'Roughness', 1);
+            const rough = await numbers(page);
+            claim('mis: both together are never far from the better one',
+                  [smooth, rough].filter(n => !(n.both < 2 * Math.min(n.brdf, n.environment))).map(n => `both ${n.both}, BRDF ${n.brdf}, environment ${n.environment}`),
+                  [smooth, rough].map(n => `BRDF ${n.brdf.toFixed(2)}, environment ${n.environment.toFixed(2)}, both ${n.both.toFixed(2)}`).join('; '));
         },
     },
 };
