@@ -6,14 +6,24 @@ await script('/npm/babylonjs-loaders/babylonjs.loaders.min.js');
 
 export const version = BABYLON.Engine.Version;
 const engine = new BABYLON.Engine(document.getElementById('canvas'), false, {preserveDrawingBuffer: true});
-let url, rightHanded;
+let url, rightHanded, baked;
 
+/// what: {prefiltered: a file, rightHanded}, or instead of the file {source, options} of the npm package's adapter, and whether a texture of Babylon is
+/// given to that in place of the source (again).
 export async function load(what) {
     url = what.prefiltered;
     rightHanded = what.rightHanded === true;
+    baked = what.source && what;
 }
 
-function light(scene) {
+async function bakedTexture(scene) {
+    const {bakeEnvironment} = await import('/npm/domelight/babylon.js');
+    const texture = await bakeEnvironment(scene, baked.source, baked.options);
+    return baked.again ? bakeEnvironment(scene, texture, baked.options) : texture;
+}
+
+async function light(scene) {
+    if (baked) return void (scene.environmentTexture = await bakedTexture(scene));
     // docs/engines/babylon.md
     const environment = BABYLON.CubeTexture.CreateFromPrefilteredData(url, scene);
     if (scene.useRightHandedSystem) environment.rotationY = Math.PI;
@@ -26,7 +36,7 @@ export async function draw({model, eye, target, fovDeg, width, height}) {
     scene.useRightHandedSystem = rightHanded;
     scene.clearColor = new BABYLON.Color4(0, 0, 0, 0);
     scene.imageProcessingConfiguration.applyByPostProcess = true;  // the material writes linear light
-    light(scene);
+    await light(scene);
     await BABYLON.SceneLoader.AppendAsync('', model, scene);
     // In its left-handed world the loader turns a model so that +X of the file is -X.
     const place = ([x, y, z]) => new BABYLON.Vector3(rightHanded ? x : -x, y, z);
