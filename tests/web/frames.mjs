@@ -19,6 +19,8 @@ const cases = [
     })),
 ];
 
+const usual = ['split-sum', 'stretched', 'phong', 'mirror', 'refract-cube'];
+
 /// The mean of a pane's first frames: RGB floats, rows from the top.
 export async function readPane(page, frames, pane = 0) {
     const base64 = await page.evaluate(([n, p]) => domelight.paneAt(n, p), [frames, pane]);
@@ -53,16 +55,16 @@ export async function openFile(page, url, name) {
     }, [url, name]);
 }
 
-export async function testFrames({program, work, open, claim, data}) {
+export async function testFrames({all, program, work, open, claim, data}) {
     const domelight = (...args) => execFileSync(program, args.map(String), {stdio: ['ignore', 'pipe', 'pipe']});
     const environment = path.join(work, 'sky.hdr');
     if (data) fs.copyFileSync(path.join(data, 'env_latlong/noon_grass_1k.hdr'), environment);
     else domelight('sky', '-o', environment, '--quiet');
     for (const lobe of ['ggx', 'phong'])
         domelight('bake', environment, '-o', path.join(work, lobe), '--size', size, '--lobe', lobe, '--quiet', '--no-preview');
-    const page = await open(`#size=${size}&panel=false`, {viewport: {width, height}});
+    const page = await open(`#size=${size}&panel=false&fullResolution=true`, {viewport: {width, height}});
     await openFile(page, '/work/sky.hdr', 'sky.hdr');
-    for (const {name, state, options, lobe = 'ggx'} of cases) {
+    for (const {name, state, options, lobe = 'ggx'} of all ? cases : cases.filter(({name}) => usual.includes(name))) {
         const file = path.join(work, `${name}.hdr`), maps = /mirror|refract/.test(name) ? [] : ['--maps', path.join(work, lobe)];
         domelight('render', 'spheres', '--env', environment, ...maps, '--width', width, '--height', height, '--spp', 32, '--quiet', '-o', file, ...options);
         await setState(page, {irradiance: 'cube', multipleScattering: false, bentLookup: false, ...state});

@@ -1,16 +1,18 @@
 // The browser app, as it is built, in headless Chromium. Called by run_web.sh.
 //
-//   node run.mjs PROGRAM CHROMIUM [NAME...]
+//   node run.mjs PROGRAM CHROMIUM [--all] [NAME...]
 
 import fs from 'node:fs';
 import path from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {launch, serve} from '../engines/browser/browser.mjs';
 import {testFrames} from './frames.mjs';
+import {testInterface} from './interface.mjs';
 import {testLearn} from './learn.mjs';
 import {testMonteCarlo} from './monte_carlo.mjs';
 
-const [program, chromium, ...names] = process.argv.slice(2);
+const [program, chromium, ...options] = process.argv.slice(2);
+const all = options.includes('--all'), names = options.filter(name => name !== '--all');
 const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..');
 const work = path.join(root, 'build/web-test');
 fs.mkdirSync(work, {recursive: true});
@@ -56,8 +58,8 @@ async function open(hash = '', options = {}) {
     return page;
 }
 
-const tests = {frames: testFrames, 'monte-carlo': testMonteCarlo, learn: testLearn};
-const app = {program, root, work, server, browser, open, watch, claim, skip, data: process.env.DOMELIGHT_DATA};
+const tests = {interface: testInterface, frames: testFrames, 'monte-carlo': testMonteCarlo, learn: testLearn};
+const app = {all, program, root, work, server, browser, open, watch, claim, skip, data: process.env.DOMELIGHT_DATA};
 for (const [name, test] of Object.entries(tests)) {
     if (names.length && !names.some(n => name.includes(n))) continue;
     try {

@@ -1,7 +1,10 @@
 #!/usr/bin/env bash
 # The browser app in headless Chromium. Closes with "web: N passed, N failed, N skipped".
 #
-#   run_web.sh [NAME...]: only the tests whose names have one of these words. Pictures: build/web-test.
+#   run_web.sh [--all] [NAME...]
+#
+# --all: every texture of reflection mapping, every strategy, and both colour schemes (also with DOMELIGHT_BROWSER_ENGINES=all). NAME: only the
+# tests whose names have one of these words. Pictures: build/web-test.
 set -uo pipefail
 here=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
 root=$(cd -- "$here/../.." && pwd)
@@ -21,4 +24,5 @@ fi
 export DOMELIGHT_WASM=${DOMELIGHT_WASM:-$root/build/wasm/domelight.wasm}
 [ -f "$DOMELIGHT_WASM" ] || skip "the WebAssembly module has not been built ($DOMELIGHT_WASM)"
 "$root/web/build.sh" || skip "it cannot be built ($(tail -n 1 "$root/build/web.log"))"
+[ "${DOMELIGHT_BROWSER_ENGINES:-}" != all ] || set -- --all "$@"
 exec node "$here/run.mjs" "${DOMELIGHT_PROGRAM:-$root/build/dev/cli/domelight}" "$(command -v chromium)" "$@"

@@ -8,6 +8,7 @@ import {readPane} from './render/read_back';
 import {Stage} from './render/stage';
 import {builtInModels, type Model} from './scene/built_in';
 import {viewOf} from './scene/framing';
+import {Resolution} from './resolution';
 import {loadModel} from './scene/load_model';
 import {Store, type Mode, type State} from './state';
 
@@ -45,6 +46,8 @@ export class App {
     private needed = {phong: false, rows: 0};
     private source: LightSource;
     private light = 0;
+    private readonly resolution = new Resolution();
+    private screen = {width: 1, height: 1, inset: {right: 0, bottom: 0}};
     private scheduled = false;
     private readonly openedListeners: (() => void)[] = [];
     private waiting: {frames: number; index: number; resolve: (base64: string) => void}[] = [];
@@ -52,10 +55,16 @@ export class App {
     constructor(
         canvas: HTMLCanvasElement,
         readonly store: Store,
-        private readonly events: Events,
+        readonly events: Events,
     ) {
         this.stage = new Stage(canvas);
         this.source = builtIn(store.state.environment);
+        canvas.addEventListener('webglcontextlost', () => events.working('waiting for the graphics card'));
+        canvas.addEventListener('webglcontextrestored', () => {
+            events.working('');
+            this.stage.restore();
+            this.redraw();
+        });
         store.listen(changed => this.react(changed));
     }
 
@@ -68,6 +77,10 @@ export class App {
     }
     get levels(): number {
         return this.bake?.specular.levels.length ?? 0;
+    }
+    /// Drawn pixels per pixel of the screen, along each side.
+    get reduced(): number {
+        return this.state.fullResolution ? 1 : this.resolution.scale;
     }
     /// Frames in the pane that has the fewest.
     get least(): number {
@@ -133,8 +146,12 @@ export class App {
         this.store.set({eye: view.eye, target: view.target, fov: view.fovDeg});
     }
 
-    resize(width: number, height: number): void {
-        this.stage.resize(width, height);
+    /// width, height: of the screen, in its own pixels. inset: what of them the panel covers.
+    resize(width: number, height: number, inset: {right: number; bottom: number}): void {
+        this.screen = {width, height, inset};
+        const scale = this.reduced, scaled = (v: number) => Math.max(1, Math.round(v * scale));
+        this.stage.inset = {right: inset.right * scale, bottom: inset.bottom * scale};
+        this.stage.resize(scaled(width), scaled(height));
         this.redraw();
     }
     redraw(): void {
@@ -177,6 +194,7 @@ export class App {
 
     private react(changed: Set<keyof State>): void {
         const {state} = this, make = builtInModels[state.model];
+        if (changed.has('fullResolution')) this.resize(this.screen.width, this.screen.height, this.screen.inset);
         if (changed.has('model') && make && state.model !== this.model.name) this.showModel(make());
         if (changed.has('environment') && state.environment !== this.environmentName) this.source = builtIn(state.environment);
         if (changed.has('environment') || changed.has('furnace') || changed.has('size')) void this.relight();
@@ -208,13 +226,14 @@ export class App {
 
     /// For tests: a pane when it has averaged this many frames, in base64.
     paneAt(frames: number, index: number): Promise<string> {
+        if (this.stage.panes[index]!.count >= frames) this.stage.restart();
         this.redraw();
         return new Promise(resolve => this.waiting.push({frames, index, resolve}));
     }
 
     private frame(): void {
         this.scheduled = false;
-        if (!this.bake) return;
+        if (!this.bake || this.stage.lost) return;
         const {state, stage} = this;
         stage.apply(state);
         let unfinished = false;
@@ -226,7 +245,9 @@ export class App {
         this.events.drawn();
         stage.show(state);
         this.waiting = this.waiting.filter(({frames, index, resolve}) => stage.panes[index]!.count !== frames || void resolve(readPane(stage, index)));
-        if (unfinished) this.redraw();
+        if (!unfinished) return this.resolution.pause();
+        if (this.resolution.frame(performance.now(), state.fullResolution)) this.resize(this.screen.width, this.screen.height, this.screen.inset);
+        this.redraw();
     }
 }
 

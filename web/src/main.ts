@@ -54,8 +54,7 @@ function start(): void {
 
     const resize = () => {
         const scale = Math.min(2, devicePixelRatio), narrow = innerWidth <= 700, {panel} = store.state;
-        app.stage.inset = {right: panel && !narrow ? 328 * scale : 0, bottom: panel && narrow ? 0.52 * innerHeight * scale : 0};
-        app.resize(Math.max(1, Math.round(innerWidth * scale)), Math.max(1, Math.round(innerHeight * scale)));
+        app.resize(innerWidth * scale, innerHeight * scale, {right: panel && !narrow ? 328 * scale : 0, bottom: panel && narrow ? 0.52 * innerHeight * scale : 0});
     };
     resize();
     addEventListener('resize', resize);

@@ -53,6 +53,8 @@ export interface State {
     target: [number, number, number];
     fov: number;
     panel: boolean;
+    /// Every pixel of the screen, however slow that is.
+    fullResolution: boolean;
 }
 
 export const defaults: State = {
@@ -63,7 +65,7 @@ export const defaults: State = {
     lookup: 'environment', ior: 1.5, iorOutside: 1, iorOverride: false,
     override: false, color: '#ffffff', metalness: 1, roughness: 0.3, exponentLog2: 6,
     furnace: false, strategy: 'mis', tables: 'guided', samples: 1, rows: 256, lookupSize: 512,
-    eye: [0, 0, 0], target: [0, 0, 0], fov: 35, panel: true,
+    eye: [0, 0, 0], target: [0, 0, 0], fov: 35, panel: true, fullResolution: false,
 };
 
 /// Of values that are words, those that there are.

@@ -33,17 +33,26 @@ export class Module {
         return new Module(exports);
     }
 
-    /// An environment of pixels, which are copied, and the same pixels as half floats. `close` the environment.
-    environment(latlong: Latlong): {environment: Environment; texels: Uint16Array} {
+    /// An environment of pixels, which are copied. `close` it.
+    environment(latlong: Latlong): Environment {
+        return this.withPixels(latlong, (pixels, scope) => {
+            const handle = scope.bytes(4);
+            this.check(this.call('domelight_environment_from_pixels', pixels, 0, handle));
+            return new Environment(this, this.words(handle)[0]!);
+        });
+    }
+    /// The same pixels as RGBA half floats.
+    halfFloats(latlong: Latlong): Uint16Array {
+        return this.withPixels(latlong, pixels => this.encode(pixels).texels);
+    }
+    private withPixels<T>(latlong: Latlong, work: (pixels: number, scope: Scope) => T): T {
         return this.scope(scope => {
             const pixels = scope.bytes(k_pixels_bytes);
             this.call('domelight_pixels_init_sized', pixels, k_pixels_bytes);
             const data = scope.bytes(latlong.pixels.byteLength);
             this.floats(data, latlong.pixels.length).set(latlong.pixels);
             this.words(pixels).set([data, latlong.width, latlong.height], 1);
-            const handle = scope.bytes(4);
-            this.check(this.call('domelight_environment_from_pixels', pixels, 0, handle));
-            return {environment: new Environment(this, this.words(handle)[0]!), texels: this.encode(pixels).texels};
+            return work(pixels, scope);
         });
     }
 

@@ -2,17 +2,16 @@
 
 import {FloatType} from 'three';
 import {EXRLoader} from 'three/addons/loaders/EXRLoader.js';
-import {HDRLoader} from 'three/addons/loaders/HDRLoader.js';
+import {readHdr} from './read_hdr';
 import type {Latlong} from './types';
 
-interface Decoded {
-    width: number;
-    height: number;
-    data: Float32Array;
+interface Picture {
+    format: string;
+    latlong: Latlong;
 }
 
 /// The pixels of a lat-long file, as they are stored. Throws an Error with a sentence.
-export function readLatlong(name: string, bytes: ArrayBuffer): {format: string; latlong: Latlong} {
+export function readLatlong(name: string, bytes: ArrayBuffer): Picture {
     const read = readPicture(name, bytes), {width, height} = read.latlong;
     if (width !== 2 * height)
         throw new Error(`${name}: the image is ${width} x ${height}, but a lat-long map must be twice as wide as high.`);
@@ -20,38 +19,49 @@ export function readLatlong(name: string, bytes: ArrayBuffer): {format: string; 
 }
 
 /// The pixels of a picture of any shape.
-export function readPicture(name: string, bytes: ArrayBuffer): {format: string; latlong: Latlong} {
-    const start = new Uint8Array(bytes, 0, Math.min(4, bytes.byteLength));
-    if (start[0] === 0x23 && start[1] === 0x3f) {
-        const decoded = told(name, () => new HDRLoader().setDataType(FloatType).parse(bytes) as Decoded);
-        return {format: 'Radiance HDR', latlong: rgbOf(decoded, false)};
-    }
-    if (start[0] === 0x76 && start[1] === 0x2f && start[2] === 0x31) {
-        const decoded = told(name, () => new EXRLoader().setDataType(FloatType).parse(bytes) as Decoded);
-        return {format: 'OpenEXR', latlong: rgbOf(decoded, true)};
-    }
-    throw new Error(`${name}: this is not a Radiance HDR or OpenEXR file.`);
-}
-
-function told<T>(name: string, read: () => T): T {
+export function readPicture(name: string, bytes: ArrayBuffer): Picture {
+    const start = new Uint8Array(bytes);
     try {
-        return read();
+        if (start[0] === 0x23 && start[1] === 0x3f) return {format: 'Radiance HDR', latlong: cleaned(readHdr(start))};
+        if (start[0] === 0x76 && start[1] === 0x2f && start[2] === 0x31) return {format: 'OpenEXR', latlong: readExr(bytes)};
     } catch (error) {
-        throw new Error(`${name}: the file is damaged (${String((error as Error).message ?? error).replace(/^THREE\.\w+: /, '')}).`);
+        throw new Error(`${name}: the file is damaged (${String((error as Error).message ?? error).replace(/^THREE\.\w+: /, '').replace(/\.$/, '')}).`);
+    }
+    throw new Error(`${name}: this is neither an environment (.hdr, .exr) nor a model (.glb, .gltf).`);
+}
+
+function readExr(bytes: ArrayBuffer): Latlong {
+    checkExrHeader(new DataView(bytes));
+    const {width, height, data} = new EXRLoader().setDataType(FloatType).parse(bytes) as {width: number; height: number; data: Float32Array};
+    const channels = data.length / (width * height), pixels = new Float32Array(3 * width * height);
+    // The loader's first row is the bottom one.
+    for (let y = 0, to = 0; y < height; ++y)
+        for (let x = 0, from = (height - 1 - y) * width * channels; x < width; ++x, from += channels)
+            for (let c = 0; c < 3; ++c) pixels[to++] = data[from + (channels >= 3 ? c : 0)]!;
+    return cleaned({width, height, pixels});
+}
+
+/// Walks through the attributes: the loader reads on for ever in a header that does not end.
+function checkExrHeader(view: DataView): void {
+    let at = 8;
+    const text = () => {
+        const start = at;
+        while (view.getUint8(at++) !== 0) if (at - start > 256) throw new Error('a name of the header is too long');
+        return at - start - 1;
+    };
+    try {
+        while (text() > 0) {
+            text();
+            at += 4 + view.getUint32(at, true);
+        }
+    } catch {
+        throw new Error('its header does not end');
     }
 }
 
-/// RGB rows from the top. Negative values, NaN and infinities become 0, because no light is like them.
-function rgbOf({width, height, data: rgba}: Decoded, bottomFirst: boolean): Latlong {
-    const channels = rgba.length / (width * height);
-    const pixels = new Float32Array(3 * width * height);
-    for (let y = 0, to = 0; y < height; ++y) {
-        let from = (bottomFirst ? height - 1 - y : y) * width * channels;
-        for (let x = 0; x < width; ++x, from += channels)
-            for (let c = 0; c < 3; ++c) {
-                const v = rgba[from + (channels >= 3 ? c : 0)]!;
-                pixels[to++] = v > 0 && v < Infinity ? v : 0;
-            }
-    }
-    return {width, height, pixels};
+/// Negative values, NaN and infinities become 0, because no light is like them.
+function cleaned(latlong: Latlong): Latlong {
+    const {pixels} = latlong;
+    for (let k = 0; k < pixels.length; ++k) if (!(pixels[k]! >= 0 && pixels[k]! < Infinity)) pixels[k] = 0;
+    return latlong;
 }

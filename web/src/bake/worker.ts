@@ -3,7 +3,7 @@
 import {levelExponent, levelRoughness, sizesDownTo} from './chain';
 import {Module, type Environment} from './module';
 import {readLatlong, readPicture} from './read_environment';
-import {drawSamples, makeTables, survey} from './tables';
+import {drawSamples, makeTables, reduce, survey} from './tables';
 import type {Bake, EnvironmentInfo, Latlong, Replies, Request} from './types';
 import moduleUrl from 'domelight.wasm?url';
 
@@ -11,13 +11,16 @@ const module = Module.load(fetch(moduleUrl));
 let environment: Environment | undefined;
 let pixels: Latlong | undefined;
 
+/// Larger textures are refused by many graphics cards.
+const k_most_width = 8192;
+
 function use(name: string, format: string, latlong: Latlong, loaded: Module, start: number): EnvironmentInfo {
     const made = loaded.environment(latlong);
     environment?.close();
-    environment = made.environment;
+    environment = made;
     pixels = latlong;
-    const {width, height} = latlong;
-    return {name, format, width, height, texels: made.texels, warnings: [], milliseconds: performance.now() - start};
+    const shown = latlong.width > k_most_width ? reduce(latlong, k_most_width / 2) : latlong;
+    return {name, format, width: shown.width, height: shown.height, texels: loaded.halfFloats(shown), warnings: [], milliseconds: performance.now() - start};
 }
 
 function opened(): Environment {

@@ -49,15 +49,3 @@ export function tableTexture(values: Float32Array, width: number, height: number
     texture.needsUpdate = true;
     return texture;
 }
-
-/// The coefficients of the stretched lobe, read from the C++ that has them (src/render/shading/stretched_fit.cpp): nine rows of twenty
-/// (tilt, roughness, scale, bias).
-export function stretchedTexture(source: string): THREE.DataTexture {
-    const numbers = [...source.matchAll(/(-?[\d.]+(?:e-?\d+)?)f\b/g)].map(match => Number(match[1]));
-    const taps = 9, terms = 20, values = new Float32Array(4 * taps * terms);
-    numbers.forEach((v, k) => {
-        const term = k % terms, which = Math.floor(k / terms) % 4, tap = Math.floor(k / (4 * terms));
-        values[4 * (tap * terms + term) + which] = v;
-    });
-    return tableTexture(values, terms, taps);
-}

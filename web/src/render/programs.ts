@@ -30,12 +30,13 @@ import surface from '../shading/surface.glsl?raw';
 import tonemap from '../shading/tonemap.glsl?raw';
 import type {Mode} from '../state';
 import {fullscreen, join, ownFrame, type Program} from './program';
+import {stretchedFit} from './stretched_fit';
 
 const sharp = [generic, environment, projections, lookup];
 /// What computes a surface's light, by mode.
 const lighting: Record<Mode, string[]> = {
     'split-sum': [generic, diffuse, metallicRoughness, splitSum],
-    stretched: [generic, diffuse, metallicRoughness, stretched],
+    stretched: [generic, diffuse, metallicRoughness, stretchedFit(), stretched],
     phong: [generic, diffuse, phong],
     mirror: [...sharp, mirror],
     refract: [...sharp, refract],

@@ -1,13 +1,12 @@
 // The scene, the light and the camera, drawn by any mode into panes and from there to the screen.
 
 import * as THREE from 'three';
-import stretchedFit from '../../../src/render/shading/stretched_fit.cpp?raw';
 import {matchingRoughness} from '../bake/chain';
 import type {Bake, BrdfTable, Chain, EnvironmentInfo, Latlong, Tables} from '../bake/types';
 import {radians} from '../scene/framing';
 import {backgrounds, lookups, strategies, tables, tonemaps, type Mode, type State} from '../state';
 import {LookupMaps} from './lookup_maps';
-import {brdfTexture, chainTexture, cubeTexture, latlongTexture, stretchedTexture, tableTexture} from './maps';
+import {brdfTexture, chainTexture, cubeTexture, latlongTexture, tableTexture} from './maps';
 import {Pane} from './pane';
 import {Pass, triangle} from './passes';
 import {backgroundProgram, presentProgram, type Purpose} from './programs';
@@ -28,7 +27,6 @@ export class Stage {
         u_multiple_scattering: uniform(false), u_harmonics: uniform(false), u_bent_lookup: uniform(false), u_fresnel_weight: uniform(false),
         u_occlusion: uniform(true), u_ior_outside: uniform(1), u_ior_inside: uniform(-1), u_lookup: uniform(0), u_lookup_map: uniform(null), u_lookup_back: uniform(null),
         u_phong: uniform(null), u_phong_roughness: uniform(new Float32Array(16)), u_phong_levels: uniform(1), u_exponent: uniform(-1),
-        u_stretched_fit: uniform(stretchedTexture(stretchedFit)),
         u_envmap_frame: uniform(new THREE.Matrix3()), u_envmap: uniform(null), u_row_averages: uniform(null), u_total_average: uniform(1),
         u_columns: uniform(null), u_rows: uniform(null), u_strategy: uniform(0), u_tables: uniform(0), u_samples: uniform(1), u_frame: uniform(0),
         u_override: uniform(false), u_override_color: uniform(new THREE.Color()), u_override_metalness: uniform(1), u_override_roughness: uniform(0),
@@ -149,6 +147,14 @@ export class Stage {
         this.camera.far = distance * 100;
     }
 
+    get lost(): boolean {
+        return this.renderer.getContext().isContextLost();
+    }
+    /// The graphics card is back: three.js uploads what it is given; what was drawn has to be drawn again.
+    restore(): void {
+        this.lookups.forget();
+        this.restart();
+    }
     restart(): void {
         for (const pane of this.panes) pane.count = 0;
     }

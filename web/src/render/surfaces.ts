@@ -15,6 +15,7 @@ export class LitMesh {
     private readonly surface: Surface;
     private readonly materials = new Map<Purpose, THREE.RawShaderMaterial>();
     private readonly transparent: boolean;
+    private readonly side: THREE.Side;
 
     constructor(
         readonly mesh: THREE.Mesh,
@@ -26,6 +27,7 @@ export class LitMesh {
         this.surface = surfaceOf(mesh, source);
         this.surface.uniforms.u_object = {value: number};
         this.transparent = source.transparent;
+        this.side = source.side;
     }
 
     use(purpose: Purpose): void {
@@ -49,7 +51,7 @@ export class LitMesh {
             glslVersion: THREE.GLSL3,
             uniforms: {...this.shared, ...this.surface.uniforms},
             defines: this.surface.defines,
-            side: THREE.DoubleSide,
+            side: this.side,
             transparent: blended,
             depthWrite: !blended,
         });

@@ -35,7 +35,7 @@ const red: Colour = [0.5, 0.05, 0.04];
 
 /// Gold above red plastic; roughness 0 to 1 from left to right.
 function spheres(): Model {
-    const root = new THREE.Group(), geometry = sphere(128), columns = 7;
+    const root = new THREE.Group(), geometry = sphere(64), columns = 7;
     for (let row = 0; row < 2; ++row)
         for (let column = 0; column < columns; ++column) {
             const roughness = column / (columns - 1), metal = row === 0;
@@ -50,7 +50,7 @@ function spheres(): Model {
 
 /// Roughness from left to right, metalness from the bottom up.
 function grid(): Model {
-    const root = new THREE.Group(), geometry = sphere(96), columns = 9, rows = 5;
+    const root = new THREE.Group(), geometry = sphere(48), columns = 9, rows = 5;
     for (let row = 0; row < rows; ++row)
         for (let column = 0; column < columns; ++column) {
             const roughness = column / (columns - 1), metalness = row / (rows - 1);
@@ -83,7 +83,7 @@ function ball(): Model {
 /// White metal: what a white furnace must make disappear.
 function furnace(): Model {
     const root = new THREE.Group();
-    root.add(mesh('white', sphere(512), [1, 1, 1], 1, 0.5));
+    root.add(mesh('white', sphere(256), [1, 1, 1], 1, 0.5));
     return {name: 'furnace', root, view: {eye: [0, 0, 4.2], target: [0, 0, 0], fovDeg: degrees(0.61), aspect: 1}, variants: []};
 }
 

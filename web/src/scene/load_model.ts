@@ -25,7 +25,7 @@ export async function loadModel(name: string, bytes: ArrayBuffer, siblings: Map<
     } finally {
         urls.forEach(URL.revokeObjectURL);
     }
-    if (!hasSurface(gltf.scene)) throw new Error(`${name}: the model has no surface to be lit.`);
+    if (!gltf.scene || !hasSurface(gltf.scene)) throw new Error(`${name}: the model has no surface to be lit.`);
     freeze(gltf.scene);
     gltf.scene.traverse(object => (object.userData.sourceMaterial = (object as THREE.Mesh).material));
     return {name, root: gltf.scene, variants: variantsOf(gltf), useVariant: index => useVariant(gltf, index)};

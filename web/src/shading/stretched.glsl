@@ -1,20 +1,6 @@
 // One step beyond split-sum: the lobe is stretched like that of the BRDF, by up to eight more lookups in the same chain
 // (docs/math/split-sum.md, "One step beyond"). The C++ is src/render/shading/shading_stretched.cpp and stretched_lobe.cpp. Behind
-// metallic_roughness.glsl.
-
-const int k_taps = 9;
-// Row t, column 5 i + j: the coefficients (tilt, roughness, scale, bias) of NdotV^(i/2) roughness^j.
-uniform sampler2D u_stretched_fit;
-
-vec4 stretched_polynomial(int t, float NdotV, float roughness) {
-    vec4 sum = vec4(0.0);
-    float cosine = 1.0, root = sqrt(NdotV);
-    for (int i = 0; i < 4; ++i, cosine *= root) {
-        float term = cosine;
-        for (int j = 0; j < 5; ++j, term *= roughness) sum += texelFetch(u_stretched_fit, ivec2(5 * i + j, t), 0) * term;
-    }
-    return sum;
-}
+// metallic_roughness.glsl and the text of render/stretched_fit.ts, which declares k_taps and stretched_fit().
 
 /// max(x, least) with a rounded corner.
 float smooth_max(float x, float least) {
@@ -33,8 +19,10 @@ vec3 shade(Surface s, vec3 v) {
     float above = clamp(10.0 * NdotV - 9.0, 0.0, 1.0), settled = above * above * clamp(4.0 - 10.0 * roughness, 0.0, 1.0);
     vec3 scale_light = vec3(0.0), bias_light = vec3(0.0);
     float scale_sum = 0.0, bias_sum = 0.0;
+    vec4 fits[k_taps];
+    stretched_fit(sqrt(NdotV), roughness, fits);
     for (int t = 0; t < k_taps; ++t) {
-        vec4 fit = stretched_polynomial(t, NdotV, roughness);
+        vec4 fit = fits[t];
         float tilt = clamp(width * fit.x, -1.7, 1.7);
         float fitted = min(smooth_max(roughness * fit.y, least), 1.0);
         vec3 light = domelight_specular(r * cos(tilt) + up * sin(tilt), mix(fitted, roughness, settled));

@@ -31,12 +31,12 @@ export class CompareSection {
         store.listen(() => (this.done = ''));
     }
 
-    /// Called after each frame: compares when the panes have averaged 4, 16, 64 frames, and so on.
+    /// Called after each frame: compares when the panes have averaged 1, 4, 16, 64 frames, and so on.
     update(): void {
         const {state, stage} = this.app;
         if (state.view === 'one' || !this.root.open && state.view === 'split') return;
         const count = this.app.least, key = `${Math.floor(Math.log2(Math.max(1, count)) / 2)} ${state.view}`;
-        if (count < 4 || key === this.done) return;
+        if (count < 1 || key === this.done) return;
         this.done = key;
         const {width, height} = stage.panes[0];
         this.size = [width, height];

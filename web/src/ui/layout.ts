@@ -47,7 +47,8 @@ export function layOut(store: Store): Layout {
     const spoken = element('div', {className: 'sr', role: 'status'});
     const notes = element('div', {id: 'notes', role: 'alert'});
     const drop = element('div', {id: 'drop', hidden: true}, element('p', {}, 'Drop environments and models anywhere'));
-    document.body.append(view, header, divider, ...tags, status, bar, unfold, aside, notes, drop, progress, spoken);
+    view.append(divider, ...tags, status);
+    document.body.append(view, header, bar, unfold, aside, notes, drop, progress, spoken);
 
     const fold = () => document.body.classList.toggle('folded', !store.state.panel);
     fold();

@@ -39,13 +39,13 @@ export class NoiseSection {
     }
 
     private draw(): void {
-        const x = (samples: number) => 26 + (Math.log2(samples) / k_most_doublings) * (k_width - 34), y = (error: number) => 6 + (-Math.log10(error) / k_decades) * (k_height - 26);
+        const x = (samples: number) => 34 + (Math.log2(samples) / k_most_doublings) * (k_width - 42), y = (error: number) => 6 + (-Math.log10(error) / k_decades) * (k_height - 26);
         const path = (points: [number, number][]) => points.map(([n, e], k) => `${k ? 'L' : 'M'}${x(n).toFixed(1)} ${y(Math.min(1, e)).toFixed(1)}`).join('');
-        const labels = [1, 0.1, 0.01, 0.001].map(e => `<text x="22" y="${(y(e) + 3).toFixed(0)}" text-anchor="end">${e}</text>`);
-        for (let k = 0; k <= k_most_doublings; k += 2) labels.push(`<text x="${x(2 ** k).toFixed(0)}" y="${k_height - 6}" text-anchor="middle">${2 ** k}</text>`);
+        const labels = [1, 0.1, 0.01, 0.001].map(e => `<text x="30" y="${(y(e) + 3).toFixed(0)}" text-anchor="end">${e}</text>`);
+        for (let k = 0; k < k_most_doublings; k += 2) labels.push(`<text x="${x(2 ** k).toFixed(0)}" y="${k_height - 6}" text-anchor="middle">${2 ** k}</text>`);
         const [n, e] = this.points.at(-1) ?? [0, 0];
         const ideal = this.points.length > 1 ? path(this.points.map(([m]) => [m, e * Math.sqrt(n / m)])) : '';
-        this.plot.innerHTML = `<path class="axis" d="M26 6V${k_height - 20}H${k_width - 8}"/>${labels.join('')}<path class="ideal" d="${ideal}"/><path class="line" d="${path(this.points)}"/>`;
+        this.plot.innerHTML = `<path class="axis" d="M34 6V${k_height - 20}H${k_width - 8}"/>${labels.join('')}<path class="ideal" d="${ideal}"/><path class="line" d="${path(this.points)}"/>`;
         this.text.textContent = n ? `After ${n} samples a pixel: relative error ${(100 * e).toPrecision(2)} % (RMS of L / (1 + L)). Dashed: 1 / √n.` : 'The error by the number of samples, as they come in.';
         this.plot.setAttribute('aria-label', `Noise by samples. ${this.text.textContent}`);
     }

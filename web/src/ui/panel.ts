@@ -38,7 +38,8 @@ export function pictureSection({store}: App): HTMLElement {
         new RangeControl(store, 'turn', 'Turn of the light', {min: -180, max: 180, step: 1, text: v => `${v.toFixed(0)}°`, title: 'Shift and drag'}),
         new SelectControl(store, 'tonemap', 'Tone map', tonemaps.map(name => [name, tonemapNames[name]] as const)),
         new ChoiceControl(store, 'background', 'Background', [['environment', 'Sharp'], ['blurred', 'Blurred'], ['colour', 'White']]),
-        onlyWhere(store, new RangeControl(store, 'blur', 'Blur', {min: 0.05, max: 1, step: 0.01, text: fixed(2)}), s => s.background === 'blurred'));
+        onlyWhere(store, new RangeControl(store, 'blur', 'Blur', {min: 0.05, max: 1, step: 0.01, text: fixed(2)}), s => s.background === 'blurred'),
+        new CheckControl(store, 'fullResolution', 'Full resolution always', 'Otherwise fewer pixels are drawn where frames take longer than a fifth of a second'));
 }
 
 /// Controls that belong to some of the methods.

@@ -1,0 +1,175 @@
+// The page itself: keys, the address, bad files, a lost graphics context, a phone, and accessibility.
+
+import fs from 'node:fs';
+import path from 'node:path';
+import {openFile, setState} from './frames.mjs';
+
+const state = (page, key) => page.evaluate(key => domelight.store.state[key], key);
+const settle = page => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
+
+async function testKeys({open, claim}) {
+    const page = await open('#other=phong', {viewport: {width: 720, height: 400}});
+    const press = async (key, what, expected, name) => {
+        await page.keyboard.press(key);
+        await settle(page);
+        const value = await state(page, name);
+        const right = typeof expected === 'function' ? expected(value) : value === expected;
+        claim(`keys: ${key} ${what}`, right ? [] : [`${name} is ${value}`]);
+    };
+    for (const [k, mode] of ['split-sum', 'stretched', 'phong', 'mirror', 'refract', 'monte-carlo'].entries()) await press(`${k + 1}`, `chooses ${mode}`, mode, 'mode');
+    await press('1', 'chooses split-sum again', 'split-sum', 'mode');
+    await press('s', 'splits the screen', 'split', 'view');
+    await press('s', 'ends the split', 'one', 'view');
+    await press('e', 'shows FLIP', 'flip', 'view');
+    await press('d', 'shows the difference', 'difference', 'view');
+    await press('d', 'ends it', 'one', 'view');
+    await press('a', 'flips to the other method', 'phong', 'mode');
+    await press('a', 'flips back', 'split-sum', 'mode');
+    await press(']', 'raises the exposure', v => v > 0.3, 'exposure');
+    await press('[', 'lowers it', 0, 'exposure');
+    await press('h', 'folds the panel', false, 'panel');
+    await press('h', 'shows it again', true, 'panel');
+    const eye = await state(page, 'eye');
+    await press('ArrowLeft', 'orbits', v => String(v) !== String(eye), 'eye');
+    await press('Shift+ArrowLeft', 'turns the light', 5, 'turn');
+    await press('+', 'comes nearer', v => Math.hypot(...v) < Math.hypot(...eye) - 1, 'eye');
+    await press('r', 'shows the whole model', v => Math.hypot(...v.map((x, k) => x - eye[k])) < 1e-6, 'eye');
+    await page.keyboard.press('?');
+    claim('keys: ? opens the help', await page.locator('dialog').isVisible() ? [] : ['it is closed']);
+    await page.keyboard.press('Escape');
+    claim('keys: Escape closes it', await page.locator('dialog').isVisible() ? ['it is open'] : []);
+    const download = page.waitForEvent('download');
+    await page.keyboard.press('p');
+    claim('keys: P saves a screenshot', fs.statSync(await (await download).path()).size > 5000 ? [] : ['it is empty']);
+    claim('keys: the console is silent', page.complaints);
+    await page.close();
+}
+
+async function testAddress({open, claim}) {
+    const page = await open('#mode=refract&lookup=sphere-map&exposure=1.5&eye=1,2,3&size=nonsense&unknown=7&tonemap=wrong');
+    const wrong = [];
+    for (const [key, value] of Object.entries({mode: 'refract', lookup: 'sphere-map', exposure: 1.5, eye: [1, 2, 3], size: 256, tonemap: 'agx'})) {
+        const found = await state(page, key);
+        if (String(found) !== String(value)) wrong.push(`${key} is ${found}`);
+    }
+    claim('address: what is understood is taken, the rest is left out', wrong);
+    await setState(page, {mode: 'phong', exposure: 0, tonemap: 'neutral'});
+    await page.waitForTimeout(500);
+    const hash = new URL(page.url()).hash;
+    claim('address: it follows what is chosen', /mode=phong/.test(hash) && /tonemap=neutral/.test(hash) && !/exposure/.test(hash) ? [] : [hash]);
+    claim('address: the console is silent', page.complaints);
+    await page.close();
+}
+
+/// Writes a file into the folder that the server serves; its address.
+const served = (work, name, bytes) => {
+    fs.writeFileSync(path.join(work, name), bytes);
+    return [`/work/${name}`, name];
+};
+
+async function testBadFiles({open, claim, work}) {
+    const page = await open(), hdr = (size, body) => Buffer.concat([Buffer.from(`#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n${size}\n`), body]);
+    const files = {
+        'empty.hdr': Buffer.alloc(0), 'noise.exr': Buffer.from(Array.from({length: 4000}, (_, k) => (k * 7919) % 251)), 'text.txt': Buffer.from('not a picture'),
+        'cut.hdr': hdr('-Y 64 +X 128', Buffer.alloc(900, 1)), 'square.hdr': hdr('-Y 4 +X 4', Buffer.alloc(64, 100)), 'huge.hdr': hdr('-Y 100000 +X 200000', Buffer.alloc(64, 100)),
+        'cut.exr': Buffer.from([0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0]), 'cut.glb': Buffer.from('glTF\x02\0\0\0\xff\xff\0\0', 'latin1'), 'empty.gltf': Buffer.from('{"asset":{"version":"2.0"}}'),
+    };
+    const before = await page.evaluate(() => [domelight.app.model.name, domelight.app.environmentName].join());
+    for (const [name, bytes] of Object.entries(files)) {
+        await openFile(page, ...served(work, name, bytes));
+        const said = await page.locator('#notes p').last().textContent(), after = await page.evaluate(() => [domelight.app.model.name, domelight.app.environmentName].join());
+        const wrong = [];
+        if (!said.startsWith(name) || !/\.$/.test(said)) wrong.push(`the page says "${said}"`);
+        if (after !== before) wrong.push(`the page shows ${after}`);
+        claim(`bad files: ${name} gives a sentence and changes nothing`, wrong, said);
+    }
+    await page.locator('#notes button').first().click();
+    claim('bad files: a sentence can be closed', (await page.locator('#notes p').count()) === 2 ? [] : ['it stays']);
+    claim('bad files: the console is silent', page.complaints);
+    await page.close();
+}
+
+async function testLostContext({open, claim}) {
+    const page = await open('#fullResolution=true', {viewport: {width: 400, height: 240}});
+    const middle = () => page.evaluate(async () => {
+        const {width, height} = domelight.stage.panes[0], values = new Float32Array(4);
+        await domelight.paneAt(2, 0);
+        domelight.stage.renderer.readRenderTargetPixels(domelight.stage.panes[0].target, width >> 1, height >> 1, 1, 1, values);
+        return [...values];
+    });
+    await setState(page, {turn: 1});
+    const before = await middle();
+    await page.evaluate(async () => {
+        const lose = domelight.stage.renderer.getContext().getExtension('WEBGL_lose_context');
+        lose.loseContext();
+        await new Promise(done => setTimeout(done, 300));
+        lose.restoreContext();
+        await new Promise(done => setTimeout(done, 300));
+    });
+    const after = await middle();
+    claim('lost context: the picture comes back', Math.max(...before.map((v, k) => Math.abs(v - after[k]))) < 1e-3 && before[0] > 0 ? [] : [`${before} became ${after}`]);
+    await page.close();
+}
+
+async function testPhone({open, claim, work}) {
+    const page = await open('', {viewport: {width: 390, height: 844}, hasTouch: true, isMobile: true});
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    claim('phone: nothing is wider than the screen', wide <= 390 ? [] : [`the page is ${wide} wide`]);
+    claim('phone: the panel is folded', (await state(page, 'panel')) ? ['it is open'] : []);
+    await page.tap('#unfold');
+    await settle(page);
+    await page.waitForTimeout(300);
+    const box = await page.locator('#panel').boundingBox();
+    claim('phone: the panel opens over the lower half', box && box.y > 380 && box.y + box.height <= 845 ? [] : [JSON.stringify(box)]);
+    await page.screenshot({path: path.join(work, 'phone.png')});
+    claim('phone: the console is silent', page.complaints);
+    await page.close();
+}
+
+async function testAccessibility({all, open, claim, root, work}) {
+    const axe = fs.readFileSync(path.join(root, 'web/node_modules/axe-core/axe.min.js'), 'utf8');
+    for (const colorScheme of all ? ['light', 'dark'] : ['dark']) {
+        const page = await open('#mode=monte-carlo&view=split&other=phong', {colorScheme, viewport: {width: 1000, height: 600}});
+        await page.evaluate(axe);
+        const check = async what => {
+            const found = await page.evaluate(() => axe.run(document, {resultTypes: ['violations']}));
+            claim(`accessibility: ${what}, ${colorScheme}: axe-core finds nothing`, found.violations.map(v => `${v.id}: ${v.help} (${v.nodes.map(n => n.target).slice(0, 3).join(' ')})`));
+        };
+        await check('the page');
+        await page.evaluate(() => document.querySelectorAll('details').forEach(d => (d.open = true)));
+        await setState(page, {override: true});
+        await check('all sections open');
+        await page.evaluate(() => domelight.app.events.failed('A sentence.'));
+        await check('a sentence shown');
+        await page.keyboard.press('?');
+        await check('the help');
+        await page.keyboard.press('Escape');
+        await page.screenshot({path: path.join(work, `page-${colorScheme}.png`)});
+        await page.close();
+    }
+}
+
+async function testTab({open, claim}) {
+    const page = await open('', {viewport: {width: 900, height: 500}});
+    const reached = new Set();
+    for (let k = 0; k < 60; ++k) {
+        await page.keyboard.press('Tab');
+        reached.add(await page.evaluate(() => document.activeElement?.textContent?.slice(0, 12) + document.activeElement?.tagName + (document.activeElement?.value ?? '')));
+    }
+    const focusable = await page.evaluate(() => [...document.querySelectorAll('#panel button, #panel select, #panel input[type=range], #panel input[type=checkbox], #panel summary')]
+        .filter(e => e.checkVisibility()).map(e => e.textContent.slice(0, 12) + e.tagName + (e.value ?? '')));
+    claim('keyboard: Tab reaches every control of the panel', focusable.filter(name => !reached.has(name)));
+    await page.close();
+}
+
+export async function testInterface(app) {
+    for (const test of [testKeys, testAddress, testBadFiles, testLostContext, testPhone, testAccessibility, testTab]) {
+        const start = performance.now();
+        try {
+            await test(app);
+            console.log(`${test.name}: ${((performance.now() - start) / 1000).toFixed(1)} s`);
+        } catch (error) {
+            app.claim(`${test.name} runs`, [error.stack]);
+        }
+    }
+}
