@@ -37,7 +37,10 @@ function skip(what) {
 // What `domelight view` sends too: nothing but the app's own files may be loaded or run.
 const policy = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' blob: data:; " +
                "connect-src 'self' blob:; worker-src 'self'; base-uri 'none'; form-action 'none'";
-const server = await serve({'/app/': path.join(root, 'build/web'), '/work/': work, '/data/': process.env.DOMELIGHT_DATA ?? work},
+// A server without files on its command line: the page asks for its session.
+fs.mkdirSync(path.join(work, 'api'), {recursive: true});
+fs.writeFileSync(path.join(work, 'api/session'), JSON.stringify({scene: null, environment: [], truth: false}));
+const server = await serve({'/app/api/': path.join(work, 'api'), '/app/': path.join(root, 'build/web'), '/work/': work, '/data/': process.env.DOMELIGHT_DATA ?? work},
                            {'Content-Security-Policy': policy});
 const browser = await launch(path.join(root, 'web/node_modules'), chromium);
 

@@ -1,15 +1,16 @@
 // What the page does: opens files, has them filtered, and draws until the picture is done.
 
 import {Baker} from './bake/baker';
-import {sizesDownTo} from './bake/chain';
 import type {Bake, BrdfTable} from './bake/types';
-import {builtIn, fromFile, type LightSource} from './light_source';
+import {Jobs, type JobEvents} from './jobs';
+import {builtIn, fromFile, fromServed, type LightSource} from './light_source';
 import {readPane} from './render/read_back';
 import {Stage} from './render/stage';
 import {builtInModels, type Model} from './scene/built_in';
 import {viewOf} from './scene/framing';
 import {Resolution} from './resolution';
 import {loadModel} from './scene/load_model';
+import {fetchFile, type Session} from './served';
 import {Store, type Mode, type State} from './state';
 
 const isModel = (name: string) => /\.(glb|gltf)$/i.test(name);
@@ -18,14 +19,9 @@ const isEnvironment = (name: string) => /\.(hdr|exr|env|dds|ktx2?|jpe?g)$/i.test
 /// Frames that are averaged until nothing would be seen to change.
 const k_frames = 64;
 const k_noisy_frames = 4096;
-const k_brdf_size = 64;
+const k_brdf_size = 128;
 
-/// Who shows what happens.
-export interface Events {
-    /// Work that is under way, as a phrase; empty when there is none.
-    working: (what: string) => void;
-    /// A sentence on what is wrong with a file.
-    failed: (sentence: string) => void;
+export interface Events extends JobEvents {
     /// A frame was drawn.
     drawn: () => void;
 }
@@ -41,8 +37,7 @@ export class App {
     phongLevels = 0;
     /// Milliseconds of the last environment.
     readonly timings = {open: 0, bake: 0};
-    private readonly jobs = new Set<number>();
-    private jobCount = 0;
+    private readonly jobs: Jobs;
     private needed = {phong: false, rows: 0};
     private source: LightSource;
     private light = 0;
@@ -56,8 +51,11 @@ export class App {
         canvas: HTMLCanvasElement,
         readonly store: Store,
         readonly events: Events,
+        /// What `domelight view` serves; null on a static host.
+        readonly served: Session | null = null,
     ) {
         this.stage = new Stage(canvas);
+        this.jobs = new Jobs(events);
         this.source = builtIn(store.state.environment);
         canvas.addEventListener('webglcontextlost', () => events.working('waiting for the graphics card'));
         canvas.addEventListener('webglcontextrestored', () => {
@@ -73,7 +71,7 @@ export class App {
     }
     /// Whether everything that was asked for has been computed and drawn once.
     get ready(): boolean {
-        return this.jobs.size === 0 && this.bake !== undefined && this.stage.panes[0].count > 0;
+        return this.jobs.idle && this.bake !== undefined && this.stage.panes[0].count > 0;
     }
     get levels(): number {
         return this.bake?.specular.levels.length ?? 0;
@@ -89,7 +87,7 @@ export class App {
     /// Modes that are on the screen, the left one first.
     get shown(): Mode[] {
         const {view, mode, other} = this.state;
-        return view === 'one' || other === 'picture' ? [mode] : [mode, other];
+        return view === 'one' || other === 'picture' || other === 'truth' ? [mode] : [mode, other];
     }
     /// Calls back whenever another model or environment is shown.
     onOpened(listener: () => void): void {
@@ -101,8 +99,14 @@ export class App {
 
     async start(): Promise<void> {
         this.showModel((builtInModels[this.state.model] ?? builtInModels.spheres!)(), this.state.eye.some(v => v !== 0));
-        const table = this.work('computing the BRDF table', async () => this.stage.setBrdf((this.brdf = await this.baker.brdf(k_brdf_size))));
-        await this.relight();
+        const {served} = this, table = this.work('computing the BRDF table', async () => this.stage.setBrdf((this.brdf = await this.baker.brdf(k_brdf_size))));
+        if (served?.environment[0]) this.source = fromServed(served.environment[0]);
+        if (!(await this.relight()) && served?.environment[0]) {
+            this.source = builtIn(this.state.environment);
+            await this.relight();
+        }
+        const {scene} = served ?? {};
+        if (scene) await this.work(`reading ${scene.name}`, async () => this.showModel(await loadModel(scene.name, await (await fetchFile(scene)).arrayBuffer(), new Map(), scene.url.replace(/[^/]*$/, ''))));
         await table;
     }
 
@@ -205,23 +209,11 @@ export class App {
         this.redraw();
     }
 
-    /// Runs work that takes a while. What goes wrong is told, and the page stays as it is. Whether it went well.
+    /// Runs work that takes a while. Whether it went well.
     private async work(what: string, task: () => Promise<void>): Promise<boolean> {
-        const job = ++this.jobCount;
-        this.jobs.add(job);
-        const slow = setTimeout(() => this.events.working(what), 150);
-        try {
-            await task();
-            return true;
-        } catch (error) {
-            this.events.failed((error as Error).message);
-            return false;
-        } finally {
-            clearTimeout(slow);
-            this.jobs.delete(job);
-            if (this.jobs.size === 0) this.events.working('');
-            this.redraw();
-        }
+        const well = await this.jobs.run(what, task);
+        this.redraw();
+        return well;
     }
 
     /// For tests: a pane when it has averaged this many frames, in base64.
@@ -250,5 +242,3 @@ export class App {
         this.redraw();
     }
 }
-
-export const phongLevelCount = (size: number): number => sizesDownTo(size, 8).length;

@@ -2,6 +2,7 @@
 
 import type {Baker} from './bake/baker';
 import type {EnvironmentInfo, Latlong} from './bake/types';
+import {fetchFile, type NamedFile} from './served';
 import {studio, sunset, whiteFurnace} from './scene/environments';
 
 export const builtInEnvironments: Record<string, () => Latlong> = {studio, sunset, furnace: whiteFurnace};
@@ -11,3 +12,4 @@ export type LightSource = (baker: Baker) => Promise<EnvironmentInfo>;
 
 export const builtIn = (name: string): LightSource => baker => baker.use(name, (builtInEnvironments[name] ?? studio)());
 export const fromFile = (file: File): LightSource => async baker => baker.open(file.name, await file.arrayBuffer());
+export const fromServed = (named: NamedFile): LightSource => async baker => fromFile(await fetchFile(named))(baker);

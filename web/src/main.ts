@@ -1,8 +1,8 @@
 // Starts the app.
 
 import {App} from './app';
-import {phongLevel} from './bake/chain';
-import {phongLevelCount} from './app';
+import {phongLevel, sizesDownTo} from './bake/chain';
+import {readSession, type Session} from './served';
 import {Store, writeHash} from './state';
 import {CompareSection} from './ui/compare_section';
 import {button, element} from './ui/controls';
@@ -19,13 +19,14 @@ import {Hover} from './ui/hover';
 import {Status} from './ui/status';
 import {whatIsMissing} from './ui/missing';
 import {bindDrops, chooser} from './ui/files';
+import {TruthSection} from './ui/truth_section';
 
 const store = new Store(location.hash);
 if (innerWidth < 700 && !location.hash.includes('panel')) store.state.panel = false;
 const layout = layOut(store);
 
-function start(): void {
-    const app = new App(layout.canvas, store, {working: layout.work, failed: layout.complain, drawn: () => drawn()});
+function start(served: Session | null): void {
+    const app = new App(layout.canvas, store, {working: layout.work, failed: layout.complain, drawn: () => drawn()}, served);
     const choose = chooser('Environments and models', '.hdr,.exr,.glb,.gltf,.bin,.png,.jpg,.jpeg,.webp', files => void app.openFiles(files));
     const choosePicture = chooser('A picture to compare with', '.hdr,.exr', ([file]) => file && void app.openPicture(file));
     const screenshot = () => {
@@ -36,11 +37,12 @@ function start(): void {
     const help = helpDialog(keys);
     bindKeys(keys);
 
-    const map = new MapSection(app), compare = new CompareSection(app, choosePicture), noise = new NoiseSection(app);
-    const levelOf = (exponent: number) => phongLevel(exponent, phongLevelCount(store.state.size)).toFixed(1);
+    const map = new MapSection(app), compare = new CompareSection(app, choosePicture), noise = new NoiseSection(app), truth = new TruthSection(app);
+    if (served) truth.use(served);
+    const levelOf = (exponent: number) => phongLevel(exponent, sizesDownTo(store.state.size, 8).length).toFixed(1);
     layout.tools.append(button('Open…', choose, 'Open files (O)'), button('Fit', () => app.resetView(), 'Show the whole model (R)'), button('Save', screenshot, 'Save a screenshot (P)'),
                         button('Help', () => help.showModal(), '?'), button('Fold', () => store.set({panel: false}), 'Fold the panel away (H)'));
-    layout.panel.append(sceneSection(app), pictureSection(app), methodSection(app), noise.root, materialSection(app, levelOf), compare.root, map.root, levelsSection(app), exportSection(app));
+    layout.panel.append(sceneSection(app), pictureSection(app), methodSection(app), noise.root, materialSection(app, levelOf), truth.root, compare.root, map.root, levelsSection(app), exportSection(app));
 
     const status = new Status(app, layout.status), hover = new Hover(app, status, map);
     bindPointer(layout.canvas, store, (x, y) => hover.at(x, y));
@@ -88,4 +90,4 @@ function start(): void {
 
 const lack = whatIsMissing();
 if (lack) document.body.append(element('p', {className: 'surface', id: 'unable', role: 'alert'}, lack));
-else start();
+else void readSession().then(start);

@@ -2,8 +2,8 @@
 
 export const modes = ['split-sum', 'stretched', 'phong', 'mirror', 'refract', 'monte-carlo'] as const;
 export type Mode = (typeof modes)[number];
-/// What a mode is compared with: another, or a picture from a file.
-export const others = [...modes, 'picture'] as const;
+/// What a mode is compared with: another, a picture from a file, or one that the program renders.
+export const others = [...modes, 'picture', 'truth'] as const;
 export type Other = (typeof others)[number];
 export const tonemaps = ['none', 'reinhard', 'aces', 'agx', 'neutral'] as const;
 export const lookups = ['environment', 'cube', 'latlong', 'sphere-map', 'dual-paraboloid'] as const;
@@ -49,6 +49,10 @@ export interface State {
     /// Rows of the map that is sampled.
     rows: number;
     lookupSize: number;
+    /// Of the path tracer: samples as a power of two.
+    truthSamples: number;
+    bounces: number;
+    shadows: boolean;
     eye: [number, number, number];
     target: [number, number, number];
     fov: number;
@@ -64,7 +68,7 @@ export const defaults: State = {
     multipleScattering: false, irradiance: 'cube', occlusion: true, bentLookup: false, diffuseWeight: 'energy',
     lookup: 'environment', ior: 1.5, iorOutside: 1, iorOverride: false,
     override: false, color: '#ffffff', metalness: 1, roughness: 0.3, exponentLog2: 6,
-    furnace: false, strategy: 'mis', tables: 'guided', samples: 1, rows: 256, lookupSize: 512,
+    furnace: false, strategy: 'mis', tables: 'guided', samples: 1, rows: 256, lookupSize: 512, truthSamples: 8, bounces: 0, shadows: false,
     eye: [0, 0, 0], target: [0, 0, 0], fov: 35, panel: true, fullResolution: false,
 };
 

@@ -4,6 +4,7 @@ import * as THREE from 'three';
 import type {State} from '../state';
 import {Pass} from './passes';
 import {levelProgram} from './programs';
+import {readBytes} from './read_back';
 import type {Stage} from './stage';
 
 export const shapes = ['ball', 'faces', 'latlong'] as const;
@@ -41,6 +42,6 @@ export class LevelPictures {
         this.pass.run(this.stage.renderer, target);
         canvas.width = width;
         canvas.height = height;
-        canvas.getContext('2d')!.putImageData(new ImageData(new Uint8ClampedArray(this.stage.readBytes(target)), width, height), 0, 0);
+        canvas.getContext('2d')!.putImageData(new ImageData(new Uint8ClampedArray(readBytes(this.stage, target)), width, height), 0, 0);
     }
 }

@@ -1,5 +1,6 @@
 // Pictures back from the graphics card.
 
+import type * as THREE from 'three';
 import type {Stage} from './stage';
 
 /// The mean of a pane's frames: RGB floats, rows from the top.
@@ -21,4 +22,13 @@ export function readPane(stage: Stage, index: number): string {
     const bytes = new Uint8Array(readPixels(stage, index).buffer), parts = [];
     for (let k = 0; k < bytes.length; k += 0x8000) parts.push(String.fromCharCode(...bytes.subarray(k, k + 0x8000)));
     return btoa(parts.join(''));
+}
+
+/// The bytes of a target, RGBA, rows from the top. The target is given back.
+export function readBytes({renderer}: Stage, target: THREE.WebGLRenderTarget): Uint8Array {
+    const {width, height} = target, bottomFirst = new Uint8Array(4 * width * height), bytes = new Uint8Array(bottomFirst.length);
+    renderer.readRenderTargetPixels(target, 0, 0, width, height, bottomFirst);
+    for (let y = 0; y < height; ++y) bytes.set(bottomFirst.subarray(4 * (height - 1 - y) * width, 4 * (height - y) * width), 4 * y * width);
+    target.dispose();
+    return bytes;
 }

@@ -34,13 +34,12 @@ export class Stage {
         u_unproject: uniform(new THREE.Matrix4()),
     };
     private readonly scene = new THREE.Scene();
-    private readonly present: Pass;
+    readonly present: Pass;
     private readonly lookups: LookupMaps;
     private meshes: LitMesh[] = [];
     private model?: THREE.Object3D;
     private picture?: THREE.DataTexture;
     private readonly sky: THREE.Mesh;
-    private readonly pixel = new THREE.WebGLRenderTarget(1, 1, {type: THREE.FloatType});
 
     constructor(canvas: HTMLCanvasElement) {
         this.renderer = new THREE.WebGLRenderer({canvas, antialias: false, depth: false, stencil: false, alpha: false});
@@ -165,7 +164,7 @@ export class Stage {
         return Math.max(1, width - right) / Math.max(1, height - bottom);
     }
     /// Points the camera at a part of the picture, from pixel (x, y) on.
-    private look(x: number, y: number, width: number, height: number): void {
+    look(x: number, y: number, width: number, height: number): void {
         const {width: all, height: high} = this.panes[0], {right, bottom} = this.inset;
         // The field of view belongs to what is free; the picture goes on below the panel.
         this.camera.aspect = this.freeAspect;
@@ -189,7 +188,7 @@ export class Stage {
 
     /// What stands on the right: the second pane, or a picture from a file.
     side(state: State, index: number): THREE.Texture {
-        return index === 1 && state.other === 'picture' && this.picture ? this.picture : this.panes[index]!.target.texture;
+        return index === 1 && (state.other === 'picture' || state.other === 'truth') && this.picture ? this.picture : this.panes[index]!.target.texture;
     }
 
     show(state: State): void {
@@ -206,43 +205,8 @@ export class Stage {
         u.u_exposure!.value = 2 ** state.exposure;
     }
 
-    /// A side as the screen shows it: RGBA bytes, rows from the top.
-    readDisplayed(state: State, index: number): Uint8Array {
-        const {width, height} = this.panes[0], target = new THREE.WebGLRenderTarget(width, height, {depthBuffer: false});
-        const u = this.present.uniforms;
-        Object.assign(u.u_left!, {value: this.side(state, index)});
-        Object.assign(u.u_divider!, {value: 2});
-        Object.assign(u.u_view!, {value: 0});
-        this.setDisplay(u, state);
-        this.present.run(this.renderer, target);
-        return this.readBytes(target);
-    }
-    /// The number of the object in each pixel, rows from the top.
-    readObjects(): Uint16Array {
-        const {width, height} = this.panes[0], target = new THREE.WebGLRenderTarget(width, height);
-        this.look(0, 0, width, height);
-        this.drawFor('identify', target);
-        const bytes = this.readBytes(target);
-        return Uint16Array.from({length: width * height}, (_, k) => bytes[4 * k]! + 256 * bytes[4 * k + 1]!);
-    }
-    /// The bytes of a target, rows from the top. The target is given back.
-    readBytes(target: THREE.WebGLRenderTarget): Uint8Array {
-        const {width, height} = target, bottomFirst = new Uint8Array(4 * width * height), bytes = new Uint8Array(bottomFirst.length);
-        this.renderer.readRenderTargetPixels(target, 0, 0, width, height, bottomFirst);
-        for (let y = 0; y < height; ++y) bytes.set(bottomFirst.subarray(4 * (height - 1 - y) * width, 4 * (height - y) * width), 4 * y * width);
-        target.dispose();
-        return bytes;
-    }
-
-    /// The normal and the roughness at a pixel; null where no surface is.
-    probe(x: number, y: number): {normal: THREE.Vector3; roughness: number} | null {
-        const target = this.pixel, values = new Float32Array(4);
-        this.look(x, y, 1, 1);
-        this.drawFor('probe', target);
-        this.renderer.readRenderTargetPixels(target, 0, 0, 1, 1, values);
-        return values[3]! > 0 ? {normal: new THREE.Vector3().fromArray(values), roughness: values[3]!} : null;
-    }
-    private drawFor(purpose: Purpose, target: THREE.WebGLRenderTarget): void {
+    /// Draws every surface for another purpose than to be seen: without the background, over zeros.
+    drawFor(purpose: Purpose, target: THREE.WebGLRenderTarget): void {
         for (const mesh of this.meshes) mesh.use(purpose);
         this.sky.visible = false;
         this.renderer.setRenderTarget(target);

@@ -4,8 +4,9 @@ import * as THREE from 'three';
 import type {GLTF} from 'three/addons/loaders/GLTFLoader.js';
 import type {Model} from './built_in';
 
-/// Reads a model. `siblings`: files that were dropped with it, by name, which a .gltf refers to. Throws an Error with a sentence.
-export async function loadModel(name: string, bytes: ArrayBuffer, siblings: Map<string, File> = new Map()): Promise<Model> {
+/// Reads a model. `siblings`: files that were dropped with it, by name, which a .gltf refers to.
+/// base: the address of its folder, where it was not dropped. Throws an Error with a sentence.
+export async function loadModel(name: string, bytes: ArrayBuffer, siblings: Map<string, File> = new Map(), base = ''): Promise<Model> {
     const {GLTFLoader} = await import('three/addons/loaders/GLTFLoader.js');
     const {MeshoptDecoder} = await import('three/addons/libs/meshopt_decoder.module.js');
     const manager = new THREE.LoadingManager();
@@ -19,7 +20,7 @@ export async function loadModel(name: string, bytes: ArrayBuffer, siblings: Map<
     const loader = new GLTFLoader(manager).setMeshoptDecoder(MeshoptDecoder);
     let gltf: GLTF;
     try {
-        gltf = await loader.parseAsync(bytes, '');
+        gltf = await loader.parseAsync(bytes, base);
     } catch (error) {
         throw new Error(`${name}: the model cannot be read (${sentence(error)}).`);
     } finally {

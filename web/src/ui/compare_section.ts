@@ -3,6 +3,7 @@
 import type {App} from '../app';
 import {Comparer} from '../compare/comparer';
 import type {Comparison, ObjectError} from '../compare/compare_worker';
+import {Inspector} from '../render/inspector';
 import {others, type State} from '../state';
 import {button, ChoiceControl, element, SelectControl} from './controls';
 import {modeNames, otherNames} from './labels';
@@ -14,6 +15,7 @@ export class CompareSection {
     private readonly summary = note('The right side is what the left is compared with.');
     private readonly rows = element('tbody');
     private readonly table: HTMLElement;
+    private readonly inspector: Inspector;
     private size = [0, 0];
     private done = '';
 
@@ -21,11 +23,12 @@ export class CompareSection {
         private readonly app: App,
         choosePicture: () => void,
     ) {
+        this.inspector = new Inspector(app.stage);
         const {store} = app, head = element('tr', {}, ...['Object', 'RMSE', 'FLIP'].map(text => element('th', {scope: 'col'}, text)));
         this.table = element('div', {className: 'scroll', hidden: true, tabIndex: 0, role: 'region', ariaLabel: 'Errors by object'}, element('table', {}, element('thead', {}, head), this.rows));
         this.root = section('Compare', false,
             new ChoiceControl(store, 'view', 'View', [['one', 'One', ''], ['split', 'Split', 'S'], ['difference', 'Differ', 'D'], ['flip', 'FLIP', 'E']]),
-            new SelectControl(store, 'other', 'Compared with', others.map(name => [name, otherNames[name]] as const)),
+            new SelectControl(store, 'other', 'Compared with', others.filter(name => name !== 'truth' || app.served?.truth).map(name => [name, otherNames[name]] as const)),
             element('div', {className: 'row'}, button('Open a picture…', choosePicture, 'A picture of `domelight render` (.exr, .hdr) of the same size')),
             this.summary, this.table);
         store.listen(() => (this.done = ''));
@@ -41,7 +44,7 @@ export class CompareSection {
         const {width, height} = stage.panes[0];
         this.size = [width, height];
         this.comparer.ask(() => ({
-            width, height, test: stage.readDisplayed(state, 0), reference: stage.readDisplayed(state, 1), objects: stage.readObjects(),
+            width, height, test: this.inspector.displayed(state, 0), reference: this.inspector.displayed(state, 1), objects: this.inspector.objects(),
             map: state.view === 'difference' ? 'difference' : 'flip',
         }));
     }
@@ -56,6 +59,6 @@ export class CompareSection {
     }
 }
 
-const nameOf = (state: State) => (state.other === 'picture' ? 'the picture' : modeNames[state.other]);
+const nameOf = (state: State) => (state.other === 'picture' ? 'the picture' : state.other === 'truth' ? 'the path-traced picture' : modeNames[state.other]);
 const rowOf = (name: string, {rmse, flip}: ObjectError) =>
     element('tr', {}, element('td', {title: name}, name), element('td', {}, rmse.toFixed(2)), element('td', {}, flip.toFixed(4)));

@@ -2,18 +2,22 @@
 
 import * as THREE from 'three';
 import type {App} from '../app';
+import {Inspector} from '../render/inspector';
 import type {MapSection} from './map_section';
 import type {Status} from './status';
 
 export class Hover {
     private place: [number, number] | null = null;
     private reading = false;
+    private readonly inspector: Inspector;
 
     constructor(
         private readonly app: App,
         private readonly status: Status,
         private readonly map: MapSection,
-    ) {}
+    ) {
+        this.inspector = new Inspector(app.stage);
+    }
 
     /// x, y: in CSS pixels.
     at(x: number, y: number): void {
@@ -27,7 +31,7 @@ export class Hover {
     async refresh(): Promise<void> {
         if (!this.place || this.reading || !this.app.ready) return;
         this.reading = true;
-        const [x, y] = this.place, {stage, state} = this.app, split = state.view === 'split' && x / stage.panes[0].width > state.divider && state.other !== 'picture';
+        const [x, y] = this.place, {stage, state} = this.app, split = state.view === 'split' && x / stage.panes[0].width > state.divider && state.other !== 'picture' && state.other !== 'truth';
         const {target, height} = stage.panes[split ? 1 : 0]!, values = new Float32Array(4);
         await stage.renderer.readRenderTargetPixelsAsync(target, x, height - 1 - y, 1, 1, values).catch(() => {});
         this.status.showPixel(x, y, [values[0]!, values[1]!, values[2]!]);
@@ -35,7 +39,7 @@ export class Hover {
     }
 
     private showLobe(): void {
-        const [x, y] = this.place!, {stage} = this.app, found = stage.probe(x, y);
+        const [x, y] = this.place!, {stage} = this.app, found = this.inspector.probe(x, y);
         if (!found) return this.map.setLobe(null);
         const view = new THREE.Vector3(0, 0, 0.5).unproject(stage.camera).sub(stage.camera.position).normalize();  // the probe looked at this pixel alone
         this.map.setLobe({direction: view.reflect(found.normal), roughness: found.roughness});

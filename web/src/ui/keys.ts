@@ -51,7 +51,7 @@ const limit = (v: number, most: number) => Math.round(Math.min(most, Math.max(-m
 /// A becomes B: the other method takes the place of this one. A picture from a file stays on its side.
 function flipSides(store: Store): void {
     const {mode, other} = store.state;
-    if (other === 'picture') store.set({view: 'split', divider: store.state.divider < 0.5 ? 1 : 0});
+    if (other === 'picture' || other === 'truth') store.set({view: 'split', divider: store.state.divider < 0.5 ? 1 : 0});
     else store.set({mode: other, other: mode});
 }
 
@@ -67,7 +67,7 @@ export function bindKeys(table: Key[]): void {
     addEventListener('keydown', event => {
         if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
         const target = event.target as HTMLElement;
-        if (target.closest('dialog') || takes(target, event.key)) return;
+        if (target.closest('dialog[open]') || takes(target, event.key)) return;
         const key = table.find(({keys}) => keys.includes(event.key.toLowerCase()));
         if (!key) return;
         event.preventDefault();

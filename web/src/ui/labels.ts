@@ -5,7 +5,7 @@ import type {Mode, Other, State} from '../state';
 export const modeNames: Record<Mode, string> = {
     'split-sum': 'Split-sum', stretched: 'Stretched', phong: 'Phong', mirror: 'Mirror', refract: 'Refract', 'monte-carlo': 'Monte Carlo',
 };
-export const otherNames: Record<Other, string> = {...modeNames, picture: 'A picture'};
+export const otherNames: Record<Other, string> = {...modeNames, picture: 'A picture', truth: 'Path traced'};
 
 export const modeNotes: Record<Mode, string> = {
     'split-sum': 'Karis 2013: one lookup in the filtered cube times the BRDF table, plus irradiance.',

@@ -101,6 +101,7 @@ export function helpDialog(keys: ReturnType<typeof keyTable>): HTMLDialogElement
                          '(.glb, .gltf with its files) anywhere. Everything is computed in this page: nothing is uploaded.'),
         element('p', {}, 'How it works: ', element('a', {href: 'learn/index.html'}, 'short interactive pages'), ', each with its equation and its code.'),
         list, element('form', {method: 'dialog'}, element('button', {autofocus: true}, 'Close')));
+    dialog.addEventListener('close', () => (document.activeElement as HTMLElement | null)?.blur());
     document.body.append(dialog);
     return dialog;
 }

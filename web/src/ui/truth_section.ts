@@ -1,0 +1,69 @@
+// The picture of the path tracer that serves the page, beside a method: asked for when the camera rests, shown as it converges.
+
+import type {App} from '../app';
+import {askTruth, type Session, type TruthFrame} from '../served';
+import {button, CheckControl, element, RangeControl} from './controls';
+import {note, section} from './panel';
+
+const k_rest_ms = 400;
+
+export class TruthSection {
+    readonly root: HTMLElement;
+    private readonly text = note('Rendered by the program that serves this page, of the files on its command line.');
+    private running: AbortController | null = null;
+    private timer = 0;
+
+    constructor(private readonly app: App) {
+        const {store} = app;
+        this.root = section('Truth', true, this.text,
+            element('div', {className: 'row'}, button('Compare with the truth', () => store.set({other: 'truth', view: store.state.view === 'one' ? 'split' : store.state.view}))),
+            new RangeControl(store, 'truthSamples', 'Samples', {min: 4, max: 12, step: 1, text: v => String(2 ** v)}),
+            new RangeControl(store, 'bounces', 'Bounces', {min: 0, max: 8, step: 1}),
+            new CheckControl(store, 'shadows', 'Shadows', 'Off: as a shader that has none'));
+        this.root.hidden = true;
+        const asked = new Set(['eye', 'target', 'fov', 'turn', 'other', 'view', 'truthSamples', 'bounces', 'shadows', 'panel', 'fullResolution']);
+        store.listen(changed => [...changed].some(key => asked.has(key)) && this.later());
+    }
+
+    use(session: Session): void {
+        this.root.hidden = !session.truth;
+        this.later();
+    }
+
+    /// Asks anew when nothing has changed for a while.
+    private later(): void {
+        clearTimeout(this.timer);
+        this.running?.abort();
+        this.running = null;
+        const {other, view} = this.app.state;
+        if (!this.root.hidden && other === 'truth' && view !== 'one') this.timer = setTimeout(() => void this.ask(), k_rest_ms);
+    }
+
+    private async ask(): Promise<void> {
+        const {state, stage} = this.app, running = (this.running = new AbortController());
+        const {width, height} = stage.panes[0], {right, bottom} = stage.inset;
+        try {
+            await askTruth({
+                position: state.eye, target: state.target, fov_y_deg: state.fov, width: Math.round(width - right), height: Math.round(height - bottom),
+                samples: 2 ** state.truthSamples, bounces: state.bounces, occlusion: state.shadows, rotate_y_deg: state.turn,
+            }, running.signal, frame => this.show(frame));
+        } catch (error) {
+            if (!running.signal.aborted) this.app.events.failed((error as Error).message);
+        }
+    }
+
+    private show({picture, samples, noise}: TruthFrame): void {
+        this.text.textContent = `${samples.toFixed(0)} samples a pixel, noise ${(100 * noise).toPrecision(2)} % (standard error of L / (1 + L)).`;
+        const {width, height} = this.app.stage.panes[0];
+        this.app.stage.setPicture(extended(picture, width, height));
+        this.app.redraw();
+    }
+}
+
+/// The picture in the upper left of one that also covers what is below the panel.
+function extended(picture: TruthFrame['picture'], width: number, height: number): TruthFrame['picture'] {
+    if (picture.width === width && picture.height === height) return picture;
+    const pixels = new Float32Array(3 * width * height), across = Math.min(width, picture.width);
+    for (let y = 0; y < Math.min(height, picture.height); ++y) pixels.set(picture.pixels.subarray(3 * y * picture.width, 3 * (y * picture.width + across)), 3 * y * width);
+    return {width, height, pixels};
+}
