@@ -118,6 +118,24 @@ async function testAxe(page, axe, what, claim) {
     claim(`${what}: axe finds nothing`, violations);
 }
 
+/// A .hdr of an even light of radiance 2, and a file that is none.
+async function testFiles(page, claim) {
+    const width = 64, height = 32, texels = Buffer.alloc(4 * width * height);
+    for (let k = 0; k < texels.length; k += 4) texels.set([128, 128, 128, 130], k);
+    const header = Buffer.from(`#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ${height} +X ${width}\n`);
+    const choose = (name, buffer) => page.setInputFiles('input[type=file]', {name, mimeType: 'image/vnd.radiance', buffer});
+    await choose('even.hdr', Buffer.concat([header, texels]));
+    await page.waitForFunction(() => lesson.light.name === 'even.hdr' && lesson.ready, undefined, {timeout: 30_000});
+    const {exact} = await numbers(page);
+    claim('learn: a file of the user\'s lights the page', near('E', exact, 2 * Math.PI, 1e-3));
+    await choose('broken.hdr', Buffer.from('this is not a picture'));
+    await page.waitForSelector('#notes p');
+    const {light, sentence} = await page.evaluate(() => ({light: lesson.light.name, sentence: document.querySelector('#notes p').textContent}));
+    claim('learn: a broken file gives a sentence, and the light stays', light === 'even.hdr' && sentence.startsWith('broken.hdr') ? [] : [`${light}: ${sentence}`]);
+    await page.getByRole('combobox', {name: 'Environment'}).selectOption('studio');
+    await page.waitForFunction(() => lesson.light.name === 'studio' && lesson.ready, undefined, {timeout: 30_000});
+}
+
 export async function testLearn({root, server, browser, claim, watch}) {
     const axe = fs.readFileSync(path.join(root, 'web/node_modules/axe-core/axe.min.js'), 'utf8');
     const open = async (name, options = {}) => {
@@ -139,6 +157,7 @@ export async function testLearn({root, server, browser, claim, watch}) {
         claim(`${name}: "${label}" changes the number of the page`, Number.isFinite(after[number]) && after[number] !== before[number] ? [] : [`${number} was ${before[number]} and is ${after[number]}`]);
         await testAxe(page, axe, name, claim);
         await check(page, claim);
+        if (name === 'irradiance') await testFiles(page, claim);
         await page.setViewportSize({width: 390, height: 844});
         const beyond = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
         claim(`${name}: it fits a phone`, beyond > 0 ? [`${beyond} pixels stand out to the right`] : []);

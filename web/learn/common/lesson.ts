@@ -10,6 +10,10 @@ import {lessons} from './lessons';
 import {k_rows, Light} from './light';
 import {Painter} from './painter';
 
+const computed = [...environmentNames, ['furnace', 'Radiance 1 from everywhere']] as const;
+/// Stands for a file of the user's, which no address can name.
+const k_file = 'file';
+
 /// The values of a page. They are its address too.
 export interface Choices {
     environment: string;
@@ -31,11 +35,12 @@ export class Lesson<T extends Choices> {
     private failed = false;
 
     constructor(name: string, usual: T, words: Words<T> = {}) {
-        this.values = new Values({...usual, ...readHash(location.hash, usual, words)}, usual);
+        this.values = new Values({...usual, ...readHash(location.hash, usual, {environment: computed.map(([name]) => name), ...words})}, usual);
         this.layOut(name);
         this.values.listen(changed => {
-            history.replaceState(null, '', writeHash(this.values.state, usual) || location.pathname);
-            if (changed.has('environment')) void this.open(builtIn(this.values.state.environment));
+            const hash = writeHash({...this.state, environment: this.state.environment === k_file ? usual.environment : this.state.environment}, usual);
+            history.replaceState(null, '', hash || location.pathname);
+            if (changed.has('environment') && this.state.environment !== k_file) void this.open(builtIn(this.values.state.environment));
             else this.draw();
         });
         addEventListener('hashchange', () => location.reload());
@@ -74,8 +79,17 @@ export class Lesson<T extends Choices> {
     }
     private readonly turns = new Map<string, number>();
 
-    async open(source: LightSource): Promise<void> {
-        await this.busy(async () => {
+    /// Opens a file of the user's. If it cannot be read, the light stays as it is.
+    private async openFile(file: File): Promise<void> {
+        if (!(await this.open(fromFile(file)))) return;
+        this.select.fill([...computed, [k_file, this.light.name]]);
+        this.values.state.environment = k_file as T['environment'];
+        this.select.querySelector('select')!.value = k_file;
+    }
+
+    /// Whether that went well.
+    open(source: LightSource): Promise<boolean> {
+        return this.busy(async () => {
             await this.light.open(source);
             for (const load of this.loaders) await load();
             const {name, readHeight} = this.light;
@@ -84,15 +98,18 @@ export class Lesson<T extends Choices> {
         });
     }
 
-    private async busy(work: () => Promise<void>): Promise<void> {
+    private async busy(work: () => Promise<void>): Promise<boolean> {
         ++this.pending;
+        let well = true;
         try {
             await work();
         } catch (error) {
             this.complain((error as Error).message);
+            well = false;
         }
         --this.pending;
         if (this.drawn) this.drawNow();
+        return well;
     }
     private complain(sentence: string): void {
         const note = element('div', {className: 'surface'}, element('p', {}, sentence), button('Close', () => note.remove()));
@@ -115,14 +132,14 @@ export class Lesson<T extends Choices> {
         const main = document.querySelector('main')!;
         const pages = element('nav', {ariaLabel: 'Pages that teach'}, element('a', {href: '../../index.html'}, 'Domelight'), element('a', {href: '../index.html'}, 'All pages'));
         document.body.prepend(element('header', {}, pages));
-        const choose = chooser('Your environment', '.hdr,.exr', ([file]) => file && void this.open(fromFile(file)));
-        this.select = new SelectControl(this.values as never, 'environment', 'Environment', [...environmentNames, ['furnace', 'Radiance 1 from everywhere']]) as never;
+        const choose = chooser('Your environment', '.hdr,.exr', ([file]) => file && void this.openFile(file));
+        this.select = new SelectControl(this.values as never, 'environment', 'Environment', computed) as never;
         const open = button('Open a file…', choose, 'A lat-long map, .hdr or .exr. It stays on this machine.');
         main.querySelector('.lead')!.after(element('section', {id: 'light', ariaLabel: 'Environment'}, this.select, open, this.note));
         const neighbour = (k: number, word: string) => (lessons[k] ? [element('a', {href: `../${lessons[k].name}/index.html`}, `${word}: ${lessons[k].title}`)] : []);
         main.after(element('footer', {}, element('nav', {ariaLabel: 'Neighbouring pages'}, ...neighbour(at - 1, 'Before'), ...neighbour(at + 1, 'Next'))));
         const drop = element('div', {id: 'drop', hidden: true}, element('p', {}, 'Drop an environment anywhere'));
-        bindDrops(drop, files => void this.open(fromFile(files[0]!)));
+        bindDrops(drop, files => void this.openFile(files[0]!));
         document.body.append(this.alert, drop);
         const lack = whatIsMissing();
         if (lack) this.complain(lack);
