@@ -1,4 +1,4 @@
-// The adapter of Babylon.js in headless Chromium: each engine's picture with the adapter's texture, and with the file of the program,
+// The adapters of Babylon.js and PlayCanvas in headless Chromium: each engine's picture with the adapter's texture, and with the file of the program,
 // whose picture tests/engines/ compares with our own renderer's.
 import assert from 'node:assert/strict';
 import {execFileSync, spawnSync} from 'node:child_process';
@@ -67,10 +67,10 @@ function agree(context, name, a, b, most) {
 
 /// The file of the program, at an exposure at which the balls are neither black nor white.
 const exposure = -1;
-function bakedFile(engine, extension) {
-    const folder = path.join(work, engine);
-    execFileSync(program, ['bake', path.join(work, 'noon_grass.hdr'), '-o', folder, '--for', engine, '--exposure', String(exposure), '--quiet', '--no-preview']);
-    return `/files/${engine}/${fs.readdirSync(folder).find(name => name.endsWith(extension))}`;
+function bakedFile(engine, extension, ...more) {
+    const folder = path.join(work, [engine, ...more].join('-'));
+    execFileSync(program, ['bake', path.join(work, 'noon_grass.hdr'), '-o', folder, '--for', engine, '--exposure', String(exposure), '--quiet', '--no-preview', ...more]);
+    return `/files/${path.basename(folder)}/${fs.readdirSync(folder).find(name => name.endsWith(extension))}`;
 }
 const source = '/files/noon_grass.hdr', options = {file: {exposure}};
 
@@ -81,5 +81,15 @@ test('Babylon.js draws with the texture as with the file of the program', {skip:
         agree(context, `${hand}, of a file`, await picture(page, {source, options, rightHanded}), file, 2);
         agree(context, `${hand}, of a cube texture`, await picture(page, {source, options, rightHanded, again: true}), file, 2);
     }
+    await page.close();
+});
+
+test('PlayCanvas draws with the texture as with the file of the program', {skip: without('playcanvas')}, async context => {
+    const page = await open('playcanvas');
+    agree(context, 'of a file', await picture(page, {source, options}), await picture(page, {atlas: bakedFile('playcanvas', '.png')}), 2);
+    // A picture has its middle at +Z there.
+    execFileSync(program, ['convert', path.join(work, 'noon_grass.hdr'), '--exposure', String(exposure), '-o', path.join(work, 'dim.hdr'), '--quiet']);
+    const theirs = await picture(page, {atlas: bakedFile('playcanvas', '.png', '--latlong', 'usd')});
+    agree(context, 'of a lat-long texture', await picture(page, {source: '/files/dim.hdr', loads: true}), theirs, 2);
     await page.close();
 });

@@ -21,13 +21,25 @@ const loaded = asset => new Promise((resolve, reject) => {
     app.assets.load(asset);
 });
 
-export async function load({atlas: url}) {
+/// Of a file that is an atlas, or of a source by the npm package's adapter, which is given the file, or the texture that PlayCanvas loads of it.
+export async function load({atlas: url, source, loads, options}) {
+    if (source) return bake(source, loads, options);
     // docs/engines/playcanvas.md
     const atlas = new pc.Asset('light', 'texture', {url}, {type: pc.TEXTURETYPE_RGBP, mipmaps: false});
     await loaded(atlas);
     atlas.resource.addressU = atlas.resource.addressV = pc.ADDRESS_CLAMP_TO_EDGE;
     app.scene.envAtlas = atlas.resource;
     // end
+}
+
+async function bake(source, loads, options) {
+    const {bakeEnvironment} = await import('/npm/domelight/playcanvas.js');
+    if (loads) {
+        const asset = new pc.Asset('picture', 'texture', {url: source});
+        await loaded(asset);
+        source = asset.resource;
+    }
+    app.scene.envAtlas = await bakeEnvironment(app.scene, source, {pc, ...options});
 }
 
 const models = new Map();
