@@ -13,9 +13,9 @@ export interface Session {
     truth: boolean;
 }
 
-/// The session of the program that serves the page, or null. The program listens on 127.0.0.1 only, so that no other host is asked.
+/// The session of the program that serves the page, or null. The program listens on this machine only, so that no other host is asked.
 export async function readSession(): Promise<Session | null> {
-    if (location.hostname !== '127.0.0.1') return null;
+    if (!['127.0.0.1', 'localhost'].includes(location.hostname)) return null;
     try {
         const answer = await fetch('./api/session');
         return answer.ok ? ((await answer.json()) as Session) : null;
@@ -56,7 +56,7 @@ export async function askTruth(request: TruthRequest, signal: AbortSignal, show:
         const head = await reader.read(16);
         if (!head) return;
         const view = new DataView(head.buffer), width = view.getUint32(0, true), height = view.getUint32(4, true);
-        if (width === 0) throw new Error(`The path tracer stopped: ${new TextDecoder().decode((await reader.read(view.getFloat32(8, true))) ?? undefined)}.`);
+        if (width === 0) throw new Error(`The path tracer stopped: ${new TextDecoder().decode((await reader.read(view.getUint32(8, true))) ?? undefined)}.`);
         const bytes = await reader.read(12 * width * height);
         if (!bytes) return;
         show({picture: {width, height, pixels: new Float32Array(bytes.buffer)}, samples: view.getFloat32(8, true), noise: view.getFloat32(12, true)});

@@ -46,15 +46,15 @@ export class TruthSection {
             await askTruth({
                 position: state.eye, target: state.target, fov_y_deg: state.fov, width: Math.round(width - right), height: Math.round(height - bottom),
                 samples: 2 ** state.truthSamples, bounces: state.bounces, occlusion: state.shadows, rotate_y_deg: state.turn,
-            }, running.signal, frame => this.show(frame));
+            }, running.signal, frame => this.show(frame, width, height));
         } catch (error) {
             if (!running.signal.aborted) this.app.events.failed((error as Error).message);
         }
     }
 
-    private show({picture, samples, noise}: TruthFrame): void {
+    /// width, height: of the pane when the picture was asked for. Its resolution may have changed since.
+    private show({picture, samples, noise}: TruthFrame, width: number, height: number): void {
         this.text.textContent = `${samples.toFixed(0)} samples a pixel, noise ${(100 * noise).toPrecision(2)} % (standard error of L / (1 + L)).`;
-        const {width, height} = this.app.stage.panes[0];
         this.app.stage.setPicture(extended(picture, width, height));
         this.app.redraw();
     }
