@@ -153,7 +153,7 @@ fi
 claim "bash accepts the completion" bash_reads_it
 claim "and completes commands, options and values" bash_completes
 
-sed -i 's/domelight 0.2 REQUIRED/domelight 99 REQUIRED/' "$work/project/CMakeLists.txt"
+sed -i 's/domelight [0-9.]* REQUIRED/domelight 99 REQUIRED/' "$work/project/CMakeLists.txt"
 claim "an unknown component is refused, and those that exist are listed" refuses_unknown_component
 claim "another version is refused" refuses_another_version
 
