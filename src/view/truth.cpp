@@ -122,13 +122,12 @@ Result<std::shared_ptr<const Truth::Loaded>> Truth::loaded() {
     return loaded_;
 }
 
-Result<void> Truth::render(std::string_view text, const Receive& receive) {
+Result<void> Truth::render(std::uint64_t number, std::string_view text, const Receive& receive) {
     auto request = parse(text);
     if (!request) return request.error();
-    const std::uint64_t mine = ++newest_;
     const std::lock_guard lock(rendering_);
     bool wanted = true;
-    const auto goes_on = [&] { return wanted && newest_ == mine && !stopped_; };
+    const auto goes_on = [&] { return wanted && newest_ == number && !stopped_; };
     if (!goes_on()) return Error{"cancelled", "", ""};
     const auto files = loaded();
     if (!files) return files.error();

@@ -31,9 +31,15 @@ class Truth {
     /// Called with each frame, from one thread; returns false to end the render.
     using Receive = std::function<bool(const Frame&)>;
 
-    /// The request: docs/view.md. Errors: broken JSON; a member that is missing or out of its range, which the error
-    /// names; those of loading the files; "cancelled".
-    Result<void> render(std::string_view request, const Receive& receive);
+    /// The number of a picture that is asked for now: it is the last one from here on. Rendering may begin later, and
+    /// not in the order in which the pictures were asked for.
+    std::uint64_t take_number() { return ++newest_; }
+    /// number   of this picture, from take_number()
+    /// request  docs/view.md
+    ///
+    /// Errors: broken JSON; a member that is missing or out of its range, which the error names; those of loading the
+    /// files; "cancelled".
+    Result<void> render(std::uint64_t number, std::string_view request, const Receive& receive);
     /// Ends the render under way, and all later ones at their start.
     void stop();
 

@@ -159,7 +159,7 @@ void ViewServer::Impl::answer_truth(const httplib::Request& request, httplib::Re
         return response.set_content("There is no scene or no environment on the command line.", "text/plain");
     }
     response.set_chunked_content_provider(
-        "application/octet-stream", [this, text = request.body](std::size_t, httplib::DataSink& sink) {
+        "application/octet-stream", [this, number = truth->take_number(), text = request.body](std::size_t, httplib::DataSink& sink) {
             // In pieces, so that a browser that has stopped reading is noticed within the time limit of one.
             const auto send = [&](const std::string& bytes) {
                 for (std::size_t at = 0; at < bytes.size(); at += k_piece)
@@ -168,7 +168,7 @@ void ViewServer::Impl::answer_truth(const httplib::Request& request, httplib::Re
                 return true;
             };
             const auto done =
-                truth->render(text, [&](const Truth::Frame& frame) { return send(frame_bytes(frame)); });
+                truth->render(number, text, [&](const Truth::Frame& frame) { return send(frame_bytes(frame)); });
             if (!done && !send(error_bytes(done.error()))) return false;
             sink.done();
             return true;
