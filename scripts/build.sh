@@ -122,11 +122,19 @@ without_command() {
     done
 }
 
+# need_commands PACKAGE...: installs those whose command is not there. Fails where they are not to be had.
+need_commands() {
+    local wanted
+    mapfile -t wanted < <(without_command "$@")
+    [ ${#wanted[@]} -gt 0 ] || return 0
+    say "installing the missing Debian packages: ${wanted[*]}"
+    apt_install "${wanted[@]}"
+}
+
 # build_app: brings the WebAssembly module and the browser app (build/web) up to date.
 build_app() {
-    local tools
-    mapfile -t tools < <(without_command nodejs npm)
-    need_packages wasm "${wasm_packages[@]}" "${tools[@]}"
+    need_commands nodejs npm || die "could not install Node.js and npm"
+    need_packages wasm "${wasm_packages[@]}"
     build_preset wasm
     DOMELIGHT_WASM=$root/build/wasm/domelight.wasm "$root/web/build.sh" || build_failed "$root/build/web.log" "building the browser app"
 }

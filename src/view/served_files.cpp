@@ -1,13 +1,13 @@
 #include "view/served_files.h"
 
+#include "domelight/io/file/file_extension.h"
+
 #include "io/file/json.h"
 #include "scene/gltf/gltf_uri.h"
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
 
 namespace domelight {
@@ -40,12 +40,6 @@ constexpr std::array<std::pair<const char*, const char*>, 22> k_media_types{{
     {".hdr", "image/vnd.radiance"},
 }};
 
-std::string lower_ending(const fs::path& file) {
-    std::string ending = file.extension().string();
-    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return ending;
-}
-
 Result<void> check_readable(const fs::path& file) {
     std::error_code code;
     if (fs::is_regular_file(file, code)) return {};
@@ -67,7 +61,7 @@ std::vector<std::string> uris_of(const Json& gltf) {
 }  // namespace
 
 std::string media_type(const fs::path& file) {
-    const std::string ending = lower_ending(file);
+    const std::string ending = lower_case_extension(file);
     for (const auto& [known, type] : k_media_types)
         if (ending == known) return type;
     return "application/octet-stream";
@@ -91,7 +85,7 @@ Result<void> ServedFiles::add_app(const fs::path& folder) {
 }
 
 Result<std::string> ServedFiles::add_scene(const fs::path& scene) {
-    const std::string ending = lower_ending(scene);
+    const std::string ending = lower_case_extension(scene);
     if (ending != ".glb" && ending != ".gltf")
         return Error{"the page reads .glb and .gltf", scene.string(), "Export the scene as glTF."};
     if (auto ok = check_readable(scene); !ok) return ok.error();

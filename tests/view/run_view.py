@@ -77,6 +77,15 @@ def truth(port, **changed):
     return body
 
 
+def ask_for_a_long_picture(port):
+    """A connection on which the answer to such a request has begun."""
+    connection = socket.create_connection(("127.0.0.1", port))
+    body = json.dumps({**VIEW, "width": 1024, "height": 1024, "samples": 65536})
+    connection.sendall(f"POST /api/truth HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n{body}".encode())
+    assert connection.recv(100)
+    return connection
+
+
 def frames(body):
     """[(width, height, samples, noise, pixels)] of a stream, and the text of the error at its end, or None."""
     found, at = [], 0
@@ -197,10 +206,7 @@ def test_a_wrong_request_for_a_picture_is_one_sentence(folder):
 
 def test_a_new_picture_ends_the_one_before(folder):
     with serving(folder, "tri angle.gltf", "sky.hdr") as port:
-        first = socket.create_connection(("127.0.0.1", port))
-        body = json.dumps({**VIEW, "width": 1024, "height": 1024, "samples": 65536})
-        first.sendall(f"POST /api/truth HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n{body}".encode())
-        assert first.recv(100)
+        first = ask_for_a_long_picture(port)
         start = time.monotonic()
         found, error = frames(truth(port, samples=4))
         assert error is None and found[-1][2] == 4 and time.monotonic() - start < 30
@@ -215,10 +221,7 @@ def test_a_new_picture_ends_the_one_before(folder):
 
 def test_ctrl_c_ends_it_while_a_picture_is_rendered(folder):
     with serving(folder, "tri angle.gltf", "sky.hdr") as port:
-        other = socket.create_connection(("127.0.0.1", port))
-        body = json.dumps({**VIEW, "width": 1024, "height": 1024, "samples": 65536})
-        other.sendall(f"POST /api/truth HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n{body}".encode())
-        assert other.recv(100)
+        other = ask_for_a_long_picture(port)
     other.close()
 
 

@@ -11,8 +11,8 @@ skip() {
     exit 0
 }
 
+need_commands nodejs npm || skip "no Node.js to be had"
 mapfile -t missing < <(missing_packages "${wasm_packages[@]}")
-for package in nodejs npm; do command -v "${command_of[$package]:-$package}" >/dev/null || missing+=("$package"); done
 [ ${#missing[@]} -eq 0 ] || apt_install "${missing[@]}" || skip "no ${missing[*]} to be had"
 build_preset wasm
 

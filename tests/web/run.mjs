@@ -10,6 +10,7 @@ import {testFrames} from './frames.mjs';
 import {testInterface} from './interface.mjs';
 import {testLearn} from './learn.mjs';
 import {testMonteCarlo} from './monte_carlo.mjs';
+import {Claims} from '../engines/browser/claims.mjs';
 
 const [program, chromium, ...options] = process.argv.slice(2);
 const all = options.includes('--all'), names = options.filter(name => name !== '--all');
@@ -17,22 +18,7 @@ const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..')
 const work = path.join(root, 'build/web-test');
 fs.mkdirSync(work, {recursive: true});
 
-let passed = 0, failed = 0, skipped = 0;
-
-/// Counts a claim. `wrong` lists what contradicts it; `measured` is printed if the claim holds.
-function claim(what, wrong, measured = '') {
-    if (wrong.length) {
-        ++failed;
-        console.log(`FAILED: ${what}: ${wrong.join('; ')}`);
-    } else {
-        ++passed;
-        console.log(`passed: ${what}${measured ? ` (${measured})` : ''}`);
-    }
-}
-function skip(what) {
-    ++skipped;
-    console.log(`skipped: ${what}`);
-}
+const claims = new Claims(), {claim, skip} = claims;
 
 // What `domelight view` sends too: nothing but the app's own files may be loaded or run.
 const policy = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' blob: data:; " +
@@ -73,5 +59,5 @@ for (const [name, test] of Object.entries(tests)) {
 }
 await browser.close();
 server.close();
-console.log(`web: ${passed} passed, ${failed} failed, ${skipped} skipped`);
-process.exit(failed ? 1 : 0);
+console.log(`web: ${claims.passed} passed, ${claims.failed} failed, ${claims.skipped} skipped`);
+process.exit(claims.failed ? 1 : 0);

@@ -15,11 +15,7 @@ skip() {
     exit 0
 }
 
-mapfile -t wanted < <(without_command "${web_packages[@]}")
-if [${#wanted[@]} -gt 0 ]; then
-    say "installing the missing Debian packages: ${wanted[*]}"
-    apt_install "${wanted[@]}" || skip "no ${wanted[*]} to be had"
-fi
+need_commands "${web_packages[@]}" || skip "no ${web_packages[*]} to be had"
 
 export DOMELIGHT_WASM=${DOMELIGHT_WASM:-$root/build/wasm/domelight.wasm}
 [ -f "$DOMELIGHT_WASM" ] || skip "the WebAssembly module has not been built ($DOMELIGHT_WASM)"

@@ -12,28 +12,13 @@ import {entries} from './engines.mjs';
 import {testFormats} from './formats.mjs';
 import {readHdr, writeConstantHdr, writePng} from './files.mjs';
 import {albedoOf, axes, ballErrors, ballMeans, drawMetals, filteredLight, findLabels, likeness} from './measure.mjs';
+import {Claims} from './claims.mjs';
 
 const [program, chromium, modules, work, ...options] = process.argv.slice(2);
 const option = name => (options.includes(name) ? options[options.indexOf(name) + 1] : undefined);
 const here = path.dirname(fileURLToPath(import.meta.url));
 
-let passed = 0, failed = 0, skipped = 0;
-
-/// Counts a claim. `wrong` lists what contradicts it; `measured` is printed if the claim holds.
-function claim(what, wrong, measured = '') {
-    if (wrong.length) {
-        ++failed;
-        console.log(`FAILED: ${what}: ${wrong.join('; ')}`);
-    } else {
-        ++passed;
-        console.log(`passed: ${what}${measured ? ` (${measured})` : ''}`);
-    }
-}
-
-function skip(what) {
-    ++skipped;
-    console.log(`skipped: ${what}`);
-}
+const claims = new Claims(), {claim, skip} = claims;
 
 const domelight = (...args) => execFileSync(program, args.map(String), {stdio: ['ignore', 'pipe', 'pipe'], encoding: 'utf8'});
 const filesIn = folder => fs.readdirSync(folder, {recursive: true}).filter(name => fs.statSync(path.join(folder, name)).isFile());
@@ -315,5 +300,5 @@ try {
     await browser.close();
     server.close();
 }
-console.log(`engines: ${passed} passed, ${failed} failed, ${skipped} skipped`);
-process.exit(failed ? 1 : 0);
+console.log(`engines: ${claims.passed} passed, ${claims.failed} failed, ${claims.skipped} skipped`);
+process.exit(claims.failed ? 1 : 0);

@@ -19,14 +19,7 @@ folder=$root/build/engines
 mkdir -p "$folder"
 
 # What the browser and Node lack, wherever Node was installed from.
-wanted=()
-for package in "${engine_packages[@]}"; do
-    command -v "${command_of[$package]:-$package}" >/dev/null || wanted+=("$package")
-done
-if [ ${#wanted[@]} -gt 0 ]; then
-    say "installing the missing Debian packages: ${wanted[*]}"
-    apt_install "${wanted[@]}" || skip "no ${wanted[*]} to be had"
-fi
+need_commands "${engine_packages[@]}" || skip "no ${engine_packages[*]} to be had"
 
 # Installs the engines of the lock file, and again only if that file changes.
 if ! cmp -s "$here/package-lock.json" "$folder/installed.json"; then
