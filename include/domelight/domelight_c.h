@@ -420,7 +420,7 @@ typedef struct domelight_convert_options {
     const char* to;              /* projection and convention: "latlong" (default), "latlong/usd", "cube", "angular", ... */
     domelight_progress progress; /* may be NULL */
     void* progress_data;
-    int32_t height;              /* of a face or of the picture; 0 (default): as fine as the environment */
+    int32_t height;              /* of a face or of the picture, to 32768; 0 (default): as fine as the environment */
     int32_t sharp;               /* 1: keeps more detail in a conversion there and back, and takes longer */
     int32_t threads;
 } domelight_convert_options;

@@ -17,6 +17,7 @@ namespace {
 constexpr domelight_convert_options k_options{};
 /// Bytes of the largest picture that is made.
 constexpr std::int64_t k_most_bytes = std::int64_t(4) << 30;
+constexpr int k_most_height = 32768;
 
 struct ConvertRequest {
     Projection target;
@@ -28,7 +29,8 @@ Result<ConvertRequest> read_options(const domelight_convert_options* options, co
     if (!given) return given.error();
     const auto target = projection_from_name(c::text_or(given->to, "latlong"));
     if (!target) return target.error().at(field_place("to"));
-    if (given->height < 0) return Error{text(given->height, " is not 0 or more"), field_place("height"), ""};
+    if (given->height < 0 || given->height > k_most_height)
+        return Error{text(given->height, " is not from 0 to ", k_most_height), field_place("height"), ""};
     if (auto ok = c::check_threads(given->threads); !ok) return ok.error();
     ConvertOptions read;
     read.height = given->height ? given->height : matched_height(environment, *target);
