@@ -63,11 +63,6 @@ FilterOptions filter_options(const EnginePlan& plan, const Keywords& words) {
     return options;
 }
 
-/// (count, 3): the light in single directions.
-nb::object array_of_directions(FilteredMap map) {
-    return numpy_of(ImageF(std::move(map.image)), {std::size_t(map.image.width()), 3});
-}
-
 FilterResult filter(const Environment& environment, FilterOptions options, const nb::object& progress) {
     return run_work_for(progress, [&](const Progress& report) {
         options.progress = report;
@@ -85,7 +80,7 @@ nb::dict run_prefilter(const Environment& environment, const nb::dict& dictionar
     nb::list maps, roughness, exponents, mirror;
     for (std::size_t l = 0; l < plan.specular.size(); ++l) {
         FilteredMap& map = result.specular[l];
-        maps.append(directed ? array_of_directions(std::move(map)) : array_of(std::move(map)));
+        maps.append(array_of(std::move(map), directed));
         roughness.append(plan.specular[l].roughness);
         exponents.append(plan.specular[l].exponent);
         mirror.append(plan.specular[l].spec.mirror);
@@ -125,7 +120,7 @@ nb::object run_irradiance(const Environment& environment, const nb::dict& dictio
     FilteredMap& map = result.irradiance_over_pi;
     if (!over_pi)
         for (float& value : map.pixels()) value = float(value * k_pi);
-    return directed ? array_of_directions(std::move(map)) : array_of(std::move(map));
+    return array_of(std::move(map), directed);
 }
 
 /// Rows of three as (count, 3) of float64.

@@ -46,7 +46,7 @@ void Keywords::read(const char* name, int& field) const {
     if (!number) wrong_type(name, value, "a whole number");
     constexpr long long most = std::numeric_limits<int>::max();
     if (*number > most || *number < -most)
-        throw Failure({nb::str(value).c_str() + std::string(" is too large"), place(name), ""});
+        throw Failure({nb::str(value).c_str() + std::string(" is too large"), field_place(name), ""});
     field = int(*number);
 }
 
@@ -55,7 +55,7 @@ void Keywords::read(const char* name, std::uint64_t& field) const {
     if (value.is_none()) return;
     const auto number = whole_number(value);
     if (!number) wrong_type(name, value, "a whole number");
-    if (*number < 0) throw Failure({nb::str(value).c_str() + std::string(" is negative"), place(name), ""});
+    if (*number < 0) throw Failure({nb::str(value).c_str() + std::string(" is negative"), field_place(name), ""});
     field = std::uint64_t(*number);
 }
 
@@ -121,7 +121,7 @@ void Keywords::read(const char* name, Mat3& field) const {
             numbers.push_back(*as_number);
         }
     if (numbers.size() != 9)
-        throw Failure({std::to_string(numbers.size()) + " numbers, expected a 3 x 3 matrix", place(name), ""});
+        throw Failure({std::to_string(numbers.size()) + " numbers, expected a 3 x 3 matrix", field_place(name), ""});
     for (std::size_t r = 0; r < 3; ++r) field.row[r] = {numbers[3 * r], numbers[3 * r + 1], numbers[3 * r + 2]};
 }
 

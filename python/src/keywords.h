@@ -4,6 +4,7 @@
 #include "domelight/base/names.h"
 #include "domelight/base/vec.h"
 
+#include "base/field_place.h"
 #include "errors.h"
 
 
@@ -44,7 +45,7 @@ class Keywords {
         if (!has(name)) return;
         read(name, word);
         auto value = from_name<E>(word);
-        if (!value) throw Failure(value.error().at(place(name)));
+        if (!value) throw Failure(value.error().at(field_place(name)));
         field = *value;
     }
     template <typename T>
@@ -55,8 +56,6 @@ class Keywords {
         field = std::move(value);
     }
 
-    /// A keyword as the library's errors name a field.
-    static std::string place(const char* name) { return std::string("`") + name + "`"; }
     /// Raises domelight.WrongType: "size: 'large' is a str, expected a whole number".
     [[noreturn]] static void wrong_type(const char* name, nb::handle value, const char* expected);
 

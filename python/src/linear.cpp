@@ -76,12 +76,6 @@ FilterResult filter_signed(ImageF image, const FilterOptions& options) {
     return result;
 }
 
-nb::object array_of_map(FilteredMap map, bool directed) {
-    if (!directed) return array_of(std::move(map));
-    const std::size_t count = std::size_t(map.image.width());
-    return numpy_of(std::move(map.image), {count, 3});
-}
-
 /// Lists of arrays: the levels; E / pi; the harmonics.
 nb::tuple run_filter(nb::handle array, const nb::dict& dictionary) {
     const FilterOptions options = linear_options(Keywords(dictionary));
@@ -91,12 +85,12 @@ nb::tuple run_filter(nb::handle array, const nb::dict& dictionary) {
         run_work_for(nb::none(), [&](const Progress&) { return filter_signed(std::move(image), options); });
     const bool directed = !options.directions.empty();
     nb::list specular, sh;
-    for (FilteredMap& map : result.specular) specular.append(array_of_map(std::move(map), directed));
+    for (FilteredMap& map : result.specular) specular.append(array_of(std::move(map), directed));
     for (const Vec3d& v : result.sh) sh.append(tuple_of(v));
     return nb::make_tuple(specular,
                           result.irradiance_over_pi.empty()
                               ? nb::none()
-                              : array_of_map(std::move(result.irradiance_over_pi), directed),
+                              : array_of(std::move(result.irradiance_over_pi), directed),
                           sh);
 }
 

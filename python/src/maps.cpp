@@ -8,8 +8,12 @@
 
 namespace domelight::python {
 
-nb::object array_of(FilteredMap map) {
+nb::object array_of(FilteredMap map, bool directed) {
     const std::size_t height = std::size_t(map.height()), width = std::size_t(map.width());
+    if (directed) {
+        const std::size_t count = std::size_t(map.image.width());
+        return numpy_of(std::move(map.image), {count, 3});
+    }
     if (map.layout == Layout::cube) return numpy_of(std::move(map.image), {6, height, width, 3});
     return numpy_of(std::move(map.image), {height, width, 3});
 }
