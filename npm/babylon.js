@@ -19,10 +19,10 @@ export async function bakeEnvironment(scene, source, {file, BABYLON = globalThis
     const {size = 256} = options;
     if (!(Number.isInteger(Math.log2(size)) && size >= 1)) throw new DomelightError(`${size} is not a power of two`, 'size');
     const own = !(source instanceof Environment);
-    const environment = own ? await open(scene, source, file) : source;
+    const environment = own ? await open(scene, source, {signal: options.signal, ...file}) : source;
     try {
         // Babylon's graphics processor wants every level down to 1².
-        const fixed = {engine: 'babylon', encoding: 'rgba16f', levels: Math.log2(size) + 1, shBands: 3};
+        const fixed = {engine: 'babylon', encoding: 'rgba16f', layout: 'cube', levels: Math.log2(size) + 1, shBands: 3};
         return cubeTexture(BABYLON, scene, await bake(environment, {...options, ...fixed}));
     } finally {
         if (own) environment.close();

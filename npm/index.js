@@ -240,12 +240,12 @@ export class Environment extends Remote {
     }
 }
 
-async function made(open) {
+async function made(open, signal) {
     let first;
     await host.call('memory', async worker => {
         first = await open(worker);
         return {};
-    });
+    }, {signal});
     return new Environment(open, first);
 }
 
@@ -286,7 +286,7 @@ async function loadUrl(source) {
 export async function read(source, {signal, ...options} = {}) {
     if (signal?.aborted) throw aborted(signal);
     const {bytes, name} = await load(source);
-    return made(worker => worker.send('read', {source: bytes, options: {name, ...options}}));
+    return made(worker => worker.send('read', {source: bytes, options: {name, ...options}}), signal);
 }
 
 export async function fromPixels(pixels, options) {

@@ -67,6 +67,8 @@ export class Instance {
         imports.wasi_snapshot_preview1 ??= {};
         imports.wasi_snapshot_preview1.fd_write = (_, vectors, count, written) => {
             let bytes = 0;
+            vectors >>>= 0;
+            written >>>= 0;
             for (let k = 0; k < count; ++k) {
                 const view = this.view();
                 const at = view.getUint32(vectors + 8 * k, true), size = view.getUint32(vectors + 8 * k + 4, true);
@@ -93,7 +95,9 @@ export class Instance {
     call(name, ...args) {
         if (this.broken) throw this.broken;
         try {
-            return this.exports[name](...args);
+            // Addresses come as signed numbers; they are unsigned. All other results are counts.
+            const result = this.exports[name](...args);
+            return typeof result === 'number' ? result >>> 0 : result;
         } catch (error) {
             if (!(error instanceof WebAssembly.RuntimeError || error instanceof RangeError)) throw error;
             this.broken = new DomelightError(`The WebAssembly module ended during ${name.replace('domelight_', '')}: not enough memory, or a fault`, '',
@@ -116,6 +120,7 @@ export class Instance {
     }
 
     text(address) {
+        address >>>= 0;
         const all = new Uint8Array(this.exports.memory.buffer);
         return address ? new TextDecoder().decode(all.slice(address, all.indexOf(0, address))) : '';
     }

@@ -6,7 +6,7 @@ import {DomelightError} from './errors.js';
 const engines = {
     generic: {
         size: 512, smallest: 16, mirror: false,
-        roughness: (l, count) => (l <= 0 ? 0 : 0.6 ** (count - 1 - l)),
+        roughness: (l, count) => (l <= 0 ? 0 : Math.max(0.6, 0.08 ** (1 / Math.max(1, count - 2))) ** (count - 1 - l)),
     },
     three: {size: 512, smallest: 8, mirror: true, roughness: (l, count) => 1 - Math.sqrt(1 - l / Math.max(1, count - 1))},
     babylon: {size: 256, smallest: 1, mirror: true, roughness: (l, _, size) => (l <= 0 ? 0 : Math.sqrt(Math.min(1, 2 ** (l / 0.8) / size)))},

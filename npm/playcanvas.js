@@ -15,7 +15,7 @@ export async function bakeEnvironment(scene, source, {file, pc = globalThis.pc, 
     if (!pc?.Texture) throw new DomelightError('has no Texture', 'pc', "Give {pc}, of import * as pc from 'playcanvas'.");
     for (const name of Object.keys(others)) throw new DomelightError('is not an option', name, 'Options: file, pc, progress, signal.');
     const own = !(source instanceof Environment);
-    const environment = own ? await open(pc, source, file) : source;
+    const environment = own ? await open(pc, source, {signal, ...file}) : source;
     try {
         const filtered = await prefilter(environment, {layout: 'latlong', levels: chain, irradianceSize: 64, progress, signal});
         const {levels} = await encode(atlas(filtered), {encoding: 'rgbp', signal});

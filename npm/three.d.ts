@@ -12,5 +12,5 @@ import type {BakeOptions, Environment, ReadOptions} from './index.js';
 export function bakeEnvironment(
     renderer: WebGLRenderer | null,
     source: string | URL | Blob | Response | ArrayBuffer | ArrayBufferView | ThreeTexture | WebGLCubeRenderTarget | Environment,
-    options?: BakeOptions & {file?: ReadOptions},
+    options?: Omit<BakeOptions, 'engine' | 'encoding' | 'layout'> & {file?: ReadOptions},
 ): Promise<ThreeTexture>;

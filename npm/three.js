@@ -15,9 +15,9 @@ export async function bakeEnvironment(renderer, source, {file, ...options} = {})
     if (Number.parseInt(REVISION, 10) < 187)
         throw new DomelightError(`three.js r${REVISION} reads another layout of filtered environments than cubes with levels`, '', 'r187 or later is needed.');
     const own = !(source instanceof Environment);
-    const environment = own ? await open(renderer, source, file) : source;
+    const environment = own ? await open(renderer, source, {signal: options.signal, ...file}) : source;
     try {
-        const texture = cubeTexture(await bake(environment, {engine: 'three', ...options}));
+        const texture = cubeTexture(await bake(environment, {...options, engine: 'three', encoding: 'rgba16f', layout: 'cube'}));
         texture.name = environment.name ?? 'PMREM';
         return texture;
     } finally {
