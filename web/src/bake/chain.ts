@@ -14,13 +14,6 @@ export function levelRoughness(level: number, levels: number): number {
     return Math.max(0.6, 0.08 ** (1 / Math.max(1, last - 1))) ** (last - level);
 }
 
-/// The level, between two levels too, that is read for a roughness: the inverse of levelRoughness.
-export function roughnessLevel(roughness: number, levels: number): number {
-    const last = levels - 1;
-    const first = Math.max(0.6 ** (last - 1), 0.08);
-    return roughness <= first ? roughness / first : last - ((last - 1) * Math.log(roughness)) / Math.log(first);
-}
-
 /// The exponent of a level of a modified Phong chain (src/engines/engine.cpp, default_phong_exponents).
 export function levelExponent(level: number): number {
     return level === 0 ? Infinity : Math.max(1, 2 ** (13 - 2 * level), 2 ** (7 - level));

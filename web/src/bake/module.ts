@@ -194,8 +194,8 @@ export class Environment {
             });
             const options = scope.bytes(k_options_bytes);
             m.call('domelight_prefilter_options_init_sized', options, 52);
-            const words = m.words(options);
-            words[2] = scope.string('read');
+            const read = scope.string('read');  // first: memory that grows leaves earlier views behind
+            m.words(options)[2] = read;
             m.words(options).set([levels, sizes.length], 3);
             m.words(options).set([irradianceSize, irradianceSize > 0 ? 3 : 0, 1], 8);
             const handle = scope.bytes(4);
@@ -215,7 +215,8 @@ export class Environment {
         return m.scope(scope => {
             const level = scope.bytes(k_level_bytes);
             m.call('domelight_level_init_sized', level, k_level_bytes);
-            m.words(level)[1] = scope.string(lobe);
+            const word = scope.string(lobe);
+            m.words(level)[1] = word;
             m.doubles(level + 8, 2)[lobe === 'ggx' ? 0 : 1] = parameter;
             m.words(level)[6] = 1;
             const places = scope.bytes(directions.byteLength);

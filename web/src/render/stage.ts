@@ -39,6 +39,8 @@ export class Stage {
     private meshes: LitMesh[] = [];
     private model?: THREE.Object3D;
     private picture?: THREE.DataTexture;
+    /// How many pictures there have been: a comparison with an earlier one is out of date.
+    pictures = 0;
     private readonly sky: THREE.Mesh;
 
     constructor(canvas: HTMLCanvasElement) {
@@ -225,8 +227,9 @@ export class Stage {
         this.present.uniforms.u_map!.value?.dispose();
         this.present.uniforms.u_map!.value = texture;
     }
-    /// A picture from a file, which is compared with what is drawn.
+    /// A picture from a file or of the path tracer, which is compared with what is drawn.
     setPicture(pixels: Latlong): void {
+        ++this.pictures;
         const {width, height} = pixels, rgba = new Float32Array(4 * width * height);
         for (let y = 0; y < height; ++y)
             for (let x = 0; x < width; ++x) rgba.set(pixels.pixels.subarray(3 * (y * width + x), 3 * (y * width + x) + 3), 4 * ((height - 1 - y) * width + x));

@@ -71,9 +71,11 @@ interface VariantMapping {
 async function useVariant(gltf: GLTF, index: number | null): Promise<void> {
     const meshes: THREE.Mesh[] = [];
     gltf.scene.traverse(object => (object as THREE.Mesh).isMesh && meshes.push(object as THREE.Mesh));
-    for (const mesh of meshes) {
+    // All together at the end: a frame that is drawn in between gives the meshes back the materials of the page.
+    const materials = await Promise.all(meshes.map(async mesh => {
         const mappings: VariantMapping[] = mesh.userData.gltfExtensions?.KHR_materials_variants?.mappings ?? [];
         const mapping = index === null ? undefined : mappings.find(({variants}) => variants.includes(index));
-        mesh.material = mapping ? await gltf.parser.getDependency('material', mapping.material) : mesh.userData.sourceMaterial;
-    }
+        return mapping ? gltf.parser.getDependency('material', mapping.material) : mesh.userData.sourceMaterial;
+    }));
+    meshes.forEach((mesh, k) => (mesh.material = materials[k]!));
 }

@@ -38,7 +38,7 @@ export class CompareSection {
     update(): void {
         const {state, stage} = this.app;
         if (state.view === 'one' || !this.root.open && state.view === 'split') return;
-        const count = this.app.least, key = `${Math.floor(Math.log2(Math.max(1, count)) / 2)} ${state.view}`;
+        const count = this.app.least, key = `${Math.floor(Math.log2(Math.max(1, count)) / 2)} ${state.view} ${stage.pictures}`;
         if (count < 1 || key === this.done) return;
         this.done = key;
         const {width, height} = stage.panes[0];
