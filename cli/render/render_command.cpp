@@ -37,8 +37,11 @@ void declare(Arguments& a, RenderWords& w) {
     a.texts("-o,--output", "FILE", w.outputs,
             "the output: .exr with all layers, .hdr, or a tone-mapped .png or .jpg; may be given several times");
     a.integer("--width", "N", w.width, "pixels (512; of a face with --camera cube: 256)");
-    a.integer("--height", "N", w.height, "pixels (from the aspect ratio of the scene's camera, otherwise 512; half the width with --camera latlong)");
-    a.text("--camera", "N|NAME|cube|latlong", w.camera, "the camera of the scene to use, 1 is the first (1); cube or latlong: every direction "
+    a.integer(
+        "--height", "N", w.height,
+        "pixels (from the aspect ratio of the scene's camera, otherwise 512; half the width with --camera latlong)");
+    a.text("--camera", "N|NAME|cube|latlong", w.camera,
+           "the camera of the scene to use, 1 is the first (1); cube or latlong: every direction "
            "from --camera-position (the middle of the scene), as an environment to bake or to convert");
     a.numbers("--camera-position", "x,y,z", w.camera_position,
               "the eye (that of the scene's camera, or of one that shows all of it)");

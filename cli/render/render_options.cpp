@@ -181,8 +181,7 @@ Vec3f vector(const std::vector<double>& v) {
 void set_panorama(RenderOptions& o, const RenderWords& w, const Scene& scene) {
     o.camera.panorama = w.panorama();
     const Scene::Box box = scene.bounds();
-    o.camera.to_world.translation =
-        w.camera_position.empty() ? (box.low + box.high) * 0.5f : vector(w.camera_position);
+    o.camera.to_world.translation = w.camera_position.empty() ? (box.low + box.high) * 0.5f : vector(w.camera_position);
     if (o.camera.panorama == Camera::Panorama::cube) {
         o.width = w.width.value_or(256);
         o.height = 6 * o.width;

@@ -112,7 +112,8 @@ int run_view(const std::vector<std::string>& words) {
         "view",
         "Opens a page in the browser that shows a model under an environment, with every method of image-based "
         "lighting beside the truth. The page is served on this machine alone, and no file leaves it. Ctrl-C ends it.",
-        {"domelight view", "domelight view helmet.glb studio.hdr", "domelight view studio.exr --no-browser --port 8000"});
+        {"domelight view", "domelight view helmet.glb studio.hdr",
+         "domelight view studio.exr --no-browser --port 8000"});
     declare(arguments, w);
     if (const auto code = begin_command(arguments, words, w.common)) return *code;
     const auto options = options_of(w);

@@ -8,10 +8,10 @@ namespace domelight {
 
 /// The parts of a request that say who makes it. A header that is absent is empty.
 struct RequestOrigin {
-    std::string host{};          ///< Host
-    std::string origin{};        ///< Origin
-    std::string fetch_site{};    ///< Sec-Fetch-Site
-    bool opens_a_page = false;   ///< a person follows a link or types an address (Sec-Fetch-Mode: navigate)
+    std::string host{};         ///< Host
+    std::string origin{};       ///< Origin
+    std::string fetch_site{};   ///< Sec-Fetch-Site
+    bool opens_a_page = false;  ///< a person follows a link or types an address (Sec-Fetch-Mode: navigate)
 };
 
 /// Why a request to a server on 127.0.0.1 and this port is refused; empty where it is not.

@@ -102,10 +102,7 @@ Result<TruthRequest> parse(std::string_view text) {
 
 Truth::Truth(std::filesystem::path scene, std::vector<std::filesystem::path> environment, EnvironmentOptions options,
              int threads)
-    : scene_(std::move(scene)),
-      environment_(std::move(environment)),
-      options_(std::move(options)),
-      threads_(threads) {}
+    : scene_(std::move(scene)), environment_(std::move(environment)), options_(std::move(options)), threads_(threads) {}
 
 Result<std::shared_ptr<const Truth::Loaded>> Truth::loaded() {
     const std::lock_guard lock(loading_);

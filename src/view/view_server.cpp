@@ -159,7 +159,8 @@ void ViewServer::Impl::answer_truth(const httplib::Request& request, httplib::Re
         return response.set_content("There is no scene or no environment on the command line.", "text/plain");
     }
     response.set_chunked_content_provider(
-        "application/octet-stream", [this, number = truth->take_number(), text = request.body](std::size_t, httplib::DataSink& sink) {
+        "application/octet-stream",
+        [this, number = truth->take_number(), text = request.body](std::size_t, httplib::DataSink& sink) {
             // In pieces, so that a browser that has stopped reading is noticed within the time limit of one.
             const auto send = [&](const std::string& bytes) {
                 for (std::size_t at = 0; at < bytes.size(); at += k_piece)
@@ -198,7 +199,8 @@ void ViewServer::Impl::add_answers() {
 }
 
 Result<void> ViewServer::Impl::listen(int wanted) {
-    if (wanted < 0 || wanted > 65535) return Error{fmt::format("{} is not from 0 to 65535", wanted), field_place("port"), ""};
+    if (wanted < 0 || wanted > 65535)
+        return Error{fmt::format("{} is not from 0 to 65535", wanted), field_place("port"), ""};
     // Without SO_REUSEPORT, which the library sets by default and which lets two programs share a port. A time limit for
     // sending, which connections inherit, because a browser that stops reading would hold its thread.
     http.set_socket_options([](auto socket) {
@@ -213,8 +215,7 @@ Result<void> ViewServer::Impl::listen(int wanted) {
         port = http.bind_to_port("127.0.0.1", wanted) ? wanted : -1;
     if (port <= 0)
         return Error{wanted ? fmt::format("{} is in use or not allowed", wanted) : "no port is free",
-                     field_place("port"),
-                     wanted ? "Leave it out, and a free one is taken." : ""};
+                     field_place("port"), wanted ? "Leave it out, and a free one is taken." : ""};
     listening = std::thread([this] { http.listen_after_bind(); });
     while (!http.is_running()) std::this_thread::yield();
     return {};

@@ -273,7 +273,8 @@ TEST_SUITE("c") {
         options.to = nullptr, options.height = 1 << 20;
         CHECK(said(domelight_convert(environment, &options, none.place())).starts_with("`height`: "));
         options.height = INT32_MAX;
-        CHECK(said(domelight_convert(environment, &options, none.place())).starts_with("`height`: 2147483647 is not from 0 to "));
+        CHECK(said(domelight_convert(environment, &options, none.place()))
+                  .starts_with("`height`: 2147483647 is not from 0 to "));
         CHECK(said(domelight_pixels_write(&pixels, "a.png")) == "a.png: does not end in .exr or .hdr");
     }
 

@@ -34,7 +34,8 @@ std::vector<int> sizes(const EnginePlan& plan) {
 }  // namespace
 
 TEST_CASE(
-    "engine: generic is a cube of 512^2 down to 16^2, each of 0.6 times the next one's roughness, half floats, irradiance E") {
+    "engine: generic is a cube of 512^2 down to 16^2, each of 0.6 times the next one's roughness, half floats, "
+    "irradiance E") {
     const EnginePlan plan = plan_of("generic");
     CHECK(sizes(plan) == std::vector{512, 256, 128, 64, 32, 16});
     const double roughness[] = {0, 0.1296, 0.216, 0.36, 0.6, 1};

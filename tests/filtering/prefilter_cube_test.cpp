@@ -110,7 +110,8 @@ TEST_CASE("prefilter: small cubes of a photograph with a sun, as a scene's own l
         const CubeTruth truth(source);
         FilterOptions options;
         options.sh_bands = 0;
-        for (const double roughness : {0.25, 0.5, 1.0}) options.specular.push_back({8, false, ZonalKernel::ggx(roughness)});
+        for (const double roughness : {0.25, 0.5, 1.0})
+            options.specular.push_back({8, false, ZonalKernel::ggx(roughness)});
         const auto result = prefilter(source, options);
         REQUIRE(result);
         for (std::size_t l = 0; l < options.specular.size(); ++l) {
