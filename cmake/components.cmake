@@ -63,7 +63,7 @@ target_compile_features(domelight_common_headers PRIVATE cxx_std_20)
 target_link_libraries(domelight_common_headers PRIVATE domelight_flags fmt::fmt)
 target_precompile_headers(domelight_common_headers PRIVATE ${domelight_common_headers} <fmt/format.h>)
 
-domelight_component(io ROOMS texture io scene engines USES core
+domelight_component(io ROOMS texture io scene engines probe USES core
                     LINKS fmt::fmt OpenEXR::OpenEXR Imath::Imath PNG::PNG JPEG::JPEG OpenSSL::Crypto nlohmann_json::nlohmann_json astcenc::astcenc
                           meshoptimizer::meshoptimizer PkgConfig::zstd PkgConfig::lcms PkgConfig::draco PkgConfig::webp PkgConfig::hwy Threads::Threads)
 domelight_component(preview ROOMS preview USES core LINKS fmt::fmt)

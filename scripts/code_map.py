@@ -30,6 +30,7 @@ ROOMS = [
     ("texture/container", "KTX1, KTX2, DDS, .env, atlases"),
     ("scene", "scenes, cameras and lights; glTF and meshes"),
     ("io/environment", "opening an environment from any file and projection; converting it"),
+    ("probe", "the light of many points of a scene: sets of probes, their grids and lookups"),
     ("preview", "tone mapping, plots, contact sheets"),
     ("engines", "one small file for each engine: what it loads, and in which convention"),
     ("render", "path tracing, surfaces, and the shading that engines draw"),

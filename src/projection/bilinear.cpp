@@ -28,15 +28,17 @@ Vec3f bilinear(ImageView<const float> image, UV uv, bool wrap) {
     return mix(a, b, c, d, s, t);
 }
 
-Vec3f look_up(const BorderedCube& cube, const Vec3f& direction) {
+CubeTap cube_tap(int size, const Vec3f& direction) {
     const CubePoint p = cube_point(Vec3d(direction));
-    const int n = cube.size();
-    const float x = float(p.uv.u * n) - 0.5f, y = float(p.uv.v * n) - 0.5f;
-    const int i = std::clamp(int(std::floor(x)), -1, n - 1), j = std::clamp(int(std::floor(y)), -1, n - 1);
-    const float s = x - float(i), t = y - float(j);
-    const float *a = cube.texel(p.face, i, j), *b = cube.texel(p.face, i + 1, j), *c = cube.texel(p.face, i, j + 1),
-                *d = cube.texel(p.face, i + 1, j + 1);
-    return mix(a, b, c, d, s, t);
+    const float x = float(p.uv.u * size) - 0.5f, y = float(p.uv.v * size) - 0.5f;
+    const int i = std::clamp(int(std::floor(x)), -1, size - 1), j = std::clamp(int(std::floor(y)), -1, size - 1);
+    return {p.face, i, j, x - float(i), y - float(j)};
+}
+
+Vec3f look_up(const BorderedCube& cube, const Vec3f& direction) {
+    const CubeTap p = cube_tap(cube.size(), direction);
+    const auto texel = [&](int right, int down) { return cube.texel(p.face, p.column + right, p.row + down); };
+    return mix(texel(0, 0), texel(1, 0), texel(0, 1), texel(1, 1), p.s, p.t);
 }
 
 }  // namespace domelight
