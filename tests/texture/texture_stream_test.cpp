@@ -61,7 +61,7 @@ TEST_CASE(
     const std::pair<LayoutOf, Write> containers[] = {
         {plain_ktx2_layout, plain_write_ktx2}, {ktx1_layout, write_ktx1}, {dds_layout, write_dds}};
     for (const bool cube : {true, false}) {
-        const auto chain = noise_chain(cube, 192, 4);
+        const auto chain = noise_chain(cube, 96, 4);
         for (const Encoding encoding : {Encoding::rgba16f, Encoding::rgb9e5, Encoding::rgba32f, Encoding::bc6h}) {
             std::vector<EncodingReport> reports;
             Texture texture = encode_texture(chain, encoding, 1, &reports);
