@@ -2,9 +2,11 @@
 // 1024^2 and 11 levels, and five photographs of 1024 x 512 (bench/photographs.py names them) to 256^2 and 5 levels, with
 // the built-in sky beside them. CPU time of the whole process. In the rows "AVX2" the kernels use at most AVX2. The
 // photographs are those of DOMELIGHT_DATA; without it there is the sky only. One more row for each photograph filters a
-// single level of 128^2 at roughness 0.4, 0.6, 0.8 and 1.
+// single level of 128^2 at roughness 0.4, 0.6, 0.8 and 1. Two more filter a cube of it to 5 levels, as a probe.
 #include "domelight/environment/sky/sky.h"
 #include "domelight/filtering/prefilter.h"
+#include "domelight/filtering/probe_filter.h"
+#include "domelight/filtering/resample/area_resample.h"
 #include "domelight/image/row_source.h"
 #include "domelight/io/environment/open_environment.h"
 
@@ -56,6 +58,26 @@ void add(const std::string& name, const ImageF& image, const FilterOptions& opti
         ->UseRealTime();
 }
 
+/// A cube of the image's light, filtered as ProbeFilter does from the second on.
+void add_probe(const std::string& name, const ImageF& image, int size) {
+    ImageRowSource rows(image);
+    FilterOptions options;
+    options.specular = {glossy_level_spec(Lobe::ggx, size, 0)};
+    const Cubemap cube = prefilter(rows, options)->specular[0].cube();
+    options = chain(size, 5, 1);
+    options.irradiance_size = 0;
+    const auto filter = std::make_shared<ProbeFilter>(*ProbeFilter::make(size, options));
+    benchmark::RegisterBenchmark((name + " " + std::to_string(size)).c_str(),
+                                 [cube, filter](benchmark::State& state) {
+                                     for (auto _ : state) {
+                                         auto result = filter->filter(cube);
+                                         benchmark::DoNotOptimize(result);
+                                     }
+                                 })
+        ->Unit(benchmark::kMillisecond)
+        ->MeasureProcessCPUTime();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -89,6 +111,7 @@ int main(int argc, char** argv) {
             continue;
         }
         add(name + " to 256, 5 levels", image, chain(256, 5, 1));
+        for (const int size : {64, 32}) add_probe(name + " probe", image, size);
         for (const double roughness : {0.4, 0.6, 0.8, 1.0}) {
             FilterOptions one;
             one.threads = 1;

@@ -66,6 +66,7 @@
 #include "domelight/filtering/kernel/zonal_kernel.h"
 #include "domelight/filtering/prefilter.h"
 #include "domelight/filtering/prefilter_transpose.h"
+#include "domelight/filtering/probe_filter.h"
 #include "domelight/filtering/quantity.h"
 #include "domelight/filtering/reference.h"
 #include "domelight/filtering/resample/area_resample.h"

@@ -10,8 +10,8 @@ namespace {
 
 /// Higher degrees would cost seconds; docs/math/prefilter.md states what they would add.
 constexpr int k_most_degrees = 3072;
-/// b L at the band limit L.
-constexpr double k_decay = 16.6, k_decay_split = 11;
+/// b L at the band limit L, if the brightest texels are removed.
+constexpr double k_decay_split = 11;
 /// Lobes below this width count as narrow: a sun is then 10^6 times as bright as its dark surroundings, and the
 /// rounding of float expansions matters.
 constexpr int k_split_degrees = 600;
@@ -23,19 +23,19 @@ int least_degrees(int face_size) {
     return std::clamp(2 * face_size, 128, k_least_degrees);
 }
 
-int required_band_limit(const ZonalKernel& kernel, bool split, int least) {
+int required_band_limit(const ZonalKernel& kernel, bool split, const DegreeLimits& degrees) {
     switch (kernel.lobe) {
         case Lobe::ggx: {
             // The spectrum falls as b l K_1(b l). The clamp at the horizon adds a tail, alpha^2 l^-2.5.
             const double alpha = kernel.width, b = alpha < 1 ? 2 * alpha / std::sqrt(1 - alpha * alpha) : 1e9;
-            return std::clamp(int(std::ceil((split ? k_decay_split : k_decay) / b)),
-                              alpha > 0.05 ? least : 64, k_most_degrees);
+            return std::clamp(int(std::ceil((split ? k_decay_split : degrees.decay) / b)),
+                              alpha > 0.05 ? degrees.least : 64, k_most_degrees);
         }
         case Lobe::charlie:
             return kernel.width > 0.06 ? 768 : 1024;
         default:
             // cos^n ~ e^{-n theta^2 / 2}: the spectrum is e^{-l^2 / 2n}.
-            return std::clamp(int(std::ceil(7 * std::sqrt(kernel.width + 1))), least, k_most_degrees);
+            return std::clamp(int(std::ceil(7 * std::sqrt(kernel.width + 1))), degrees.least, k_most_degrees);
     }
 }
 
@@ -65,7 +65,7 @@ bool is_narrow(const ZonalKernel& kernel) {
 
 }  // namespace
 
-FilterPlan make_filter_plan(const FilterOptions& options, bool sums_directly, int least) {
+FilterPlan make_filter_plan(const FilterOptions& options, bool sums_directly, const DegreeLimits& degrees) {
     struct Need {
         int level, band_limit;
         bool narrow;
@@ -73,7 +73,7 @@ FilterPlan make_filter_plan(const FilterOptions& options, bool sums_directly, in
     std::vector<Need> needs;
     const auto add = [&](int level, const ZonalKernel& kernel) {
         const bool narrow = is_narrow(kernel);
-        needs.push_back({level, required_band_limit(kernel, narrow, least), narrow});
+        needs.push_back({level, required_band_limit(kernel, narrow, degrees), narrow});
     };
     FilterPlan plan;
     for (int l = 0; l < int(options.specular.size()); ++l) {

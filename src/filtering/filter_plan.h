@@ -35,12 +35,19 @@ inline constexpr int k_least_degrees = 256;
 /// 1.4e-5 and a largest error of 4e-4 against 256 degrees.)
 int least_degrees(int face_size);
 
+/// To which degrees lobes are expanded.
+struct DegreeLimits {
+    int least = k_least_degrees;  ///< of a wide lobe
+    /// A lobe's spectrum falls as e^(-b l), b its width; it is expanded to b l = `decay`.
+    double decay = 16.6;
+};
+
 /// sums_directly   whether levels may be summed over the rows of a lat-long image; else all are expanded
-FilterPlan make_filter_plan(const FilterOptions& options, bool sums_directly, int least = k_least_degrees);
+FilterPlan make_filter_plan(const FilterOptions& options, bool sums_directly, const DegreeLimits& degrees = {});
 
 /// The degrees that a lobe needs for the accuracy stated in docs/math/prefilter.md; fewer if the brightest texels are
 /// removed (`split`).
-int required_band_limit(const ZonalKernel& kernel, bool split, int least = k_least_degrees);
+int required_band_limit(const ZonalKernel& kernel, bool split, const DegreeLimits& degrees = {});
 
 /// Whether the clamp at the horizon leaves a tail that a strong sun makes visible. The truncated part is then summed
 /// over the brightest texels.

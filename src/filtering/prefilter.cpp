@@ -6,15 +6,10 @@
 #include "filtering/direct/direct_sums.h"
 #include "filtering/filter_plan.h"
 #include "filtering/harmonic/bright_texels.h"
-#include "filtering/harmonic/cube_analysis.h"
-#include "filtering/harmonic/scatter_analysis.h"
+#include "filtering/cube/cube_analysis.h"
 #include "filtering/harmonic/sh_analysis.h"
-#include "filtering/harmonic/sh_synthesis.h"
-#include "filtering/harmonic/spectrum_evaluate.h"
-#include "filtering/kernel/residual_kernel.h"
-#include "filtering/lights/light_groups.h"
+#include "filtering/level_synthesis.h"
 #include "filtering/prefilter_runs.h"
-#include "filtering/read_texels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,8 +22,6 @@ namespace {
 
 /// The number of image rows processed together: few enough to stay in the cache from the reader to the last step.
 constexpr int k_chunk_rows = 64;
-
-const Error k_cancelled{"cancelled", "", ""};
 
 /// The levels that are the environment itself, made while its rows pass by. Runs that want the same level share it.
 class MirrorLevels {
@@ -86,150 +79,6 @@ class MirrorLevels {
     std::vector<Mirror> mirrors_;
     std::vector<std::vector<int>> of_run_;  ///< for each level of each run an index of mirrors_, or -1
 };
-
-Vec3d mean_radiance(const Spectrum& spectrum) {
-    const double y00 = 1 / std::sqrt(4 * k_pi);
-    return Vec3d{spectrum.coefficient(0, 0, 0).real(), spectrum.coefficient(0, 0, 1).real(),
-                 spectrum.coefficient(0, 0, 2).real()} *
-           y00;
-}
-
-/// Of each channel, the least value of a level, but not below a hundredth of the mean: an error is judged against this.
-Vec3d least_values(const SphereGrid& grid, const Vec3d& mean) {
-    simd::Texel least{1e30f, 1e30f, 1e30f};
-    for (int k = 0; k < grid.grid().rings; ++k) least = simd::least(grid.ring(k), grid.grid().width, least);
-    return {std::max(double(least.r), 0.01 * mean.x), std::max(double(least.g), 0.01 * mean.y),
-            std::max(double(least.b), 0.01 * mean.z)};
-}
-
-/// What the levels are made of.
-struct SynthesisSource {
-    /// The environment's brightest texels as point lights, fine enough for a band limit.
-    using Bright = std::function<PointLights(int band_limit)>;
-
-    Spectrum whole;
-    Bright bright;
-    /// If texels were removed for narrow lobes: the texels, and the spectrum without them.
-    const BrightSplit* split = nullptr;
-    Spectrum rest = {};
-};
-
-/// Makes the levels of a plan, group by group.
-class Synthesis {
-  public:
-    Synthesis(const SynthesisSource& source, const FilterPlan& plan, const FilterOptions& options, FilterResult& result)
-        : source_(source), options_(options), result_(result) {
-        prepare_lights(plan);
-    }
-
-    Result<void> run(const FilterPlan& plan) {
-        for (const FilterPlan::Group& group : plan.groups) {
-            // A few at a time: a grid of many degrees is hundreds of megabytes.
-            const std::size_t at_once = group.band_limit > 1200 ? 1 : 4;
-            for (std::size_t from = 0; from < group.levels.size(); from += at_once) {
-                const std::span levels(group.levels.data() + from, std::min(at_once, group.levels.size() - from));
-                synthesise(group, levels);
-                done_ += levels.size();
-                if (options_.progress && !options_.progress("filter", double(done_) / (options_.specular.size() + 1)))
-                    return k_cancelled;
-            }
-        }
-        return {};
-    }
-
-  private:
-    /// The lights of all levels that leave a residual, and their coefficients.
-    void prepare_lights(const FilterPlan& plan) {
-        int band_limit = 0;
-        for (const FilterPlan::Group& group : plan.groups)
-            for (const int level : group.levels)
-                if (leaves_residual(kernel(level))) band_limit = std::max(band_limit, group.band_limit);
-        if (band_limit == 0) return;
-        const PointLights points = source_.bright(band_limit);
-        if (points.count() == 0) return;
-        lights_ = LightGroups(points);
-        lights_spectrum_ = analyse_lights(points, band_limit, options_.threads);
-    }
-
-    ZonalKernel kernel(int level) const {
-        return level == FilterPlan::k_irradiance ? ZonalKernel::cosine() : options_.specular[level].kernel;
-    }
-
-    void synthesise(const FilterPlan::Group& group, std::span<const int> levels) {
-        // Levels with the same kernel share a grid: the last one of most chains is the irradiance.
-        std::vector<ZonalKernel> kernels;
-        std::vector<std::size_t> kernel_of;
-        for (const int level : levels) {
-            const ZonalKernel of_level = kernel(level);
-            const auto found = std::find(kernels.begin(), kernels.end(), of_level);
-            kernel_of.push_back(std::size_t(found - kernels.begin()));
-            if (found == kernels.end()) kernels.push_back(of_level);
-        }
-        std::vector<SynthesisFactors> factors(kernels.size());
-        std::vector<std::unique_ptr<ResidualKernel>> residuals(kernels.size());
-        parallel_for(int(kernels.size()), options_.threads, [&](int i) {
-            factors[i].k = kernels[i].coefficients(group.band_limit);
-            if (lights_.empty() || !leaves_residual(kernels[i])) return;
-            residuals[i] = std::make_unique<ResidualKernel>(kernels[i], factors[i].k);
-            factors[i].r = residuals[i]->removed();
-        });
-        const bool split = group.narrow && source_.split;
-        const auto grids = sh_synthesis(split ? source_.rest : source_.whole, &lights_spectrum_, factors, group.grid,
-                                        options_.threads);
-        for (std::size_t i = 0; i < kernels.size(); ++i) {
-            LookupOptions lookup;
-            lookup.band = double(group.band_limit) / group.grid.rings;
-            lookup.world_to_source = options_.world_to_source;
-            lookup.threads = options_.threads;
-            std::optional<ResidualLights> residual;
-            if (residuals[i]) {
-                residual.emplace(lights_, *residuals[i], least_values(grids[i], result_.mean));
-                lookup.residual = &*residual;
-            }
-            BrightSplit::Lights lights;
-            std::optional<DirectKernelTable> direct;
-            if (split) {
-                lights = source_.split->lights(kernels[i]);
-                direct.emplace(kernels[i]);
-                lookup.lights = &lights, lookup.kernel = direct->view();
-            }
-            for (std::size_t l = 0; l < levels.size(); ++l)
-                if (kernel_of[l] == i) look_up(levels[l], kernels[i], grids[i], lookup);
-        }
-    }
-
-    void look_up(int level, const ZonalKernel& kernel, const SphereGrid& grid, const LookupOptions& lookup) {
-        const bool irradiance = level == FilterPlan::k_irradiance;
-        const int size = irradiance ? options_.irradiance_size : options_.specular[level].size;
-        FilteredMap& map = irradiance ? result_.irradiance_over_pi : result_.specular[level];
-        const bool for_reading = options_.texels == Texels::read && options_.layout == Layout::cube && !irradiance &&
-                                 gains_by_read_texels(kernel, size);
-        if (!options_.directions.empty())
-            map = {Layout::latlong, grid_at_directions(grid, options_.directions, lookup, result_.clamped)};
-        else if (for_reading)
-            map = read_texels(grid_to_cube(grid, size * read_texels_factor(size), lookup, result_.clamped), size,
-                              options_.threads);
-        else if (options_.layout == Layout::cube)
-            map = grid_to_cube(grid, size, lookup, result_.clamped);
-        else
-            map = {Layout::latlong, grid_to_latlong(grid, size, lookup, result_.clamped)};
-    }
-
-    const SynthesisSource& source_;
-    const FilterOptions& options_;
-    FilterResult& result_;
-    LightGroups lights_;
-    Spectrum lights_spectrum_;
-    std::size_t done_ = 0;
-};
-
-/// Everything that follows from the spectrum.
-Result<void> make_levels(const SynthesisSource& source, const FilterPlan& plan, const FilterOptions& options,
-                         FilterResult& result) {
-    if (auto done = Synthesis(source, plan, options, result).run(plan); !done) return done;
-    if (options.sh_bands > 0) result.sh = spectrum_to_sh(source.whole, options.sh_bands, options.world_to_source);
-    return {};
-}
 
 /// One filter run over the rows of a lat-long image, but for its mirror levels.
 class RowPrefilter {
@@ -349,19 +198,10 @@ Result<FilterResult> prefilter(RowSource& source, const FilterOptions& options) 
 
 Result<FilterResult> prefilter(const Cubemap& source, const FilterOptions& options) {
     const LargeMemoryReuse reuse;
-    const FilterPlan plan = make_filter_plan(options, false, least_degrees(source.size()));
+    const FilterPlan plan = make_filter_plan(options, false, {.least = least_degrees(source.size())});
     FilterResult result;
     result.specular.resize(options.specular.size());
-    for (std::size_t l = 0; l < options.specular.size(); ++l) {
-        const LevelSpec& level = options.specular[l];
-        if (!level.mirror) continue;
-        FilteredMap& map = result.specular[l];
-        if (options.layout == Layout::cube)
-            map = area_resample_cube(source, level.size, options.world_to_source, options.threads);
-        else
-            map = {Layout::latlong,
-                   area_resample_cube_to_latlong(source, level.size, options.world_to_source, options.threads)};
-    }
+    fill_mirror_levels(source, options, result);
     if (options.progress && !options.progress("read", 1)) return k_cancelled;
     const BorderedCube cube(source);
     SynthesisSource from;

@@ -46,9 +46,9 @@ Result<std::vector<FilteredPart>> parts_of(const FilterResult& values, const Fil
         const int width = directed ? int(options.directions.size()) : cube ? part.size : 2 * part.size;
         const int height = directed ? 1 : cube ? 6 * part.size : part.size;
         if (image.width() != width || image.height() != height || image.channels() != 3)
-            return Error{text("a map has ", image.width(), " x ", image.height(), " texels, expected ", width, " x ",
-                              height),
-                         field_place("values"), ""};
+            return Error{
+                text("a map has ", image.width(), " x ", image.height(), " texels, expected ", width, " x ", height),
+                field_place("values"), ""};
     }
     return parts;
 }
@@ -87,10 +87,11 @@ void add_maps(const std::vector<FilteredPart>& parts, const FilterOptions& optio
     Spectrum sum(band_limit);
     for (const FilteredPart& part : parts) {
         const int own = required_band_limit(part.kernel, false);
-        add_filtered(sum, analyse_lights(points_of(part, options), own, options.threads), part.kernel.coefficients(own));
+        add_filtered(sum, analyse_lights(points_of(part, options), grid_transform(own), options.threads),
+                     part.kernel.coefficients(own));
     }
     const SynthesisFactors whole{std::vector<double>(std::size_t(band_limit) + 1, 1), {}};
-    const auto grids = sh_synthesis(sum, nullptr, {&whole, 1}, ring_grid_for(band_limit), options.threads);
+    const auto grids = sh_synthesis(sum, nullptr, {&whole, 1}, *grid_transform(band_limit), options.threads);
     add_tent_integrals(grids[0], band_limit, image, options.threads);
 }
 
@@ -104,7 +105,8 @@ void add_harmonics(std::span<const Vec3d> sh, const FilterOptions& options, Imag
     parallel_for(grid.rings, options.threads, [&](int k) {
         for (int i = 0; i < grid.width; ++i) {
             const double theta = k_pi * (k + 0.5) / grid.rings, phi = 2 * k_pi * i / grid.width, s = std::sin(theta);
-            const Vec3d value = sh_evaluate(sh, to_world * Vec3d{s * std::cos(phi), std::cos(theta), s * std::sin(phi)});
+            const Vec3d value =
+                sh_evaluate(sh, to_world * Vec3d{s * std::cos(phi), std::cos(theta), s * std::sin(phi)});
             float* rgb = function.ring(k) + 4 * i;
             rgb[0] = float(value.x), rgb[1] = float(value.y), rgb[2] = float(value.z);
         }

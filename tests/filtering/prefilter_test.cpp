@@ -282,7 +282,7 @@ TEST_CASE("analysis and synthesis agree with the plain sums in double") {
     const Spectrum spectrum = analysis.finish();
     const std::vector<double> factors = ZonalKernel::ggx(0.6).coefficients(band_limit);
     const RingGrid grid = ring_grid_for(band_limit);
-    const auto grids = sh_synthesis(spectrum, nullptr, std::vector<SynthesisFactors>{{factors, {}}}, grid, 1);
+    const auto grids = sh_synthesis(spectrum, nullptr, std::vector<SynthesisFactors>{{factors, {}}}, *grid_transform(band_limit), 1);
     for (int k : {0, 1, grid.rings / 2, grid.rings - 1})
         for (int i : {0, 3, grid.width / 2, grid.width - 1}) {
             const double theta = k_pi * (k + 0.5) / grid.rings, phi = 2 * k_pi * i / grid.width;

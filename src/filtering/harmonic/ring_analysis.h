@@ -1,11 +1,11 @@
 #pragma once
 
-#include "filtering/harmonic/batch_fft.h"
 #include "filtering/harmonic/latitude_reduction.h"
-#include "filtering/harmonic/ring_grid.h"
+#include "filtering/harmonic/ring_transform.h"
 #include "filtering/harmonic/spectrum.h"
 
 #include <complex>
+#include <memory>
 #include <span>
 
 namespace domelight {
@@ -20,10 +20,12 @@ class RingAnalysis {
     static constexpr int k_pad = LatitudeReduction::k_pad;
 
     /// `order_factors`: the factor of each order m = 0..band_limit.
-    RingAnalysis(int width, int band_limit, std::vector<std::complex<double>> order_factors);
+    RingAnalysis(std::shared_ptr<const RingTransform> with, std::vector<std::complex<double>> order_factors);
+    RingAnalysis(int width, int band_limit, std::vector<std::complex<double>> order_factors)
+        : RingAnalysis(std::make_shared<RingTransform>(width, band_limit), std::move(order_factors)) {}
 
-    const RingGrid& grid() const { return grid_; }
-    int row_count() const { return grid_.rings + 2 * k_pad; }
+    const RingGrid& grid() const { return with_->grid; }
+    int row_count() const { return grid().rings + 2 * k_pad; }
     int batch_count() const { return (row_count() + k_batch - 1) / k_batch; }
     /// Adds one channel of the rows 32 batch .. 32 batch + 31 (ring = row - k_pad). Different batches and channels may
     /// be added at the same time. rows: `stride` floats apart, texels `texel` floats apart.
@@ -38,9 +40,7 @@ class RingAnalysis {
     Spectrum finish(int threads);
 
   private:
-    int width_, band_limit_;
-    RingGrid grid_;
-    simd::BatchFft fft_;
+    std::shared_ptr<const RingTransform> with_;
     std::vector<std::complex<double>> order_factors_;
     int stride_;
     AlignedArray<float> rings_;  ///< [m][channel, re | im][row]

@@ -25,9 +25,9 @@ void gather_grids(std::vector<SphereGrid>& grids, int threads) {
 
 }  // namespace
 
-ScatterAnalysis::ScatterAnalysis(int band_limit)
-    : rings_(ring_grid_for(band_limit).width, band_limit, std::vector<std::complex<double>>(band_limit + 1, 1)),
-      table_(lookup_table(double(band_limit) / rings_.grid().rings)) {}
+ScatterAnalysis::ScatterAnalysis(std::shared_ptr<const RingTransform> with)
+    : rings_(with, std::vector<std::complex<double>>(std::size_t(with->band_limit) + 1, 1)),
+      table_(lookup_table(double(with->band_limit) / with->grid.rings)) {}
 
 Spectrum ScatterAnalysis::finish(std::vector<SphereGrid>& grids, int threads) {
     gather_grids(grids, threads);
@@ -54,8 +54,8 @@ Spectrum ScatterAnalysis::finish(std::vector<SphereGrid>& grids, int threads) {
     return rings_.finish(threads);
 }
 
-Spectrum analyse_lights(const PointLights& lights, int band_limit, int threads) {
-    ScatterAnalysis analysis(band_limit);
+Spectrum analyse_lights(const PointLights& lights, std::shared_ptr<const RingTransform> with, int threads) {
+    ScatterAnalysis analysis(std::move(with));
     std::vector<SphereGrid> grids;
     grids.emplace_back(analysis.grid());
     const int count = lights.count();

@@ -12,7 +12,8 @@ namespace domelight {
 /// interpolation from them would use (simd::scatter_directions): sum_p w_p f_p Y(d_p) with Y(d_p) = sum_grid tap Y(grid).
 class ScatterAnalysis {
   public:
-    explicit ScatterAnalysis(int band_limit);
+    /// with   a grid_transform()
+    explicit ScatterAnalysis(std::shared_ptr<const RingTransform> with);
 
     const RingGrid& grid() const { return rings_.grid(); }
     const simd::TapTable& table() const { return *table_; }
@@ -24,7 +25,7 @@ class ScatterAnalysis {
     std::shared_ptr<const simd::TapTable> table_;
 };
 
-/// Spherical-harmonic coefficients of point lights.
-Spectrum analyse_lights(const PointLights& lights, int band_limit, int threads);
+/// Spherical-harmonic coefficients of point lights. with: a grid_transform().
+Spectrum analyse_lights(const PointLights& lights, std::shared_ptr<const RingTransform> with, int threads);
 
 }  // namespace domelight

@@ -2,7 +2,6 @@
 
 #include "domelight/base/parallel.h"
 
-#include "filtering/harmonic/batch_fft.h"
 #include "filtering/harmonic/row_kernels.h"
 
 #include <algorithm>
@@ -23,8 +22,9 @@ struct RingSpectra {
 };
 
 /// sum_l k_l a_lm P_lm on the northern rings by parity; on the southern rings the odd part has the opposite sign.
+template <typename Walk>
 void sum_degrees(const Spectrum& a, const Spectrum* b, std::span<const SynthesisFactors> factors,
-                 const NorthernRings& north, LegendreWalk& walk, int m, std::vector<RingSpectra>& out) {
+                 const NorthernRings& north, Walk& walk, int m, std::vector<RingSpectra>& out) {
     const int band_limit = int(factors[0].k.size()) - 1;
     const std::size_t half = 6 * std::size_t(north.padded);
     for (auto& spectra : out) std::fill_n(spectra.order(m), 2 * half, 0.f);
@@ -89,24 +89,25 @@ void transform_rings(const RingSpectra& spectra, int band_limit, const simd::Bat
 }  // namespace
 
 std::vector<SphereGrid> sh_synthesis(const Spectrum& a, const Spectrum* b, std::span<const SynthesisFactors> factors,
-                                     RingGrid grid, int threads) {
+                                     const RingTransform& with, int threads) {
     const int band_limit = int(factors[0].k.size()) - 1;
-    const NorthernRings north(grid.rings);
+    const NorthernRings& north = with.north;
     std::vector<RingSpectra> spectra;
     for (std::size_t f = 0; f < factors.size(); ++f) spectra.emplace_back(band_limit, north);
     constexpr int orders_at_once = 4;
     parallel_ranges(band_limit + 1, orders_at_once, threads, [&](int begin, int end) {
-        LegendreWalk walk(north, band_limit);
-        for (int m = begin; m < end; ++m) sum_degrees(a, b, factors, north, walk, m, spectra);
+        with.with_legendre(begin, end, [&](auto& walk, int first, int last) {
+            for (int m = first; m < last; ++m) sum_degrees(a, b, factors, north, walk, m, spectra);
+        });
     });
 
-    const simd::BatchFft fft(grid.width);
+    const simd::BatchFft& fft = with.fft;
     const int groups = north.padded / simd::k_fft_lanes;
     std::vector<SphereGrid> grids;
-    for (std::size_t f = 0; f < factors.size(); ++f) grids.emplace_back(grid, false);
+    for (std::size_t f = 0; f < factors.size(); ++f) grids.emplace_back(with.grid, false);
     parallel_ranges(int(factors.size()) * groups, 4, threads, [&](int begin, int end) {
         std::array<AlignedArray<float>, 3> work;
-        for (auto& data : work) data = AlignedArray<float>(std::size_t(grid.width) * 2 * simd::k_fft_lanes, false);
+        for (auto& data : work) data = AlignedArray<float>(std::size_t(fft.size()) * 2 * simd::k_fft_lanes, false);
         for (int task = begin; task < end; ++task)
             transform_rings(spectra[task / groups], band_limit, fft, task % groups * simd::k_fft_lanes, north.count,
                             work, grids[task / groups]);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "filtering/harmonic/ring_transform.h"
 #include "filtering/harmonic/spectrum.h"
 #include "filtering/harmonic/sphere_grid.h"
 
@@ -18,7 +19,8 @@ struct SynthesisFactors {
 ///
 /// a, b      spectra of at least as many degrees as the factors; b may be null if no function has factors r
 /// factors   of each function; all k of the same band limit
+/// with      grid_transform() of that band limit
 std::vector<SphereGrid> sh_synthesis(const Spectrum& a, const Spectrum* b, std::span<const SynthesisFactors> factors,
-                                     RingGrid grid, int threads);
+                                     const RingTransform& with, int threads);
 
 }  // namespace domelight

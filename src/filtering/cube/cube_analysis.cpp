@@ -1,9 +1,9 @@
-#include "filtering/harmonic/cube_analysis.h"
+#include "filtering/cube/cube_analysis.h"
 
 #include "domelight/base/parallel.h"
 #include "domelight/projection/projection.h"
 
-#include "base/gauss_legendre.h"
+#include "filtering/cube/cube_nodes.h"
 #include "filtering/harmonic/scatter_analysis.h"
 
 #include <algorithm>
@@ -13,26 +13,6 @@
 
 namespace domelight {
 namespace {
-
-/// Nodes along one coordinate of a face, cut at texel centres and at the face's edges. Coordinates run over [-1, 1].
-struct AxisNode {
-    double at, weight;
-    int cell;         ///< between texels cell and cell + 1; -1 .. size - 1
-    double fraction;  ///< from texel `cell` to the next
-};
-
-std::vector<AxisNode> axis_nodes(int size, int nodes_a_cell) {
-    const auto& rule = gauss_legendre(nodes_a_cell);
-    std::vector<AxisNode> nodes;
-    for (int cell = -1; cell < size; ++cell) {
-        const double low = cell < 0 ? 0.5 : 0, high = cell == size - 1 ? 0.5 : 1;
-        for (std::size_t q = 0; q < rule.x.size(); ++q) {
-            const double fraction = low + (high - low) * 0.5 * (1 + rule.x[q]);
-            nodes.push_back({2 * (cell + 0.5 + fraction) / size - 1, rule.w[q] * (high - low) / size, cell, fraction});
-        }
-    }
-    return nodes;
-}
 
 /// Cubes of this size and smaller are filtered many times a second, where a scene's own light is baked: time is saved
 /// that costs larger ones little.
@@ -75,7 +55,7 @@ void scatter_face(const BorderedCube& cube, int face, std::span<const AxisNode> 
 }  // namespace
 
 Spectrum analyse_cube(const BorderedCube& cube, int band_limit, int threads) {
-    ScatterAnalysis analysis(band_limit);
+    ScatterAnalysis analysis(grid_transform(band_limit));
     const RingGrid grid = analysis.grid();
     const auto axis = axis_nodes(cube.size(), nodes_a_cell(cube.size(), band_limit));
     // Faces overlap on the rings, so each has its own grid, unless that would take too much memory, or longer than what
@@ -90,7 +70,7 @@ Spectrum analyse_cube(const BorderedCube& cube, int band_limit, int threads) {
     return analysis.finish(grids, threads);
 }
 
-PointLights bright_points(const BorderedCube& cube, const Vec3d& mean, int band_limit) {
+PointLights bright_points(const BorderedCube& cube, const Vec3d& mean, int band_limit, double least_share) {
     const int n = cube.size();
     struct Texel {
         double power;
@@ -98,7 +78,7 @@ PointLights bright_points(const BorderedCube& cube, const Vec3d& mean, int band_
     };
     // This includes border texels, which represent the light of the neighbouring face.
     std::vector<Texel> texels;
-    const double of_mean = std::max({mean.x, mean.y, mean.z}), least = k_least_share * 4 * k_pi * of_mean;
+    const double of_mean = std::max({mean.x, mean.y, mean.z}), least = least_share * 4 * k_pi * of_mean;
     for (int f = 0; f < 6; ++f)
         for (int y = -1; y <= n; ++y)
             for (int x = -1; x <= n; ++x) {

@@ -14,6 +14,9 @@ namespace domelight {
 Spectrum analyse_cube(const BorderedCube& cube, int band_limit, int threads);
 
 /// The brightest texels as point lights: as BrightTexels::points for a lat-long image.
-PointLights bright_points(const BorderedCube& cube, const Vec3d& mean, int band_limit);
+///
+/// least_share   a texel's least part of the total power
+PointLights bright_points(const BorderedCube& cube, const Vec3d& mean, int band_limit,
+                          double least_share = k_least_share);
 
 }  // namespace domelight
