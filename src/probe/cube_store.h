@@ -8,6 +8,7 @@
 #include "texture/texel/rgb9e5.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace domelight {
@@ -60,14 +61,26 @@ class CubeStore {
                 for (const int x : {-1, size_}) set_corner(out + std::ptrdiff_t(f) * across * across, x, y);
     }
 
-    /// Bilinear.
-    Value look_up(int index, const Vec3f& direction) const {
-        const CubeTap tap = cube_tap(size_, direction);
+    Value texel(int index, int face, int column, int row) const {
+        const int across = size_ + 2;
+        return texels_[std::size_t(index) * border_.size() + (std::size_t(face) * across + row + 1) * across + column +
+                       1]
+            .value();
+    }
+
+    /// The four texels around a point: upper left, upper right, lower left, lower right.
+    std::array<Value, 4> texels(int index, const CubeTap& tap) const {
         const int across = size_ + 2;
         const Texel* a = texels_.data() + std::size_t(index) * border_.size() +
                          (std::size_t(tap.face) * across + tap.row + 1) * across + tap.column + 1;
-        return (a[0].value() * (1 - tap.s) + a[1].value() * tap.s) * (1 - tap.t) +
-               (a[across].value() * (1 - tap.s) + a[across + 1].value() * tap.s) * tap.t;
+        return {a[0].value(), a[1].value(), a[across].value(), a[across + 1].value()};
+    }
+
+    /// Bilinear.
+    Value look_up(int index, const Vec3f& direction) const {
+        const CubeTap tap = cube_tap(size_, direction);
+        const std::array<Value, 4> v = texels(index, tap);
+        return (v[0] * (1 - tap.s) + v[1] * tap.s) * (1 - tap.t) + (v[2] * (1 - tap.s) + v[3] * tap.s) * tap.t;
     }
 
   private:

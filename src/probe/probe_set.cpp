@@ -4,6 +4,7 @@
 
 #include "base/field_place.h"
 #include "probe/cube_store.h"
+#include "probe/distance_lookup.h"
 
 #include <fmt/core.h>
 
@@ -163,8 +164,7 @@ DistanceMoments ProbeSet::distance(int probe, const Vec3f& direction) const {
         const float far = std::numeric_limits<float>::infinity();
         return {far, far};
     }
-    const auto moments = impl_->distance.look_up(probe, direction);
-    return {moments.mean, moments.mean_square};
+    return distance_between_texels(impl_->distance, probe, direction);
 }
 
 }  // namespace domelight

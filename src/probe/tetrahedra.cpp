@@ -26,11 +26,23 @@ long double orientation(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Ve
     return dot(cross(u, v), w);
 }
 
-/// Positive if p lies inside of the sphere through a, b, c, d, which have a positive orientation.
-long double inside_sphere(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d, const Vec3d& p) {
-    const Vec3l A(a - p), B(b - p), C(c - p), D(d - p);
-    return dot(A, A) * dot(cross(B, C), D) - dot(B, B) * dot(cross(C, D), A) + dot(C, C) * dot(cross(D, A), B) -
-           dot(D, D) * dot(cross(A, B), C);
+/// A point and by how much its square is raised.
+struct Lifted {
+    Vec3d position;
+    double raised;
+};
+
+/// Positive if p lies inside of the sphere through a, b, c, d, which have a positive orientation: below the hyperplane
+/// through them in four dimensions, if the fourth coordinate is the square of a point.
+long double inside_sphere(const std::array<Lifted, 4>& corner, const Lifted& p) {
+    std::array<Vec3l, 4> d;
+    std::array<long double, 4> square{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        d[i] = Vec3l(corner[i].position - p.position);
+        square[i] = dot(d[i], d[i]) + static_cast<long double>(corner[i].raised - p.raised);
+    }
+    return square[0] * dot(cross(d[1], d[2]), d[3]) - square[1] * dot(cross(d[2], d[3]), d[0]) +
+           square[2] * dot(cross(d[3], d[0]), d[1]) - square[3] * dot(cross(d[0], d[1]), d[2]);
 }
 
 /// The eigenvectors of a symmetric matrix, by Jacobi's rotations.
@@ -98,10 +110,7 @@ Tetrahedra::Tetrahedra(std::span<const Vec3f> points) {
     assert(!points.empty());
     make_frame(points);
     make_vertices(points);
-    if (frame_.rank == 0) {
-        cells_.push_back({0, 0, 0, 0});
-        return;
-    }
+    if (frame_.rank == 0) return;
     triangulate();
     for (int t = 0; t < int(tetrahedra_.size()); ++t) {
         const Cell& cell = tetrahedra_[std::size_t(t)];
@@ -109,6 +118,8 @@ Tetrahedra::Tetrahedra(std::span<const Vec3f> points) {
             hull_.push_back(t);
             continue;
         }
+        if (frame_.rank < 3 || std::ranges::any_of(cell.vertex, [&](int v) { return bool(is_copy_[std::size_t(v)]); }))
+            continue;
         std::array<int, 4> own{};
         for (std::size_t i = 0; i < 4; ++i) own[i] = point_[std::size_t(cell.vertex[i])];
         cells_.push_back(own);
@@ -143,7 +154,7 @@ void Tetrahedra::make_frame(std::span<const Vec3f> points) {
     extent_ = e0;
     const double along_line = e0 / n, on_plane = std::sqrt(e0 * e1 / n);
     frame_.rank = !(e0 > 1e-6) ? 0 : n < 3 || e1 <= 0.5 * along_line ? 1 : n < 4 || e2 <= 0.5 * on_plane ? 2 : 3;
-    layer_ = 0.25 * (frame_.rank == 1 ? along_line : on_plane);
+    spacing_ = frame_.rank == 1 ? along_line : frame_.rank == 2 ? on_plane : std::cbrt(e0 * e1 * e2 / n);
 }
 
 Vec3d Tetrahedra::to_frame(const Vec3f& place) const {
@@ -153,22 +164,54 @@ Vec3d Tetrahedra::to_frame(const Vec3f& place) const {
 }
 
 void Tetrahedra::make_vertices(std::span<const Vec3f> points) {
-    const int copies = 1 << (3 - frame_.rank);
-    const double same = 1e-5 * extent_, move = 1e-6 * extent_;
     std::vector<Vec3d> kept;
     for (int i = 0; i < int(points.size()); ++i) {
         const Vec3d place = to_frame(points[std::size_t(i)]);
+        const double same = 1e-5 * extent_;
         if (std::ranges::any_of(kept, [&](const Vec3d& other) { return length(other - place) <= same; })) continue;
         kept.push_back(place);
-        if (frame_.rank == 0) continue;
-        for (int copy = 0; copy < copies; ++copy) {
-            Vec3d p = place;
-            for (int axis = frame_.rank; axis < 3; ++axis)
-                component(p, axis) += copy >> (axis - frame_.rank) & 1 ? layer_ : -layer_;
-            for (int axis = 0; axis < 3; ++axis) component(p, axis) += move * jitter(int(position_.size()), axis);
-            position_.push_back(p);
-            point_.push_back(i);
-        }
+        point_.push_back(i);
+    }
+    if (frame_.rank == 0) return;
+    const std::vector<int> own = std::exchange(point_, {});
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        double nearest = spacing_;
+        for (std::size_t j = 0; j < kept.size(); ++j)
+            if (j != i) nearest = std::min(nearest, length(kept[j] - kept[i]));
+        const double raise = 0.01 * nearest * nearest;
+        add_vertex(kept[i], own[i], raise);
+        is_copy_.resize(position_.size(), 0);
+        for (int axis = 0; axis < frame_.rank; ++axis)
+            for (const double sign : {1.0, -1.0})
+                if (is_outermost(kept, i, axis, sign)) {
+                    Vec3d copy = kept[i];
+                    component(copy, axis) += sign * spacing_;
+                    add_vertex(copy, own[i], raise);
+                    is_copy_.resize(position_.size(), 1);
+                }
+    }
+}
+
+bool Tetrahedra::is_outermost(const std::vector<Vec3d>& places, std::size_t i, int axis, double sign) const {
+    for (std::size_t j = 0; j < places.size(); ++j) {
+        Vec3d to = places[j] - places[i];
+        const double along = sign * component(to, axis), distance = length(to);
+        if (j != i && along > 0.7 * distance && distance < 3 * spacing_) return false;
+    }
+    return true;
+}
+
+void Tetrahedra::add_vertex(const Vec3d& place, int point, double raise) {
+    const int layers = 1 << (3 - frame_.rank);
+    const double move = 1e-6 * extent_;
+    for (int layer = 0; layer < layers; ++layer) {
+        Vec3d p = place;
+        for (int axis = frame_.rank; axis < 3; ++axis)
+            component(p, axis) += (layer >> (axis - frame_.rank) & 1 ? 0.25 : -0.25) * spacing_;
+        for (int axis = 0; axis < 3; ++axis) component(p, axis) += move * jitter(int(position_.size()), axis);
+        raised_.push_back(raise * jitter(int(position_.size()), 3));
+        position_.push_back(p);
+        point_.push_back(point);
     }
 }
 
@@ -216,8 +259,10 @@ bool Tetrahedra::conflicts(const Cell& cell, int vertex) const {
         const std::array<Vec3d, 3> face = face_positions(cell, std::size_t(ghost));
         return orientation(face[0], face[1], face[2], p) > 0;
     }
-    const auto at = [&](std::size_t i) -> const Vec3d& { return position_[std::size_t(cell.vertex[i])]; };
-    return inside_sphere(at(0), at(1), at(2), at(3), p) > 0;
+    const auto lifted = [&](int v) { return Lifted{position_[std::size_t(v)], raised_[std::size_t(v)]}; };
+    return inside_sphere(
+               {lifted(cell.vertex[0]), lifted(cell.vertex[1]), lifted(cell.vertex[2]), lifted(cell.vertex[3])},
+               lifted(vertex)) > 0;
 }
 
 int Tetrahedra::find_conflict(int vertex) const {

@@ -18,7 +18,8 @@
 
 namespace domelight {
 
-/// How far the surfaces around a probe are, filtered over a lobe about a direction.
+/// How far the surfaces around a probe are: over the area of a texel. Lookups between texels follow walls
+/// (src/probe/distance_lookup.h), which a wider lobe would blur: a point just behind a wall would be taken for lit.
 struct DistanceMoments {
     float mean = 0;         ///< metres
     float mean_square = 0;  ///< square metres

@@ -8,21 +8,27 @@
 
 namespace domelight {
 
-/// Delaunay tetrahedra between points, and the interpolation in them: continuous everywhere, linear within each
-/// tetrahedron, and exact for linear functions inside the points' convex hull.
+/// Delaunay tetrahedra between points, and the interpolation in them: continuous, linear within each tetrahedron, and
+/// exact for linear functions inside the points' convex hull.
 ///
-/// Built by insertion (Bowyer 1981; Watson 1981) with "ghost" tetrahedra outside of the hull. The points are moved by
-/// about a millionth of their extent first, the same way each time, so that no five lie on a sphere and no four in a
-/// plane. Points that lie nearly on a plane (thinner than half of their spacing) or nearly on a line are interpolated
-/// within that plane or line; a single point has all the weight.
+/// Built by insertion (Bowyer 1981; Watson 1981) with "ghost" tetrahedra outside of the hull.
+///   - Points that are outermost along an axis are copied outwards by the typical spacing. A place just outside lies
+///     between the points next to it, and not above a long triangle of the hull. (Cupisz 2012, "Light probe interpolation
+///     using tetrahedral tessellations", extrudes the hull's faces along normals for the same purpose.)
+///   - Points that lie nearly on a plane (thinner than half of their spacing) or nearly on a line are interpolated within
+///     that plane or line; a single point has all the weight.
+///   - Four points of a square, as grids have them, can have a tetrahedron without volume between them, across which an
+///     interpolation would jump. So the squares of the points (the fourth coordinate, of which Delaunay tetrahedra are
+///     the convex hull) are raised by up to a hundredth of the squared distance to the nearest, which leaves out the flattest ones; the
+///     points are moved by a millionth of their extent, so that no four of the hull lie on a plane. Both are the same
+///     each time.
 class Tetrahedra {
   public:
     /// points: at least 1, finite. A point that coincides with an earlier one (within 1e-5 of the extent) is left out:
     /// its weight is 0 everywhere.
     explicit Tetrahedra(std::span<const Vec3f> points);
 
-    /// The points of each tetrahedron. Where the points lie on a plane or a line, a tetrahedron has the same point
-    /// twice or more often; with a single point there is one tetrahedron that has it four times.
+    /// The points of each tetrahedron of four different points. None where the points lie on a plane or a line.
     std::span<const std::array<int, 4>> cells() const { return cells_; }
 
     /// The points between which a place lies, and their weights: >= 0, sum 1. A point may occur more than once.
@@ -30,9 +36,7 @@ class Tetrahedra {
         std::array<int, 4> point{};
         std::array<float, 4> weight{};
     };
-    /// Outside of the hull, those of the nearest place on it. (Cupisz 2012, "Light probe interpolation using tetrahedral
-    /// tessellations", extrudes the hull's faces along normals for the same purpose. The nearest place of a convex body
-    /// needs no normals, and moves no further than the point does.)
+    /// Outside of the hull and its copies, those of the nearest place on it.
     Weights at(const Vec3f& place) const;
 
   private:
@@ -53,6 +57,10 @@ class Tetrahedra {
 
     void make_frame(std::span<const Vec3f> points);
     void make_vertices(std::span<const Vec3f> points);
+    /// Adds a point; where the points lie on a plane or a line, its layers on both sides of that.
+    void add_vertex(const Vec3d& place, int point, double raise);
+    /// No other place is near in this direction.
+    bool is_outermost(const std::vector<Vec3d>& places, std::size_t i, int axis, double sign) const;
     void triangulate();
     void insert(int vertex);
     void drop_removed();
@@ -68,8 +76,10 @@ class Tetrahedra {
 
     Frame frame_;
     double extent_ = 0;
-    double layer_ = 0;              ///< half of the distance between the copies of points on a plane or a line
+    double spacing_ = 0;            ///< the typical distance of points
     std::vector<Vec3d> position_;   ///< of the vertices, in the frame, moved a little
+    std::vector<double> raised_;    ///< by how much their squares are raised
+    std::vector<char> is_copy_;     ///< 1: an outward copy of a point
     std::vector<int> point_;        ///< whose vertex it is
     std::vector<Cell> tetrahedra_;  ///< with the ghosts
     std::vector<int> hull_;         ///< the ghosts
