@@ -7,6 +7,7 @@
 namespace domelight::cli {
 
 int run_bake(const std::vector<std::string>& words);
+int run_batch(const std::vector<std::string>& words);
 int run_brdf(const std::vector<std::string>& words);
 int run_compare(const std::vector<std::string>& words);
 int run_convert(const std::vector<std::string>& words);

@@ -36,6 +36,7 @@ struct Command {
 
 constexpr Command k_commands[] = {
     {"bake", "bakes an environment for an engine: specular levels, irradiance, harmonics and BRDF table", run_bake},
+    {"batch", "plans any number of jobs and does them: resumable, on one machine or on a cluster", run_batch},
     {"brdf", "writes the BRDF table of the split sum alone, which is the same for every environment", run_brdf},
     {"compare", "compares two pictures, or a bake by any tool with the exact filter", run_compare},
     {"convert", "converts an environment to another projection, convention, orientation, size or format", run_convert},

@@ -38,6 +38,7 @@ ROOMS = [
     ("bake", "plan, filter, write, manifest"),
     ("view", "the page of `domelight view`, served to a browser on this machine"),
     ("study", "the figures and tables that teach: estimates, explanations, surveys"),
+    ("batch", "many jobs: planned, shared out, done once each, merged, verified and reported"),
     ("c", "the C interface: domelight_c.h"),
 ]
 C_INTERFACE = "domelight/domelight_c.h"

@@ -6,6 +6,7 @@
 
 #include "cli/console/suggestion.h"
 #include "io/environment/cube_face_names.h"
+#include "io/environment/environment_files.h"
 #include "projection/latlong_convention.h"
 
 #include <algorithm>
@@ -125,17 +126,7 @@ Result<void> check_one_environment(const std::vector<std::string>& arguments, co
 
 std::vector<std::filesystem::path> environment_files(const std::vector<std::string>& arguments,
                                                      const EnvironmentOptions& options) {
-    std::vector<std::filesystem::path> files(arguments.begin(), arguments.end());
-    std::error_code failure;
-    if (files.size() == 1 && std::filesystem::is_directory(files[0], failure)) {
-        const auto faces = cube_faces_in_folder(files[0]);
-        if (faces.size() == 6) files = faces;
-    }
-    if (files.size() != 6) return files;
-    // In the order of the faces, so that the hash does not depend on how they were named on the command line.
-    const auto faces = options.faces.empty() ? cube_faces_by_name(files) : cube_faces_in_order(files, options.faces);
-    if (faces) files.assign(faces->files.begin(), faces->files.end());
-    return files;
+    return domelight::environment_files({arguments.begin(), arguments.end()}, options);
 }
 
 Result<Environment> open_light_to_draw_from(const std::vector<std::string>& arguments,

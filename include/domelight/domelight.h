@@ -41,6 +41,8 @@
 
 #include "domelight/bake/bake.h"
 #include "domelight/bake/brdf_file.h"
+#include "domelight/batch/batch_plan.h"
+#include "domelight/batch/batch_run.h"
 #include "domelight/base/frame.h"
 #include "domelight/base/large_allocator.h"
 #include "domelight/base/names.h"

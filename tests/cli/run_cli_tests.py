@@ -70,7 +70,9 @@ def test_examples_in_every_help_run(folder):
     shutil.copy(folder / "evening.hdr", folder / "sunset.hdr")
     (folder / "helmet.glb").write_bytes(make_glb())
     smaller = {"render": ["--width", "8", "--height", "8", "--spp", "1", "--quiet"]}  # if an option is repeated, the last one counts
-    for command in ["bake", "brdf", "compare", "convert", "info", "lights", "render", "sample", "sky"]:
+    (folder / "hdris").mkdir()
+    shutil.copy(folder / "studio.hdr", folder / "hdris")
+    for command in ["bake", "batch", "brdf", "compare", "convert", "info", "lights", "render", "sample", "sky"]:
         text = run(command, "--help", folder=folder).stdout
         assert text.startswith("Examples:\n"), f"{command} --help does not open with examples"
         examples = [line.strip() for line in text.split("\n\n")[0].splitlines()[1:]]
@@ -107,7 +109,7 @@ def test_a_render_of_every_direction_is_an_environment(folder):
 def test_help_of_a_command(folder):
     overview = run("help", folder=folder).stdout
     assert overview == run("--help", folder=folder).stdout and "domelight help COMMAND" in overview
-    for command in ["bake", "brdf", "compare", "convert", "info", "lights", "render", "sample", "sky", "view"]:
+    for command in ["bake", "batch", "brdf", "compare", "convert", "info", "lights", "render", "sample", "sky", "view"]:
         text = run("help", command, folder=folder).stdout
         assert text == run(command, "--help", folder=folder).stdout
         assert text.count("is the default") == 1, command
@@ -146,8 +148,8 @@ def test_completions_name_every_command_and_option(folder):
 
 def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
     cases = [
-        (["nonsense"], "bake, brdf, compare, convert, info, render, lights, sample, sky"),
-        (["--nonsense"], "bake, brdf, compare, convert, info, render, lights, sample, sky"),
+        (["nonsense"], "bake, batch, brdf, compare, convert, info, render, lights, sample, sky"),
+        (["--nonsense"], "bake, batch, brdf, compare, convert, info, render, lights, sample, sky"),
         (["bake", "-o", "o", "--nonsense"], "--lobe"),
         (["bake"], "-o DIR"),
         (["bake", "-o", "o", "--lobe", "blinn"], "ggx, charlie, phong, phong-plain"),

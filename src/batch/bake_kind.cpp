@@ -1,0 +1,192 @@
+// Jobs that bake an environment for engines.
+#include "domelight/bake/bake.h"
+#include "domelight/engines/engine.h"
+#include "domelight/io/environment/open_environment.h"
+
+#include "batch/job_kind.h"
+#include "batch/option_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace domelight {
+namespace {
+
+/// The two words of the command line for what an irradiance map holds.
+void read_irradiance(OptionReader& reader, BakeOptions& options) {
+    std::string word;
+    reader.read("irradiance", word);
+    if (word.empty()) return;
+    const std::array<std::string, 2> accepted{"e", "over-pi"};
+    if (std::ranges::find(accepted, word) == accepted.end())
+        return reader.fail(unknown_name(word, "a quantity", accepted).at(field_place("irradiance")));
+    options.irradiance_quantity = word == "e" ? Quantity::irradiance : Quantity::irradiance_over_pi;
+}
+
+void read_plain_methods(OptionReader& reader, BakeOptions& options) {
+    reader.read("method", options.method);
+    reader.read("samples", options.points.count, 1, 1 << 24);
+    reader.read("sequence", options.points.sequence);
+    reader.read("seed", options.points.seed);
+    std::vector<double> steps;
+    reader.read("riemann_steps", steps);
+    if (steps.size() == 2) {
+        options.riemann.phi_steps = int(steps[0]);
+        options.riemann.theta_steps = int(steps[1]);
+    } else if (!steps.empty()) {
+        reader.fail({"is not two numbers", field_place("riemann_steps"), "[K, J]: K steps of phi by J of theta."});
+    }
+    std::string sum;
+    reader.read("riemann_sum", sum);
+    const std::array<std::string, 2> accepted{"normalised", "plain"};
+    if (!sum.empty() && std::ranges::find(accepted, sum) == accepted.end())
+        reader.fail(unknown_name(sum, "a Riemann sum", accepted).at(field_place("riemann_sum")));
+    if (!sum.empty()) options.riemann.normalised = sum == "normalised";
+}
+
+Result<BakeOptions> options_of(const Json& json) {
+    OptionReader reader(json);
+    BakeOptions o;
+    reader.read("for", o.engines);
+    reader.read("layout", o.layout);
+    reader.read("size", o.size);
+    reader.read("levels", o.levels);
+    reader.read("roughness", o.roughness);
+    reader.read("lobe", o.lobe);
+    reader.read("exponents", o.exponents);
+    reader.read("texels", o.texels);
+    read_plain_methods(reader, o);
+    reader.read("encoding", o.encoding);
+    reader.read("encoding_quality", o.encoding_quality);
+    reader.read("format", o.format);
+    reader.read("zstd", o.zstd);
+    reader.read("cube_picture", o.cube_picture);
+    reader.read("latlong_out", o.latlong_out);
+    read_irradiance(reader, o);
+    reader.read("irradiance_size", o.irradiance_size);
+    reader.read("sh_bands", o.sh_bands);
+    reader.read("sh_window", o.sh_window);
+    reader.read("brdf_g", o.brdf_g);
+    reader.read("brdf_form", o.brdf_form);
+    reader.read("brdf_size", o.brdf_size);
+    reader.read("brdf_float", o.brdf_float);
+    reader.read("as_read", o.as_read);
+    reader.read("preview", o.preview);
+    reader.read("hashes", o.hashes);
+    read_environment_options(reader, o.environment);
+    if (auto ok = reader.finish(); !ok) return ok.error();
+    if (auto ok = check_bake_options(o); !ok) return ok.error();
+    return o;
+}
+
+Result<void> check(const Json& json) {
+    const auto options = options_of(json);
+    return options ? Result<void>() : options.error();
+}
+
+std::string no_file(const Json&, const std::string&) {
+    return {};
+}
+
+/// Seconds for each texel of encodings that search, beyond what the plain ones take.
+double search_seconds(Encoding encoding, EncodingQuality quality) {
+    const double effort = quality == EncodingQuality::exhaustive ? 50 : quality == EncodingQuality::high ? 4 : 1;
+    switch (encoding) {
+        case Encoding::bc6h:
+            return 0.33e-6 * effort;
+        case Encoding::uastc_hdr:
+            return 0.1e-6 * effort;
+        case Encoding::astc4x4_hdr:
+        case Encoding::astc6x6_hdr:
+            return 1.2e-6 * effort;
+        default:
+            return 0;
+    }
+}
+
+/// Fitted to the CPU time and the memory of bakes of environments of 1k to 4k for each engine, on one core of 2021.
+JobEstimate estimate(const Json& json, std::span<const InputFacts> inputs) {
+    const auto options = options_of(json);
+    if (!options) return {1, 1 << 28};
+    std::int64_t texels = 0;
+    for (const InputFacts& input : inputs) texels += input.texels();
+    JobEstimate estimate{0.1 + 0.017e-6 * double(texels), (std::int64_t(45) << 20) + 4 * texels};
+    for (const std::string& name : options->engines) {
+        const Engine& engine = **find_engine(name);
+        const double size = options->size.value_or(engine.size > 0 ? engine.size : std::sqrt(double(texels) / 8));
+        const bool cube = !engine.environment_only && options->layout.value_or(engine.layout) == Layout::cube;
+        const double out = cube ? 8 * size * size : 3 * size * size;
+        double each = 0.08e-6 + search_seconds(options->encoding.value_or(engine.encoding), options->encoding_quality);
+        if (options->method != BakeMethod::exact) each = 1e-3;
+        if (options->as_read) each += 0.15e-6;
+        estimate.seconds += 0.05 + out * each;
+        // Charlie's lobe has a finer kernel than GGX.
+        if (!engine.sheen_file.empty()) estimate.seconds += 9e-6 * out;
+        estimate.memory += std::int64_t(out * (engine.sheen_file.empty() ? 28 : 600));
+    }
+    return estimate;
+}
+
+/// The largest relative error that storing a level brought, over all maps.
+double largest_error(const BakeReport& report) {
+    double error = 0;
+    for (const EngineReport& engine : report.engines)
+        for (const BakedMap& map : engine.maps)
+            for (const BakedLevel& level : map.levels) error = std::max(error, level.encoding.rms_error);
+    return error;
+}
+
+/// The hashes of the files that a bake has written, by their names in `folder`.
+std::map<std::string, std::string> hashes_of(const BakeReport& report, const std::filesystem::path& folder) {
+    std::map<std::string, std::string> hashes;
+    for (const EngineReport& engine : report.engines) {
+        const auto add = [&](const BakedFile& file) {
+            if (!file.sha256.empty())
+                hashes[(engine.folder / file.file).lexically_relative(folder).generic_string()] = file.sha256;
+        };
+        for (const BakedMap& map : engine.maps) {
+            add(map.file);
+            for (const BakedLevel& level : map.levels) std::ranges::for_each(level.files, add);
+        }
+        std::ranges::for_each(engine.sh.files, add);
+        add(engine.brdf.file);
+        if (engine.preview) add(*engine.preview);
+    }
+    return hashes;
+}
+
+Result<JobReport> run(const JobCall& call) {
+    auto options = options_of(call.options);
+    if (!options) return options.error();
+    options->threads = options->environment.threads = call.threads;
+    options->source_files = call.files("environment");
+    const auto environment = open_environment(options->source_files, options->environment);
+    if (!environment) return environment.error();
+    const auto baked = bake(*environment, *options, call.folder);
+    if (!baked) return baked.error();
+    JobReport report;
+    report.warnings = baked->warnings;
+    report.repaired = baked->repaired.repaired();
+    report.error = largest_error(*baked);
+    report.error_of = "RMS error of the encoding of the worst level";
+    report.hashes = hashes_of(*baked, call.folder);
+    const EngineReport& first = baked->engines.front();
+    if (first.preview) report.preview = (first.folder / first.preview->file).lexically_relative(call.folder).string();
+    return report;
+}
+
+}  // namespace
+
+JobKind bake_kind() {
+    return {.name = "bake",
+            .does = "bakes an environment for engines, as `domelight bake` does",
+            .roles = {"environment"},
+            .makes_folder = true,
+            .file_name = no_file,
+            .check = check,
+            .estimate = estimate,
+            .run = run};
+}
+
+}  // namespace domelight

@@ -1,0 +1,27 @@
+#include "batch/job_kind.h"
+
+#include "domelight/base/names.h"
+
+namespace domelight {
+
+std::span<const JobKind> job_kinds() {
+    static const JobKind table[] = {bake_kind()};
+    return table;
+}
+
+Result<const JobKind*> find_job_kind(const std::string& name) {
+    std::vector<std::string> accepted;
+    for (const JobKind& kind : job_kinds()) {
+        if (kind.name == name) return &kind;
+        accepted.emplace_back(kind.name);
+    }
+    return unknown_name(name, "a kind of job", accepted);
+}
+
+std::vector<BatchKind> batch_kinds() {
+    std::vector<BatchKind> kinds;
+    for (const JobKind& kind : job_kinds()) kinds.push_back({kind.name, kind.does});
+    return kinds;
+}
+
+}  // namespace domelight
