@@ -12,6 +12,7 @@ int run_brdf(const std::vector<std::string>& words);
 int run_compare(const std::vector<std::string>& words);
 int run_convert(const std::vector<std::string>& words);
 int run_info(const std::vector<std::string>& words);
+int run_probes(const std::vector<std::string>& words);
 int run_render(const std::vector<std::string>& words);
 int run_lights(const std::vector<std::string>& words);
 int run_sample(const std::vector<std::string>& words);

@@ -41,6 +41,7 @@ constexpr Command k_commands[] = {
     {"compare", "compares two pictures, or a bake by any tool with the exact filter", run_compare},
     {"convert", "converts an environment to another projection, convention, orientation, size or format", run_convert},
     {"info", "describes an environment, a texture or a bake", run_info},
+    {"probes", "captures the light at many points of a scene, and bakes each", run_probes},
     {"render", "renders a scene under an environment: by path tracing, or as an engine draws it", run_render},
     {"lights", "extracts the sun and other small bright sources as lights, and the environment without them",
      run_lights},

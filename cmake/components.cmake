@@ -72,6 +72,7 @@ domelight_component(render ROOMS render USES io LINKS fmt::fmt embree Threads::T
 pkg_check_modules(httplib REQUIRED IMPORTED_TARGET cpp-httplib)
 domelight_component(view ROOMS view USES render LINKS fmt::fmt PkgConfig::httplib Threads::Threads)
 domelight_component(bake ROOMS bake compare USES io preview LINKS fmt::fmt)
+domelight_component(capture ROOMS capture USES render bake LINKS fmt::fmt)
 domelight_component(study ROOMS study USES render bake LINKS fmt::fmt)
 domelight_component(batch ROOMS batch USES render bake LINKS fmt::fmt)
 include(cmake/c_interface.cmake)

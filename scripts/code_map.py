@@ -36,6 +36,7 @@ ROOMS = [
     ("render", "path tracing, surfaces, and the shading that engines draw"),
     ("compare", "differences of images, FLIP, audit of a bake"),
     ("bake", "plan, filter, write, manifest"),
+    ("capture", "probes of a scene: where they are placed, what they capture, and their files"),
     ("view", "the page of `domelight view`, served to a browser on this machine"),
     ("study", "the figures and tables that teach: estimates, explanations, surveys"),
     ("batch", "many jobs: planned, shared out, done once each, merged, verified and reported"),

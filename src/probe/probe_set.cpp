@@ -1,10 +1,8 @@
-#include "domelight/probe/probe_set.h"
-
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
 
 #include "base/field_place.h"
-#include "probe/cube_store.h"
 #include "probe/distance_lookup.h"
+#include "probe/probe_set_builder.h"
 
 #include <fmt/core.h>
 
@@ -13,18 +11,6 @@
 #include <limits>
 
 namespace domelight {
-
-struct ProbeSet::Impl {
-    std::vector<Probe> probes;
-    std::optional<ProbeGrid> grid;
-    std::vector<std::array<int, 4>> tetrahedra;
-    std::vector<float> roughness;
-    std::vector<CubeStore<PackedRgb>> specular;  ///< one for each level
-    CubeStore<PackedRgb> irradiance_over_pi;
-    CubeStore<PackedMoments> distance;
-    std::vector<std::array<Vec3d, 9>> harmonics;             ///< of the radiance
-    std::vector<std::array<Vec3d, 9>> harmonics_irradiance;  ///< of E / pi
-};
 
 ProbeSet::ProbeSet() : impl_(std::make_unique<Impl>()) {}
 ProbeSet::~ProbeSet() = default;
@@ -72,39 +58,66 @@ Result<void> check_sizes(const ProbeMaps& maps, const ProbeMaps& first, std::siz
 
 }  // namespace
 
+Result<void> check_set(const std::optional<ProbeGrid>& grid, std::size_t probes, std::span<const float> roughness) {
+    if (grid)
+        if (auto ok = check_grid(*grid, probes); !ok) return ok;
+    return check_roughness(roughness);
+}
+
 Result<ProbeSet> ProbeSet::from_maps(std::vector<Probe> probes, std::optional<ProbeGrid> grid,
                                      std::vector<float> roughness, std::span<const ProbeMaps> maps) {
     if (probes.empty()) return Error{"is empty", field_place("probes"), ""};
     if (maps.size() != probes.size())
         return Error{fmt::format("holds {}, but there are {} probes", maps.size(), probes.size()), field_place("maps"),
                      ""};
-    if (grid)
-        if (auto ok = check_grid(*grid, probes.size()); !ok) return ok.error();
-    if (auto ok = check_roughness(roughness); !ok) return ok.error();
+    if (auto ok = check_set(grid, probes.size(), roughness); !ok) return ok.error();
     for (std::size_t i = 0; i < maps.size(); ++i)
         if (auto ok = check_sizes(maps[i], maps[0], roughness.size(), i); !ok) return ok.error();
 
+    std::vector<int> sizes;
+    for (const Cubemap& level : maps[0].specular) sizes.push_back(level.size());
+    ProbeSetBuilder builder(std::move(probes), grid, std::move(roughness),
+                            {sizes, maps[0].irradiance_over_pi.size(), maps[0].distance.size()});
+    for (std::size_t i = 0; i < maps.size(); ++i) builder.set(int(i), maps[i]);
+    return builder.take();
+}
+
+ProbeSetBuilder::ProbeSetBuilder(std::vector<Probe> probes, std::optional<ProbeGrid> grid, std::vector<float> roughness,
+                                 const ProbeMapSizes& sizes) {
+    ProbeSet::Impl& impl = *set_.impl_;
     const int count = int(probes.size());
-    ProbeSet set;
-    Impl& impl = *set.impl_;
-    for (const Cubemap& level : maps[0].specular) impl.specular.emplace_back(level.size(), count);
-    impl.irradiance_over_pi = {maps[0].irradiance_over_pi.size(), count};
-    if (!maps[0].distance.empty()) impl.distance = {maps[0].distance.size(), count};
-    for (int i = 0; i < count; ++i) {
-        const ProbeMaps& m = maps[std::size_t(i)];
-        for (std::size_t l = 0; l < m.specular.size(); ++l) impl.specular[l].set(i, m.specular[l].pixels().data());
-        impl.irradiance_over_pi.set(i, m.irradiance_over_pi.pixels().data());
-        if (!m.distance.empty()) impl.distance.set(i, m.distance.pixels().data());
-        impl.harmonics.push_back(m.harmonics);
-        const auto irradiance = sh_irradiance_over_pi(m.harmonics);
-        std::ranges::copy(irradiance, impl.harmonics_irradiance.emplace_back().begin());
-    }
+    for (const int size : sizes.specular) impl.specular.emplace_back(size, count);
+    impl.irradiance_over_pi = {sizes.irradiance, count};
+    if (sizes.distance > 0) impl.distance = {sizes.distance, count};
+    impl.harmonics.resize(probes.size());
+    impl.harmonics_irradiance.resize(probes.size());
     impl.probes = std::move(probes);
     impl.grid = grid;
     impl.roughness = std::move(roughness);
-    return set;
 }
 
+void ProbeSetBuilder::set(int probe, const ProbeMaps& maps) {
+    ProbeSet::Impl& impl = *set_.impl_;
+    for (std::size_t l = 0; l < maps.specular.size(); ++l)
+        impl.specular[l].set(probe, maps.specular[l].pixels().data());
+    impl.irradiance_over_pi.set(probe, maps.irradiance_over_pi.pixels().data());
+    if (!maps.distance.empty()) impl.distance.set(probe, maps.distance.pixels().data());
+    impl.harmonics[std::size_t(probe)] = maps.harmonics;
+    const auto irradiance = sh_irradiance_over_pi(maps.harmonics);
+    std::ranges::copy(irradiance, impl.harmonics_irradiance[std::size_t(probe)].begin());
+}
+
+void ProbeSetBuilder::set_sources(ProbeSource scene, ProbeSource environment) {
+    set_.impl_->scene = std::move(scene);
+    set_.impl_->environment = std::move(environment);
+}
+
+const ProbeSource& ProbeSet::scene() const {
+    return impl_->scene;
+}
+const ProbeSource& ProbeSet::environment() const {
+    return impl_->environment;
+}
 std::span<const Probe> ProbeSet::probes() const {
     return impl_->probes;
 }

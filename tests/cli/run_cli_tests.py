@@ -106,6 +106,56 @@ def test_a_render_of_every_direction_is_an_environment(folder):
         assert what in run("render", "helmet.glb", *words, "-o", "x.exr", folder=folder, code=2).stderr, words
 
 
+PROBES = ["--size", "8", "--spp", "2", "--bounces", "1"]
+
+
+def test_probes_are_written_whole_and_described(folder):
+    told = run("probes", "spheres", "-o", "set", "--grid", "2,1,1", *PROBES, folder=folder).stdout
+    assert told.startswith("set: 2 probes, "), told
+    assert sorted(p.name for p in (folder / "set").iterdir()) == ["distance.ktx2", "irradiance.ktx2", "probes.json", "specular.ktx2"]
+    described = run("info", "set/specular.ktx2", folder=folder).stdout
+    assert "8 x 8, 6 faces, 2 layers, 2 levels" in described and "domelight.roughness" in described, described
+    record = json.loads((folder / "set/probes.json").read_text())
+    assert record["grid"]["counts"] == [2, 1, 1] and len(record["probes"]) == 2
+    for name in ("specular", "irradiance", "distance"):
+        data = (folder / "set" / record[name]["file"]).read_bytes()
+        assert record[name]["sha256"] == hashlib.sha256(data).hexdigest(), name
+    report = json.loads(run("probes", "spheres", "-o", "at", "--at", "0,0,4", "--at", "9,0,0", "--json", *PROBES, "--threads", "1", folder=folder).stdout)
+    assert report["probes"] == 2 and report["rays"] > 0 and report["invalid"] == 0, report
+    again = run("probes", "spheres", "-o", "at2", "--at", "0,0,4", "--at", "9,0,0", "--quiet", *PROBES, "--threads", "2", folder=folder)
+    assert again.stdout == ""
+    for name in ("specular.ktx2", "irradiance.ktx2", "distance.ktx2", "probes.json"):
+        assert (folder / "at" / name).read_bytes() == (folder / "at2" / name).read_bytes(), name
+
+
+def test_probes_refuse_what_cannot_work(folder):
+    def refused(*words, code, says, scene="spheres"):
+        error = run("probes", scene, "-o", "set", *PROBES, *words, folder=folder, code=code).stderr
+        assert says in error, error
+        assert not (folder / "set").exists(), words
+
+    refused(code=2, says="--grid, --density, --at: is missing")
+    refused("--grid", "1,1,1", "--at", "0,0,0", code=2, says="are given together")
+    refused("--grid", "0,1,1", code=2, says="--grid: 0 is not a number of places")
+    refused("--grid", "2,2", code=2, says="--grid: needs three numbers")
+    refused("--density", "1e6", code=2, says="to the square metre would do")
+    refused("--density", "nan", code=2, says="--density")
+    refused("--at", "0,nan,0", code=2, says="--at: nan is not finite")
+    refused("--at", "0,0", code=2, says="--at: \"0,0\" is not three numbers")
+    refused("--grid", "1,1,1", "--region", "0,0,0,0,0,0", code=2, says="--region: from (0, 0, 0) to (0, 0, 0) has no volume")
+    refused("--grid", "1,1,1", "--region", "1,0,0,0,1,1", code=2, says="--region")
+    refused("--grid", "1,1,1", "--size", "4", code=2, says="--size")
+    refused("--grid", "1,1,1", "--levels", "9", code=2, says="--levels: 9 levels are more than faces of 8 texels have")
+    refused("--grid", "1,1,1", code=1, says="nothing.glb", scene="nothing.glb")
+    refused("--at", "0,0,0", code=1, says="all probes lie inside bodies", scene="furnace")
+    (folder / "black.hdr").write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n" + bytes(4 * 8 * 4))
+    refused("--at", "0,0,4", "--env", "black.hdr", code=1, says="the environment is black")
+    (folder / "empty.obj").write_text("v 0 0 0\n")
+    refused("--at", "0,0,4", code=1, says="no triangles", scene="empty.obj")
+    (folder / "a-file").write_text("")
+    assert "a-file" in run("probes", "spheres", "-o", "a-file", "--at", "0,0,4", *PROBES, folder=folder, code=1).stderr
+
+
 def test_help_of_a_command(folder):
     overview = run("help", folder=folder).stdout
     assert overview == run("--help", folder=folder).stdout and "domelight help COMMAND" in overview

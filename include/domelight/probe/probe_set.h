@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace domelight {
@@ -36,10 +37,19 @@ struct ProbeMaps {
     Cubemap distance;
 };
 
+/// What a set was captured from.
+struct ProbeSource {
+    std::string file;    ///< without its folder; empty where there is none: the built-in sky, a set in memory
+    std::string sha256;  ///< of a scene: scene_sha256(); of an environment: environment_sha256(). May be empty
+};
+
 /// Probes and their light. Texels of light are kept as RGB9E5 (docs/encodings.md), at a relative precision of 1/512 of a
 /// texel's largest channel: 150 KB for a probe of 64 x 64 texels a face. Reading is safe from several threads at once.
 class ProbeSet {
   public:
+    /// Reads what `domelight probes -o FOLDER` wrote: probes.json and the files that it names (docs/probes.md). Errors
+    /// name the file: not there, damaged, or not what probes.json says of it.
+    static Result<ProbeSet> load(const std::filesystem::path& folder);
     /// A set in memory.
     ///
     /// grid        where its places are; `probes` are then in its order
@@ -54,6 +64,8 @@ class ProbeSet {
     ProbeSet(ProbeSet&&) noexcept;
     ProbeSet& operator=(ProbeSet&&) noexcept;
 
+    const ProbeSource& scene() const;
+    const ProbeSource& environment() const;
     std::span<const Probe> probes() const;
     const std::optional<ProbeGrid>& grid() const;
     /// Where there is no grid: the tetrahedra between the probes, as four of their numbers each. Empty with a grid, and
@@ -80,6 +92,7 @@ class ProbeSet {
     DistanceMoments distance(int probe, const Vec3f& direction) const;
 
   private:
+    friend class ProbeSetBuilder;
     struct Impl;
     ProbeSet();
     std::unique_ptr<Impl> impl_;

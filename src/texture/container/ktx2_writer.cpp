@@ -172,7 +172,8 @@ Result<std::vector<TexelBytes>> compress_levels(const Texture& texture) {
 }  // namespace
 
 Result<TextureLayout> ktx2_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes,
-                                  Supercompression compression, std::span<const std::uint64_t> stored_bytes) {
+                                  Supercompression compression, std::span<const std::uint64_t> stored_bytes,
+                                  const TextureArray& array) {
     const std::size_t level_count = level_bytes.size();
 
     ByteBuffer descriptor, key_values;
@@ -198,8 +199,8 @@ Result<TextureLayout> ktx2_layout(const Texture& texture, std::span<const std::u
     head.u32(type_bytes(texture.encoding));
     head.u32(std::uint32_t(texture.width));
     head.u32(std::uint32_t(texture.height));
-    head.u32(0);  // depth
-    head.u32(0);  // layers
+    head.u32(std::uint32_t(array.depth));
+    head.u32(std::uint32_t(array.layers));
     head.u32(std::uint32_t(texture.faces));
     head.u32(std::uint32_t(level_count));
     head.u32(compression == Supercompression::zstd ? 2 : 0);

@@ -32,9 +32,15 @@ Result<TextureLayout> ktx1_layout(const Texture& texture, std::span<const std::u
 Result<TextureLayout> dds_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes);
 /// DDS with the header from before DX10: half and float RGBA, RG only, as D3DFORMAT numbers.
 Result<TextureLayout> dds9_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes);
+/// What a KTX2 file may hold besides one two-dimensional texture or one cube.
+struct TextureArray {
+    int layers = 0;  ///< textures or cubes one after the other; 0: it is no array
+    int depth = 0;   ///< slices of a three-dimensional texture; 0: it is none
+};
 /// `stored_bytes`: of each level in the file, where they are compressed; else equal to `level_bytes`.
 Result<TextureLayout> ktx2_layout(const Texture& texture, std::span<const std::uint64_t> level_bytes,
-                                  Supercompression compression, std::span<const std::uint64_t> stored_bytes);
+                                  Supercompression compression, std::span<const std::uint64_t> stored_bytes,
+                                  const TextureArray& array = {});
 
 /// Bytes of each of a texture's levels.
 std::vector<std::uint64_t> level_bytes_of(const Texture& texture);

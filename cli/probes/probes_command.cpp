@@ -1,0 +1,219 @@
+#include "domelight/base/version.h"
+#include "domelight/capture/probe_bake.h"
+#include "domelight/probe/scene_hash.h"
+
+#include "cli/commands.h"
+#include "cli/console/console.h"
+#include "cli/console/environment_options.h"
+#include "cli/console/field_options.h"
+#include "cli/console/interruption.h"
+#include "cli/console/print.h"
+#include "cli/probes/probes_options.h"
+#include "io/file/json.h"
+#include "io/file/output_place.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+namespace domelight::cli {
+namespace {
+
+void declare(Arguments& a, ProbesWords& w) {
+    a.positional("SCENE", w.scenes, "a .glb, .gltf, .obj or .ply, or a built-in scene");
+    a.texts("--env", "ENV", w.environment_files, fmt::format("the environment; without it {}", k_built_in_sky));
+    a.text("-o,--output", "DIR", w.output, "the folder for probes.json and its .ktx2 files");
+    a.group("Placement (one of the first three)");
+    a.numbers("--grid", "NX,NY,NZ", w.grid, "a regular grid of so many places that fills the region");
+    a.number("--density", "D", w.density,
+             "a regular grid with D probes to the square metre: neighbours are 1 / sqrt(D) metres apart on every axis");
+    a.texts("--at", "X,Y,Z", w.at, "a place in metres; may be given several times");
+    a.numbers("--region", "X0,Y0,Z0,X1,Y1,Z1", w.region,
+              "two corners of the box that a grid fills, in metres (the box around the scene)");
+    a.number("--nearest", "M", w.nearest,
+             "metres that a probe keeps from surfaces (a twentieth of the spacing, or 0.1)");
+    a.number("--farthest", "M", w.farthest,
+             "metres by which a probe may be moved out of geometry (0.45 of the spacing, or 0.5); 0: none is moved");
+    a.group("Capture");
+    a.integer("--size", "N", w.size, "texels along a face of each probe's cube, 8 to 1024 (64)");
+    a.integer("--spp", "N", w.spp, "samples of each texel (32)");
+    a.number("--noise", "E", w.noise,
+             "texels get more samples while their error, of L / (1 + L), is above this (0: off)");
+    a.integer("--bounces", "N", w.bounces, "bounces of indirect light (3)");
+    a.integer("--seed", "N", w.seed, "of the random numbers (0)");
+    a.number(
+        "--lux-per-unit", "LUX", w.lux_per_unit,
+        "the illuminance that a radiance of 1 from all around stands for, over pi: scales the scene's lights (683)");
+    a.group("Files");
+    a.integer("--levels", "N", w.levels, "levels of the specular chain (down to 4 x 4 texels)");
+    a.integer("--irradiance-size", "N", w.irradiance_size, "texels along a face of the irradiance (16)");
+    a.integer("--distance-size", "N", w.distance_size,
+              "texels along a face of the distances: a whole part of --size; 0: none (32)");
+    a.choice("--encoding", w.encoding, with_names({Encoding::rgb9e5, Encoding::rgba16f, Encoding::rgba32f}),
+             "of the light (rgb9e5)");
+    add_environment_options(a, w.environment);
+    add_common_options(a, w.common);
+}
+
+/// The places that were asked for.
+struct Places {
+    std::vector<Vec3f> places;
+    std::optional<ProbeGrid> grid;
+    std::string how;
+};
+
+Result<Places> places_for(const ProbesWords& w, const Scene& scene) {
+    Places out;
+    const Scene::Box bounds = scene.bounds();
+    ProbeBox region{bounds.low, bounds.high};
+    if (!w.region.empty())
+        region = {Vec3f(Vec3d{w.region[0], w.region[1], w.region[2]}),
+                  Vec3f(Vec3d{w.region[3], w.region[4], w.region[5]})};
+    if (!w.places.empty()) {
+        out.places = w.places;
+        out.how = "at";
+        return out;
+    }
+    const auto grid = w.grid.empty() ? grid_over(region, {.density = w.density})
+                                     : grid_over(region, int(w.grid[0]), int(w.grid[1]), int(w.grid[2]));
+    if (!grid) return grid.error();
+    out.grid = *grid;
+    out.places = places_of(*grid);
+    out.how = w.grid.empty() ? fmt::format("density {:g}", w.density) : "grid";
+    return out;
+}
+
+float least_spacing(const Places& places) {
+    if (!places.grid) return 0;
+    const ProbeGrid& g = *places.grid;
+    float least = std::numeric_limits<float>::infinity();
+    if (g.nx > 1) least = std::min(least, g.spacing.x);
+    if (g.ny > 1) least = std::min(least, g.spacing.y);
+    if (g.nz > 1) least = std::min(least, g.spacing.z);
+    return std::isinf(least) ? 0 : least;
+}
+
+RelocationOptions relocation(const ProbesWords& w, float spacing) {
+    RelocationOptions r;
+    r.nearest = w.nearest > 0 ? float(w.nearest) : spacing > 0 ? 0.05f * spacing : 0.1f;
+    r.farthest = w.farthest >= 0 ? float(w.farthest) : spacing > 0 ? 0.45f * spacing : 0.5f;
+    r.threads = w.threads();
+    return r;
+}
+
+std::vector<std::string> sentences(const std::vector<Probe>& probes) {
+    const auto moved = std::ranges::count_if(probes, [](const Probe&p) { return p.moved; }),
+               invalid = std::ranges::count_if(probes, [](const Probe&p) { return !p.valid; });
+    std::vector<std::string> lines;
+    if (moved > 0) lines.push_back(fmt::format("{} of {} probes were moved away from surfaces", moved, probes.size()));
+    if (invalid > 0)
+        lines.push_back(
+            fmt::format("{} of {} probes lie inside bodies: each was given the light of the valid probe "
+                        "with the fewest surfaces between",
+                        invalid, probes.size()));
+    return lines;
+}
+
+void print_result(const ProbesWords& w, const std::vector<Probe>& probes, const ProbeBakeReport& report) {
+    const auto moved = std::ranges::count_if(probes, [](const Probe&p) { return p.moved; }),
+               invalid = std::ranges::count_if(probes, [](const Probe&p) { return !p.valid; });
+    if (w.common.json) {
+        print_document({{"version", version()},
+                        {"folder", w.output},
+                        {"probes", probes.size()},
+                        {"moved", moved},
+                        {"invalid", invalid},
+                        {"rays", report.rays},
+                        {"capture_cpu_seconds", report.capture_seconds},
+                        {"filter_cpu_seconds", report.filter_seconds},
+                        {"non_finite_samples", report.non_finite_samples},
+                        {"clipped_texels", report.clipped_texels},
+                        {"bytes", report.bytes}});
+        return;
+    }
+    if (w.common.quiet) return;
+    print("{}: {} probes, {:.1f} MB\n", w.output, probes.size(), double(report.bytes) / 1e6);
+    for (const std::string& line : sentences(probes)) print("  {}\n", line);
+    print("  {:.3g} million rays in {:.1f} s, filtered in {:.2f} s of processor time\n", double(report.rays) / 1e6,
+          report.capture_seconds, report.filter_seconds);
+}
+
+std::vector<std::string> warnings_of(const ProbeBakeReport& report) {
+    std::vector<std::string> warnings;
+    if (report.non_finite_samples > 0)
+        warnings.push_back(fmt::format("{} samples are not finite and count as black", report.non_finite_samples));
+    if (report.clipped_texels > 0)
+        warnings.push_back(
+            fmt::format("{} texels are brighter than `encoding` can hold and were clipped", report.clipped_texels));
+    return warnings;
+}
+
+int run_capture(const ProbesWords& w, Scene scene, const Environment& environment) {
+    const auto places = places_for(w, scene);
+    if (!places) return print_error(with_options(places.error()));
+    ProbeBakeOptions options;
+    options.capture = w.capture();
+    options.filter.levels = w.levels.value_or(0);
+    options.filter.irradiance_size = w.irradiance_size.value_or(16);
+    options.filter.distance_size = w.distance_size.value_or(-1);
+    options.encoding = w.encoding;
+    options.placement = places->how;
+    options.scene = {std::filesystem::path(w.scene_name()).filename().string(), scene_sha256(scene)};
+    const auto hash = environment_sha256(environment);
+    if (!hash) return print_error(hash.error());
+    options.environment = {environment.file.filename().string(), *hash};
+    options.inputs = environment.files;
+    options.inputs.push_back(w.scene_name());
+    const Scene::Box bounds = scene.bounds();
+    options.filter.farthest = std::max(1e-3f, length(bounds.high - bounds.low));
+
+    auto traced = RayScene::build(std::move(scene));
+    if (!traced) return print_error(traced.error().at(w.scene_name()));
+    auto probes = place_probes(*traced, places->places, relocation(w, least_spacing(*places)));
+    if (!probes) return print_error(with_options(probes.error()));
+    if (auto ok = fill_invalid(*traced, *probes, w.threads()); !ok) return print_error(with_options(ok.error()));
+    auto sampler = EnvironmentSampler::build(environment, reference_sampler_options(LightStrategy::mis, w.threads()));
+    if (!sampler) return print_error(sampler.error());
+    print_warnings(environment.report().lines(), w.common, join(w.environment_files, " "));
+    Result<ProbeBakeReport> report = Error{};
+    {
+        ProgressBar bar(w.output, w.common);
+        options.capture.progress = bar.callback();
+        report = bake_probes(*traced, *sampler, *probes, places->grid, options, w.output);
+    }
+    if (!report) return print_error(with_options(report.error()));
+    print_warnings(with_options(warnings_of(*report)), w.common, w.output);
+    print_result(w, *probes, *report);
+    return exit_done;
+}
+
+}  // namespace
+
+int run_probes(const std::vector<std::string>& words) {
+    ProbesWords w;
+    Arguments arguments("probes",
+                        "Captures the light at many points of a scene by path tracing, filters each as `bake` does, "
+                        "and writes all of them as one set of probes.",
+                        {"domelight probes spheres -o probes --grid 3,1,1 --size 16 --spp 4",
+                         "domelight probes helmet.glb --env sunset.hdr -o probes --at 0,0,3 --at 3,0,0 --spp 4"});
+    declare(arguments, w);
+    if (const auto code = begin_command(arguments, words, w.common)) return *code;
+    if (auto ok = check_words(w, arguments); !ok) return print_error(ok.error(), exit_usage);
+    if (auto ok = check_output_folder(w.output); !ok) return print_error(ok.error());
+
+    SceneOptions scene_options;
+    scene_options.threads = w.threads();
+    scene_options.lux_per_unit = float(w.lux_per_unit);
+    const auto built_in = built_in_scene_names();
+    const std::string name = w.scene_name();
+    auto scene = std::ranges::count(built_in, name) ? built_in_scene(name) : load_scene(name, scene_options);
+    if (!scene) return print_error(scene.error());
+    print_warnings(scene->warnings, w.common, name);
+    print_warnings(not_rendered(*scene), w.common, name);
+    w.environment.threads = w.threads();
+    auto environment = open_light_to_draw_from(w.environment_files, w.environment);
+    if (!environment) return print_error(environment.error());
+    return run_capture(w, *std::move(scene), *environment);
+}
+
+}  // namespace domelight::cli

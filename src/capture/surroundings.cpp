@@ -1,0 +1,50 @@
+#include "capture/surroundings.h"
+
+#include "render/ray_scene.h"
+
+namespace domelight {
+namespace {
+
+/// Whether a ray arrives at the side of a surface from which it cannot be seen.
+bool is_back(const Scene& scene, const Hit& hit, const Vec3f& direction) {
+    const Mesh& mesh = scene.meshes[std::size_t(scene.instances[std::size_t(hit.instance)].mesh)];
+    return !scene.materials[std::size_t(mesh.material)].double_sided && dot(hit.geometric_normal, direction) > 0;
+}
+
+}  // namespace
+
+Surroundings look_around(const RayScene& scene, const Vec3f& from, std::span<const Vec3f> directions) {
+    Surroundings around;
+    int backs = 0;
+    for (const Vec3f& direction : directions) {
+        const Hit hit = scene.impl().intersect({from, direction, 0}, false);
+        if (hit.instance < 0) continue;
+        const bool back = is_back(scene.scene(), hit, direction);
+        backs += back;
+        float& nearest = back ? around.back_distance : around.front_distance;
+        if (hit.distance >= nearest) continue;
+        nearest = hit.distance;
+        (back ? around.to_back : around.to_front) = direction;
+    }
+    around.backs = float(backs) / float(directions.size());
+    return around;
+}
+
+float distance_along(const RayScene& scene, const Vec3f& from, const Vec3f& direction) {
+    const Hit hit = scene.impl().intersect({from, direction, 0}, false);
+    return hit.instance < 0 ? std::numeric_limits<float>::infinity() : hit.distance;
+}
+
+int surfaces_between(const RayScene& scene, const Vec3f& from, const Vec3f& to, int most) {
+    const float distance = length(to - from);
+    if (!(distance > 0)) return 0;
+    Ray ray{from, (to - from) / distance, 0};
+    for (int count = 0; count < most; ++count) {
+        const Hit hit = scene.impl().intersect(ray, false);
+        if (hit.instance < 0 || hit.distance >= distance) return count;
+        pass(ray, hit);
+    }
+    return most;
+}
+
+}  // namespace domelight

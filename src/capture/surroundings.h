@@ -1,0 +1,30 @@
+#pragma once
+
+#include "domelight/render/render.h"
+
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace domelight {
+
+/// What rays from a point meet.
+struct Surroundings {
+    float backs = 0;  ///< the share of the rays that meet the back of a surface
+    float back_distance = std::numeric_limits<float>::infinity(), front_distance = back_distance;
+    Vec3f to_back, to_front;  ///< towards the nearest back and the nearest front, unit length
+
+    /// More than a quarter of the rays meet backs: the point lies inside a body.
+    bool inside() const { return backs > 0.25f; }
+};
+
+/// directions   of the rays, unit length
+Surroundings look_around(const RayScene& scene, const Vec3f& from, std::span<const Vec3f> directions);
+
+/// The distance to the nearest surface; infinite where there is none.
+float distance_along(const RayScene& scene, const Vec3f& from, const Vec3f& direction);
+
+/// How many surfaces lie between two points; counted up to `most`.
+int surfaces_between(const RayScene& scene, const Vec3f& from, const Vec3f& to, int most);
+
+}  // namespace domelight

@@ -1,0 +1,134 @@
+#include "domelight/capture/placement.h"
+
+#include "render/shapes.h"
+#include "test.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace domelight {
+namespace {
+
+/// A box whose sides face outwards.
+Mesh box_mesh(const Vec3f& low, const Vec3f& high) {
+    Mesh mesh;
+    for (int i = 0; i < 8; ++i)
+        mesh.positions.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
+    mesh.indices = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
+                    2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
+    return mesh;
+}
+
+/// The same box, facing inwards: a room.
+Mesh room_mesh(const Vec3f& low, const Vec3f& high) {
+    Mesh mesh = box_mesh(low, high);
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3) std::swap(mesh.indices[i], mesh.indices[i + 1]);
+    return mesh;
+}
+
+RayScene scene_of(std::vector<Mesh> meshes) {
+    Scene scene;
+    for (Mesh& mesh : meshes) test::add(scene, std::move(mesh), test::lambert_material(0.5f));
+    return *RayScene::build(std::move(scene));
+}
+
+TEST_CASE("grid_over: places fill the box, half a spacing from its sides") {
+    const auto grid = grid_over({{-1, 0, 2}, {3, 2, 4}}, 4, 1, 2);
+    REQUIRE(grid);
+    CHECK(grid->spacing == Vec3f{1, 2, 1});
+    CHECK(grid->place(0) == Vec3f{-0.5f, 1, 2.5f});
+    CHECK(grid->place(grid->count() - 1) == Vec3f{2.5f, 1, 3.5f});
+    CHECK(places_of(*grid)[5] == grid->place(5));
+}
+
+TEST_CASE("grid_over: a density gives neighbours at most 1 / sqrt(density) apart, no more probes than allowed") {
+    const ProbeBox box{{0, 0, 0}, {5, 3, 4}};
+    const auto grid = grid_over(box, {.density = 4});
+    REQUIRE(grid);
+    CHECK(grid->nx == 10);
+    CHECK(grid->ny == 6);
+    CHECK(grid->nz == 8);
+    const auto dense = grid_over(box, {.density = 1e4});
+    REQUIRE_FALSE(dense);
+    CHECK(dense.error().where == "`density`");
+    // The density that the hint names is allowed.
+    const std::string hint = dense.error().hint;
+    CHECK(grid_over(box, {.density = std::stod(hint.substr(hint.find_first_of("0123456789")))}));
+}
+
+TEST_CASE("grid_over: errors") {
+    CHECK(grid_over({{0, 0, 0}, {0, 0, 0}}, 1, 1, 1).error().where == "`region`");
+    CHECK(grid_over({{0, 0, 0}, {-1, 1, 1}}, 1, 1, 1).error().where == "`region`");
+    CHECK(grid_over({{0, 0, 0}, {NAN, 1, 1}}, 1, 1, 1).error().where == "`region`");
+    CHECK(grid_over({{0, 0, 0}, {1, 0, 1}}, 1, 2, 1).error().where == "`grid`");
+    CHECK(grid_over({{0, 0, 0}, {1, 0, 1}}, 2, 1, 2));
+    CHECK(grid_over({{0, 0, 0}, {1, 1, 1}}, 0, 1, 1).error().where == "`grid`");
+    CHECK(grid_over({{0, 0, 0}, {1, 1, 1}}, {.density = NAN}).error().where == "`density`");
+    CHECK(grid_over({{0, 0, 0}, {1, 1, 1}}, {.density = 0}).error().where == "`density`");
+}
+
+TEST_CASE("place_probes: a place in open space stays, one inside a body is moved out, one near a wall away from it") {
+    const RayScene scene = scene_of({room_mesh({-5, 0, -5}, {5, 3, 5}), box_mesh({0, 0, 0}, {1, 1, 1})});
+    const auto probes = place_probes(scene, std::vector<Vec3f>{{-2, 1.5f, -2}, {0.5f, 0.9f, 0.5f}, {-4.98f, 1.5f, 0}});
+    REQUIRE(probes);
+    CHECK((*probes)[0].position == Vec3f{-2, 1.5f, -2});
+    CHECK_FALSE((*probes)[0].moved);
+    CHECK((*probes)[1].moved);
+    CHECK((*probes)[1].valid);
+    CHECK((*probes)[1].position.y > 1.05f);  // through the top, which is the nearest side
+    CHECK((*probes)[1].place == Vec3f{0.5f, 0.9f, 0.5f});
+    CHECK((*probes)[2].moved);
+    CHECK((*probes)[2].position.x > -4.92f);
+}
+
+TEST_CASE("place_probes: deep inside a body, or with nowhere to go, a probe is not valid and stays") {
+    const RayScene scene = scene_of({room_mesh({-5, 0, -5}, {5, 3, 5}), box_mesh({-1.5f, 0, -1.5f}, {1.5f, 3, 1.5f})});
+    const auto probes = place_probes(scene, std::vector<Vec3f>{{0, 1.5f, 0}, {1.4f, 1.5f, 0}}, {.farthest = 0});
+    REQUIRE(probes);
+    for (const Probe& p : *probes) {
+        CHECK_FALSE(p.valid);
+        CHECK_FALSE(p.moved);
+        CHECK(p.position == p.place);
+    }
+}
+
+TEST_CASE(
+    "place_probes: a gap narrower than twice the distance that probes keep leaves the probe where it was asked for") {
+    const RayScene scene = scene_of({room_mesh({-5, 0, -5}, {5, 0.1f, 5})});
+    const auto probes = place_probes(scene, std::vector<Vec3f>{{0, 0.05f, 0}});
+    REQUIRE(probes);
+    CHECK((*probes)[0].valid);
+    CHECK((*probes)[0].position == Vec3f{0, 0.05f, 0});
+}
+
+TEST_CASE("fill_invalid: an invalid probe gets the light of its own side of a wall, though one behind it is nearer") {
+    // Two rooms with a thick wall between, from x = 0 to x = 1. Probe 0 lies in the wall.
+    const RayScene scene = scene_of(
+        {room_mesh({-4, 0, -2}, {0, 3, 2}), room_mesh({1, 0, -2}, {5, 3, 2}), box_mesh({0.2f, 0, -2}, {0.25f, 3, 2})});
+    std::vector<Probe> probes(3);
+    probes[0].position = {0.1f, 1.5f, 0};
+    probes[0].valid = false;
+    probes[1].position = {-1.5f, 1.5f, 0};  // one surface between
+    probes[2].position = {1.3f, 1.5f, 0};   // nearer, but three surfaces between
+    REQUIRE(fill_invalid(scene, probes));
+    CHECK(probes[0].filled_from == 1);
+    CHECK(probes[1].filled_from == -1);
+    for (Probe& p : probes) p.valid = false;
+    CHECK(fill_invalid(scene, probes).error().what.starts_with("all probes lie inside bodies"));
+}
+
+TEST_CASE("place_probes: errors name the field and the place") {
+    const RayScene scene = scene_of({box_mesh({0, 0, 0}, {1, 1, 1})});
+    const std::vector<Vec3f> places{{2, 2, 2}, {0, NAN, 0}};
+    const auto wrong = place_probes(scene, places);
+    REQUIRE_FALSE(wrong);
+    CHECK(wrong.error().where == "`places`");
+    CHECK(wrong.error().what.starts_with("number 1,"));
+    const std::vector<Vec3f> one{{2, 2, 2}};
+    CHECK(place_probes(scene, one, {.nearest = 0}).error().where == "`nearest`");
+    CHECK(place_probes(scene, one, {.farthest = -1}).error().where == "`farthest`");
+    CHECK(place_probes(scene, one, {.rays = 4}).error().where == "`rays`");
+}
+
+}  // namespace
+}  // namespace domelight
