@@ -169,11 +169,13 @@ int run_capture(const ProbesWords& w, Scene scene, const Environment& environmen
 
     auto traced = RayScene::build(std::move(scene));
     if (!traced) return print_error(traced.error().at(w.scene_name()));
-    auto probes = place_probes(*traced, places->places, relocation(w, least_spacing(*places)));
-    if (!probes) return print_error(with_options(probes.error()));
-    if (auto ok = fill_invalid(*traced, *probes, w.threads()); !ok) return print_error(with_options(ok.error()));
     auto sampler = EnvironmentSampler::build(environment, reference_sampler_options(LightStrategy::mis, w.threads()));
     if (!sampler) return print_error(sampler.error());
+    RelocationOptions relocate = relocation(w, least_spacing(*places));
+    relocate.light = &*sampler;
+    auto probes = place_probes(*traced, places->places, relocate);
+    if (!probes) return print_error(with_options(probes.error()));
+    if (auto ok = fill_invalid(*traced, *probes, w.threads()); !ok) return print_error(with_options(ok.error()));
     print_warnings(environment.report().lines(), w.common, join(w.environment_files, " "));
     Result<ProbeBakeReport> report = Error{};
     {

@@ -1,4 +1,5 @@
 #include "domelight/base/parallel.h"
+#include "domelight/capture/capture.h"
 #include "domelight/capture/placement.h"
 
 #include "base/field_place.h"
@@ -7,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <mutex>
@@ -24,14 +26,14 @@ class Placer {
 
     Probe place(const Vec3f& wanted) const {
         Probe probe{.place = wanted, .position = wanted};
-        Surroundings around = look_around(scene_, wanted, directions_);
+        Surroundings around = look(wanted);
         const bool inside = around.inside();
         for (int move = 0; move < k_moves; ++move) {
             if (!around.inside() && around.front_distance >= options_.nearest) return probe;
             const Vec3f next = probe.position + step(around);
             if (length(next - wanted) > options_.farthest) break;
             probe.position = next, probe.moved = true;
-            around = look_around(scene_, next, directions_);
+            around = look(next);
         }
         // A place near a surface is better than none: it stays where it was asked for, if that is outside of bodies.
         probe.position = wanted, probe.moved = false;
@@ -40,6 +42,28 @@ class Placer {
     }
 
   private:
+    Surroundings look(const Vec3f& from) const {
+        const Surroundings around = look_around(scene_, from, directions_);
+        if (!options_.light || around.inside() || around.surfaces < 1) return around;
+        const Surroundings with_double_sided = look_around(scene_, from, directions_, Backs::all);
+        return with_double_sided.inside() && is_dark(from) ? with_double_sided : around;
+    }
+
+    /// Whether no light at all arrives, as far as a small capture can tell.
+    bool is_dark(const Vec3f& at) const {
+        CaptureOptions options;
+        options.size = 8, options.samples = 16, options.bounces = 2;
+        bool dark = true;
+        const int number = 0;
+        // Its options are valid, and nothing cancels it.
+        (void)capture(scene_, *options_.light, {&at, 1}, {&number, 1}, options,
+                      [&](int, CapturedCube cube) -> Result<void> {
+                          dark = std::ranges::all_of(cube.radiance.pixels(), [](float v) { return v == 0; });
+                          return {};
+                      });
+        return dark;
+    }
+
     /// Through the nearest back, or away from the nearest front, to a little more than the distance that a probe keeps.
     Vec3f step(const Surroundings& around) const {
         const float keep = 1.01f * options_.nearest;

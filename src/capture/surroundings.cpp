@@ -5,21 +5,22 @@
 namespace domelight {
 namespace {
 
-/// Whether a ray arrives at the side of a surface from which it cannot be seen.
-bool is_back(const Scene& scene, const Hit& hit, const Vec3f& direction) {
+bool is_back(const Scene& scene, const Hit& hit, const Vec3f& direction, Backs backs) {
+    if (!(dot(hit.geometric_normal, direction) > 0)) return false;
     const Mesh& mesh = scene.meshes[std::size_t(scene.instances[std::size_t(hit.instance)].mesh)];
-    return !scene.materials[std::size_t(mesh.material)].double_sided && dot(hit.geometric_normal, direction) > 0;
+    return backs == Backs::all || !scene.materials[std::size_t(mesh.material)].double_sided;
 }
 
 }  // namespace
 
-Surroundings look_around(const RayScene& scene, const Vec3f& from, std::span<const Vec3f> directions) {
+Surroundings look_around(const RayScene& scene, const Vec3f& from, std::span<const Vec3f> directions, Backs which) {
     Surroundings around;
-    int backs = 0;
+    int backs = 0, surfaces = 0;
     for (const Vec3f& direction : directions) {
         const Hit hit = scene.impl().intersect({from, direction, 0}, false);
         if (hit.instance < 0) continue;
-        const bool back = is_back(scene.scene(), hit, direction);
+        ++surfaces;
+        const bool back = is_back(scene.scene(), hit, direction, which);
         backs += back;
         float& nearest = back ? around.back_distance : around.front_distance;
         if (hit.distance >= nearest) continue;
@@ -27,6 +28,7 @@ Surroundings look_around(const RayScene& scene, const Vec3f& from, std::span<con
         (back ? around.to_back : around.to_front) = direction;
     }
     around.backs = float(backs) / float(directions.size());
+    around.surfaces = float(surfaces) / float(directions.size());
     return around;
 }
 

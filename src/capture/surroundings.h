@@ -8,9 +8,16 @@
 
 namespace domelight {
 
+/// Which surfaces have a back.
+enum class Backs {
+    single_sided,  ///< those whose material is not double-sided
+    all,           ///< double-sided ones too: the side from which their corners run clockwise
+};
+
 /// What rays from a point meet.
 struct Surroundings {
-    float backs = 0;  ///< the share of the rays that meet the back of a surface
+    float backs = 0;     ///< the share of the rays that meet the back of a surface
+    float surfaces = 0;  ///< the share that meet a surface at all
     float back_distance = std::numeric_limits<float>::infinity(), front_distance = back_distance;
     Vec3f to_back, to_front;  ///< towards the nearest back and the nearest front, unit length
 
@@ -19,7 +26,8 @@ struct Surroundings {
 };
 
 /// directions   of the rays, unit length
-Surroundings look_around(const RayScene& scene, const Vec3f& from, std::span<const Vec3f> directions);
+Surroundings look_around(const RayScene& scene, const Vec3f& from, std::span<const Vec3f> directions,
+                         Backs backs = Backs::single_sided);
 
 /// The distance to the nearest surface; infinite where there is none.
 float distance_along(const RayScene& scene, const Vec3f& from, const Vec3f& direction);

@@ -101,6 +101,32 @@ TEST_CASE(
     CHECK((*probes)[0].position == Vec3f{0, 0.05f, 0});
 }
 
+TEST_CASE("place_probes: with light, the dark inside of a double-sided body is noticed, and a lit one is not") {
+    Scene scene;
+    test::add(scene, room_mesh({-5, 0, -5}, {5, 3, 5}), test::lambert_material(0.5f));
+    Material sheet = test::lambert_material(0.5f);
+    sheet.double_sided = true;
+    test::add(scene, box_mesh({0, 0, 0}, {1, 1, 1}), sheet);
+    Material lamp = sheet;
+    lamp.emission = {1, 1, 1};
+    test::add(scene, box_mesh({-3, 0, 0}, {-2, 1, 1}), lamp);
+    const RayScene traced = *RayScene::build(std::move(scene));
+    const ImageF black(8, 4, 3);
+    const EnvironmentSampler sky = *EnvironmentSampler::build(black.view(), reference_sampler_options());
+    const std::vector<Vec3f> places{{0.5f, 0.5f, 0.5f}, {0.5f, 0.9f, 0.5f}, {-2.5f, 0.5f, 0.5f}, {3, 1.5f, 3}};
+    const auto plain = place_probes(traced, places, {.farthest = 0.3f});
+    REQUIRE(plain);
+    for (const Probe& p : *plain) CHECK(p.valid);
+    const auto probes = place_probes(traced, places, {.farthest = 0.3f, .light = &sky});
+    REQUIRE(probes);
+    CHECK_FALSE((*probes)[0].valid);
+    CHECK((*probes)[1].valid);
+    CHECK((*probes)[1].position.y > 1.05f);
+    CHECK((*probes)[2].valid);
+    CHECK_FALSE((*probes)[2].moved);
+    CHECK((*probes)[3].valid);
+}
+
 TEST_CASE("fill_invalid: an invalid probe gets the light of its own side of a wall, though one behind it is nearer") {
     // Two rooms with a thick wall between, from x = 0 to x = 1. Probe 0 lies in the wall.
     const RayScene scene = scene_of(

@@ -27,6 +27,10 @@ struct RelocationOptions {
     float nearest = 0.1f;   ///< metres that a probe keeps from surfaces, > 0
     float farthest = 0.5f;  ///< metres by which it may be moved, >= 0
     int rays = 256;         ///< in all directions from each place, 16 .. 65536
+    /// The environment, which must outlive the call. Where it is set, a place inside a body of double-sided surfaces is
+    /// noticed, too: all rays meet surfaces, more than a quarter of them the side from which the corners run clockwise,
+    /// and no light arrives.
+    const EnvironmentSampler* light = nullptr;
     int threads = 0;
     Progress progress = {};
 };
@@ -35,7 +39,7 @@ struct RelocationOptions {
 /// illumination with ray-traced irradiance fields", "Scaling probe-based real-time dynamic global illumination for
 /// production"): where more than a quarter of the rays meet backs of surfaces, the place lies inside a body and the
 /// probe is moved through the nearest back; where a front is nearer than `nearest`, it is moved away from it. A place
-/// inside a body from which no way out was found stays and is not valid. Surfaces that are double-sided have no back.
+/// inside a body from which no way out was found stays and is not valid. Surfaces that are double-sided have no back, unless `light` is set.
 ///
 /// Errors: an option out of its range; a place that is not finite (it is named); "cancelled".
 Result<std::vector<Probe>> place_probes(const RayScene& scene, std::span<const Vec3f> places,
