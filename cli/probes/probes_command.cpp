@@ -8,6 +8,7 @@
 #include "cli/console/field_options.h"
 #include "cli/console/interruption.h"
 #include "cli/console/print.h"
+#include "cli/probes/probes_engines.h"
 #include "cli/probes/probes_options.h"
 #include "io/file/json.h"
 #include "io/file/output_place.h"
@@ -20,7 +21,10 @@ namespace domelight::cli {
 namespace {
 
 void declare(Arguments& a, ProbesWords& w) {
-    a.positional("SCENE", w.scenes, "a .glb, .gltf, .obj or .ply, or a built-in scene");
+    a.positional(
+        "SCENE", w.scenes,
+        "a .glb, .gltf, .obj or .ply, or a built-in scene; or the folder of a set of probes, to write it for an "
+        "engine");
     a.texts("--env", "ENV", w.environment_files, fmt::format("the environment; without it {}", k_built_in_sky));
     a.text("-o,--output", "DIR", w.output, "the folder for probes.json and its .ktx2 files");
     a.group("Placement (one of the first three)");
@@ -49,6 +53,10 @@ void declare(Arguments& a, ProbesWords& w) {
     a.integer("--irradiance-size", "N", w.irradiance_size, "texels along a face of the irradiance (16)");
     a.integer("--distance-size", "N", w.distance_size,
               "texels along a face of the distances: a whole part of --size; 0: none (32)");
+    a.texts("--for", "ENGINE", w.engines,
+            "also writes the set for an engine, into a folder of its name: three, a LightProbeGrid; bevy, an "
+            "IrradianceVolume; any other of `bake --for`, a bake of each probe with its place; may be given several "
+            "times");
     a.choice("--encoding", w.encoding, with_names({Encoding::rgb9e5, Encoding::rgba16f, Encoding::rgba32f}),
              "of the light (rgb9e5)");
     add_environment_options(a, w.environment);
@@ -186,7 +194,7 @@ int run_capture(const ProbesWords& w, Scene scene, const Environment& environmen
     if (!report) return print_error(with_options(report.error()));
     print_warnings(with_options(warnings_of(*report)), w.common, w.output);
     print_result(w, *probes, *report);
-    return exit_done;
+    return w.engines.empty() ? exit_done : write_for_engines(w, w.output, w.output);
 }
 
 }  // namespace
@@ -197,12 +205,14 @@ int run_probes(const std::vector<std::string>& words) {
                         "Captures the light at many points of a scene by path tracing, filters each as `bake` does, "
                         "and writes all of them as one set of probes.",
                         {"domelight probes spheres -o probes --grid 3,1,1 --size 16 --spp 4",
-                         "domelight probes helmet.glb --env sunset.hdr -o probes --at 0,0,3 --at 3,0,0 --spp 4"});
+                         "domelight probes helmet.glb --env sunset.hdr -o near --at 0,0,3 --at 3,0,0 --spp 4",
+                         "domelight probes probes --for three -o three"});
     declare(arguments, w);
     if (const auto code = begin_command(arguments, words, w.common)) return *code;
     if (auto ok = check_words(w, arguments); !ok) return print_error(ok.error(), exit_usage);
     if (auto ok = check_output_folder(w.output); !ok) return print_error(ok.error());
 
+    if (names_a_set(w)) return write_for_engines(w, w.scene_name(), w.output);
     SceneOptions scene_options;
     scene_options.threads = w.threads();
     scene_options.lux_per_unit = float(w.lux_per_unit);

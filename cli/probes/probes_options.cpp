@@ -1,8 +1,10 @@
 #include "cli/probes/probes_options.h"
 
+#include "domelight/engines/engine.h"
 #include "domelight/scene/scene.h"
 
 #include "cli/console/point_options.h"
+#include "cli/probes/probes_engines.h"
 
 #include <fmt/core.h>
 
@@ -91,6 +93,9 @@ CaptureOptions ProbesWords::capture() const {
 }
 
 Result<void> check_words(ProbesWords& w, const Arguments& a) {
+    for (const std::string& engine : w.engines)
+        if (auto known = find_engine(engine); !known) return known.error().at("--for");
+    if (names_a_set(w)) return check_engine_words(w, a);
     if (w.scenes.size() != 1)
         return Error{w.scenes.empty() ? "is missing" : "is given twice", "SCENE",
                      fmt::format("One model, or a built-in scene: {}.", join(built_in_scene_names(), ", "))};

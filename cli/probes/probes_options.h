@@ -17,7 +17,7 @@ namespace domelight::cli {
 /// The command line of `probes`.
 struct ProbesWords {
     CommonOptions common;
-    std::vector<std::string> scenes, environment_files, at;
+    std::vector<std::string> scenes, environment_files, at, engines;
     EnvironmentOptions environment;
     std::string output;
     std::vector<double> grid, region;

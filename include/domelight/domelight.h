@@ -54,6 +54,7 @@
 #include "domelight/base/vec.h"
 #include "domelight/base/version.h"
 #include "domelight/capture/capture.h"
+#include "domelight/capture/engine_files.h"
 #include "domelight/capture/placement.h"
 #include "domelight/capture/probe_bake.h"
 #include "domelight/capture/probe_baker.h"

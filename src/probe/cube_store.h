@@ -76,6 +76,19 @@ class CubeStore {
         return {a[0].value(), a[1].value(), a[across].value(), a[across + 1].value()};
     }
 
+    /// The cube as it is kept, of RGB.
+    Cubemap cube(int index) const {
+        Cubemap cube(size_, 3);
+        const Texel* texels = texels_.data() + std::size_t(index) * border_.size();
+        for (std::size_t i = 0; i < border_.size(); ++i) {
+            if (border_[i] < 0) continue;  // a texel of the border is a copy, with the same value
+            const Vec3f v = texels[i].value();
+            float* out = cube.pixels().data() + std::ptrdiff_t(3) * border_[i];
+            out[0] = v.x, out[1] = v.y, out[2] = v.z;
+        }
+        return cube;
+    }
+
     /// Bilinear.
     Value look_up(int index, const Vec3f& direction) const {
         const CubeTap tap = cube_tap(size_, direction);

@@ -168,6 +168,9 @@ Vec3f ProbeSet::irradiance_over_pi_sh(int probe, const Vec3f& normal) const {
     return Vec3f(Vec3d{std::max(0.0, e.x), std::max(0.0, e.y), std::max(0.0, e.z)});
 }
 
+Cubemap ProbeSet::specular(int probe, int level) const {
+    return impl_->specular[std::size_t(level)].cube(probe);
+}
 std::span<const Vec3d, 9> ProbeSet::harmonics(int probe) const {
     return impl_->harmonics[std::size_t(probe)];
 }

@@ -88,6 +88,8 @@ class ProbeSet {
     Vec3f irradiance_over_pi(int probe, const Vec3f& normal) const;
     /// The same from nine harmonics; values below 0 become 0.
     Vec3f irradiance_over_pi_sh(int probe, const Vec3f& normal) const;
+    /// The texels of a specular level, RGB.
+    Cubemap specular(int probe, int level) const;
     std::span<const Vec3d, 9> harmonics(int probe) const;  ///< of the radiance
     DistanceMoments distance(int probe, const Vec3f& direction) const;
 

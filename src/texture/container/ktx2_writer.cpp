@@ -144,12 +144,13 @@ void append_key_values(ByteBuffer& out, const std::map<std::string, std::string>
 
 /// The keys of the texture and of the container. Values of reserved keys from another file are not copied, because they
 /// need not be true of this one.
-std::map<std::string, std::string> complete_metadata(const Texture& texture) {
+std::map<std::string, std::string> complete_metadata(const Texture& texture, const TextureArray& array) {
     std::map<std::string, std::string> metadata = texture.metadata;
     std::erase_if(metadata,
                   [](const auto& pair) { return pair.first.starts_with("KTX") || pair.first.starts_with("ktx"); });
     note_scaled_bytes(texture.encoding, metadata);
-    metadata["KTXorientation"] = "rd";  // right, down: rows run from top to bottom
+    // Right, down, in: rows run from top to bottom, and slices away from the viewer.
+    metadata["KTXorientation"] = array.depth > 0 ? "rdi" : "rd";
     metadata["KTXwriter"] = "Domelight " + std::string(version());
     return metadata;
 }
@@ -178,7 +179,7 @@ Result<TextureLayout> ktx2_layout(const Texture& texture, std::span<const std::u
 
     ByteBuffer descriptor, key_values;
     append_descriptor(descriptor, texture.encoding);
-    append_key_values(key_values, complete_metadata(texture));
+    append_key_values(key_values, complete_metadata(texture, array));
     const std::uint64_t descriptor_at = k_ktx2_header_bytes + k_ktx2_level_bytes * level_count,
                         key_values_at = descriptor_at + descriptor.size();
 

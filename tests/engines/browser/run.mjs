@@ -10,6 +10,7 @@ import {ballsScene, mirrorScene, roughnesses, writeScene} from './balls.mjs';
 import {call, draw, launch, open, serve} from './browser.mjs';
 import {entries} from './engines.mjs';
 import {testFormats} from './formats.mjs';
+import {testProbes} from './probes.mjs';
 import {readHdr, writeConstantHdr, writePng} from './files.mjs';
 import {albedoOf, axes, ballErrors, ballMeans, drawMetals, filteredLight, findLabels, likeness} from './measure.mjs';
 import {Claims} from './claims.mjs';
@@ -294,6 +295,8 @@ try {
     if (!option('--only') || option('--only') === 'formats')
         await testFormats({claim, skip, domelight, work, modules, browser, server, log, encodings: accepted('--encoding')})
             .catch(error => claim('formats', [String(error.stderr || error.stack)]));
+    if (!option('--only') || option('--only') === 'probes')
+        await testProbes({claim, domelight, work, browser, server, log, keep}).catch(error => claim('probes', [String(error.stderr || error.stack)]));
     testDocs();
     if (option('--sheet')) writeSheet(option('--sheet'));
 } finally {

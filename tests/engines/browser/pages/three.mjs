@@ -3,6 +3,7 @@ import * as THREE from 'three';
 import {EXRLoader} from 'three/addons/loaders/EXRLoader.js';
 import {GLTFLoader} from 'three/addons/loaders/GLTFLoader.js';
 import {KTX2Loader} from 'three/addons/loaders/KTX2Loader.js';
+import {LightProbeGridWebGL} from 'three/addons/lighting/LightProbeGridWebGL.js';
 import {packed} from './pixels.mjs';
 
 export const version = THREE.REVISION;
@@ -30,6 +31,20 @@ async function loadLatlong(url) {
     const texture = await new EXRLoader().loadAsync(url);
     texture.mapping = THREE.EquirectangularReflectionMapping;
     scene.environment = texture;
+    // end
+}
+
+// A grid of probes in place of the environment.
+export async function loadProbes(url) {
+    scene.environment = null;
+    // docs/engines/three.md, a grid of probes
+    const {position, size, resolution, texture} = await (await fetch(url)).json();
+    const grid = new LightProbeGridWebGL(...size, ...resolution);
+    grid.position.fromArray(position);
+    grid.updateBoundingBox();
+    grid.texture = await new KTX2Loader().detectSupport(renderer).loadAsync(new URL(texture, new URL(url, location)).href);
+    grid.texture.minFilter = grid.texture.magFilter = THREE.LinearFilter;
+    scene.add(grid);
     // end
 }
 
