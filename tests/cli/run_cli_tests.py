@@ -156,6 +156,21 @@ def test_probes_refuse_what_cannot_work(folder):
     assert "a-file" in run("probes", "spheres", "-o", "a-file", "--at", "0,0,4", *PROBES, folder=folder, code=1).stderr
 
 
+def test_probes_are_written_for_engines(folder):
+    told = run("probes", "spheres", "-o", "set", "--grid", "2,1,1", *PROBES, "--for", "three", "--for", "babylon", folder=folder).stdout
+    assert "set/three: 2 files for three" in told and "set/babylon: 3 files for babylon" in told, told
+    assert "VK_FORMAT_R16G16B16A16_SFLOAT, 2 x 1 x 21" in run("info", "set/three/light-probe-grid.ktx2", folder=folder).stdout
+    report = json.loads(run("probes", "set", "--for", "bevy", "-o", "volume", "--json", folder=folder).stdout)
+    assert report["engines"][0]["files"] == ["irradiance-volume.ktx2", "irradiance-volume.json"], report
+    run("probes", "spheres", "-o", "at", "--at", "0,0,4", *PROBES, "--quiet", folder=folder)
+    for words, code, says in [(["set", "-o", "x"], 2, "--for: is missing"),
+                              (["set", "-o", "x", "--for", "tree"], 2, "is not an engine"),
+                              (["set", "-o", "x", "--for", "three", "--spp", "4"], 2, "--spp: is for capturing a scene"),
+                              (["at", "-o", "x", "--for", "three"], 2, "the probes of this set are not in one")]:
+        assert says in run("probes", *words, folder=folder, code=code).stderr, words
+        assert not (folder / "x").exists(), words
+
+
 def test_help_of_a_command(folder):
     overview = run("help", folder=folder).stdout
     assert overview == run("--help", folder=folder).stdout and "domelight help COMMAND" in overview
