@@ -32,6 +32,17 @@ const std::vector<Action>& actions() {
          "does the jobs that are not done yet, or those of a shard",
          batch_run,
          {"--shard", "--shards", "--workers", "--memory", "--attempts", "--check"}},
+        {"merge",
+         "PLAN",
+         "puts the results under the names of the outputs, in PLAN/out; fails if any is missing",
+         batch_merge,
+         {"--place"}},
+        {"verify", "PLAN", "hashes every file of every result", batch_verify, {}},
+        {"report",
+         "PLAN",
+         "writes PLAN/report/index.html: a picture, times, size, errors and repairs of each job",
+         batch_report,
+         {}},
     };
     return table;
 }
@@ -81,6 +92,8 @@ void declare(Arguments& a, BatchWords& w) {
         "run: what the jobs under way may need together by their estimates: 8G, 500M (three quarters of what is free)");
     a.integer("--attempts", "N", w.attempts, "run: how often a job that fails is tried, 1 to 100 (2)");
     a.flag("--check", w.check, "run: hash the results that are there, and do again what is not as it was written");
+    a.group("Results");
+    a.choice("--place", w.placing, "merge: relative links, further names of the same files, or copies (link)");
     add_common_options(a, w.common);
 }
 

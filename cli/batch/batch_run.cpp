@@ -159,7 +159,13 @@ int batch_run(const BatchWords& w) {
         print_json(*plan, *report, options->shard);
     else if (!w.common.quiet || !report->complete())
         print_text(*plan, *report);
-    return report->complete() ? exit_done : exit_failed;
+    if (!report->complete()) return exit_failed;
+    if (options->shard.count > 1) return exit_done;
+    // The whole set is there.
+    const auto merge = merge_batch(*plan, w.plan());
+    if (!merge) return print_error(merge.error());
+    print_warnings(merge->notes, w.common);
+    return exit_done;
 }
 
 }  // namespace domelight::cli

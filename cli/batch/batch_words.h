@@ -1,6 +1,7 @@
 #pragma once
 
 #include "domelight/batch/batch_plan.h"
+#include "domelight/batch/batch_results.h"
 #include "domelight/batch/batch_run.h"
 
 #include "cli/console/arguments.h"
@@ -21,6 +22,7 @@ struct BatchWords {
     std::string shard, memory;
     std::optional<int> shards, workers, attempts;
     bool check = false;
+    BatchPlacing placing = BatchPlacing::link;
 
     const std::string& action() const { return words.front(); }
     /// The folder of the plan.
@@ -30,5 +32,8 @@ struct BatchWords {
 /// One action each. They return the exit code.
 int batch_plan(const BatchWords& words);
 int batch_run(const BatchWords& words);
+int batch_merge(const BatchWords& words);
+int batch_verify(const BatchWords& words);
+int batch_report(const BatchWords& words);
 
 }  // namespace domelight::cli

@@ -42,6 +42,7 @@
 #include "domelight/bake/bake.h"
 #include "domelight/bake/brdf_file.h"
 #include "domelight/batch/batch_plan.h"
+#include "domelight/batch/batch_results.h"
 #include "domelight/batch/batch_run.h"
 #include "domelight/base/frame.h"
 #include "domelight/base/large_allocator.h"

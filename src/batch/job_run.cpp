@@ -32,6 +32,11 @@ Result<JobReport> run_kind(const JobKind& kind, const JobCall& call) {
 
 }  // namespace
 
+std::string one_line(const Error& error) {
+    const std::string text = error.where.empty() ? error.what : error.where + ": " + error.what;
+    return error.hint.empty() ? text : text + ". " + error.hint;
+}
+
 std::string changed_input(const BatchPlan& plan, const BatchJob& job, std::optional<fs::file_time_type> since) {
     for (const BatchInput& input : job.inputs) {
         const fs::path file = plan.root / input.file;
@@ -42,7 +47,7 @@ std::string changed_input(const BatchPlan& plan, const BatchJob& job, std::optio
         if (std::int64_t(bytes) != input.bytes) return changed();
         if (since && fs::last_write_time(file, failure) <= *since) continue;
         const auto hash = sha256_file(file);
-        if (!hash) return hash.error().format();
+        if (!hash) return one_line(hash.error());
         if (*hash != input.sha256) return changed();
     }
     return {};

@@ -10,6 +10,9 @@
 
 namespace domelight {
 
+/// An error on one line: "WHERE: WHAT. HINT".
+std::string one_line(const Error& error);
+
 /// What is wrong with a job's inputs now; empty: they are those of the plan. `since`: inputs of the planned size that
 /// were not written after it are not hashed again.
 std::string changed_input(const BatchPlan& plan, const BatchJob& job,

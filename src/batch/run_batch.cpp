@@ -224,7 +224,7 @@ class BatchRun {
             if (!started) {
                 claims_.release(it.id);
                 pending_.push_front(outcome);
-                if (running_.empty()) report_.stopped_by = started.error().format();
+                if (running_.empty()) report_.stopped_by = one_line(started.error());
                 most_workers_ = std::max(1, int(running_.size()));
                 return;
             }
@@ -360,7 +360,7 @@ Result<BatchOutcome> run_batch_job(const BatchPlan& plan, const fs::path& folder
     WorkerAnswer answer;
     const auto ok = do_job(plan, job, store, threads, answer.changed);
     answer.done = bool(ok);
-    answer.reason = ok ? "" : ok.error().format();
+    answer.reason = ok ? "" : one_line(ok.error());
     answer.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     RunLog(folder, {}).add(job, answer, 1, threads);
     if (!ok) return ok.error().at(job.output);

@@ -62,7 +62,7 @@ std::string answer_to(const BatchPlan& plan, const ResultStore& store, std::size
     const rusage usage = usage_now();
     const Json json{{"done", bool(ok)},
                     {"changed", changed},
-                    {"reason", ok ? std::string() : ok.error().format()},
+                    {"reason", ok ? std::string() : one_line(ok.error())},
                     {"seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()},
                     {"cpu_seconds", cpu_seconds(usage) - cpu},
                     {"peak_bytes", std::int64_t(usage.ru_maxrss) * 1024}};

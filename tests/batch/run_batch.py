@@ -5,6 +5,7 @@ adds up.
 Each function test_... gets a folder of its own with a folder `hdris` of six small environments.
 """
 
+import contextlib
 import hashlib
 import json
 import os
@@ -39,7 +40,8 @@ def run(*words, folder, code=0, env=None, **options):
 
 def files_of(folder):
     """Relative name -> SHA-256 of every file below, links as what they lead to."""
-    return {str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest() for p in sorted(Path(folder).rglob("*")) if p.is_file()}
+    found = [Path(base) / name for base, _, names in os.walk(folder, followlinks=True) for name in names]
+    return {str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest() for p in sorted(found)}
 
 
 def results_of(plan):
@@ -252,6 +254,208 @@ def test_same_bytes_for_any_number_of_workers_and_any_memory(folder):
         statuses(folder, *words)
         assert whole in (None, results_of(batch))
         whole = results_of(batch)
+
+
+# --- what goes wrong ---
+
+
+def children_of(process):
+    """The workers of a run."""
+    path = Path(f"/proc/{process}/task/{process}/children")
+    return [int(word) for word in path.read_text().split()] if path.exists() else []
+
+
+def begin(folder, *words):
+    return subprocess.Popen([PROGRAM, "batch", "run", "batch", *words], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=ENVIRONMENT)
+
+
+def leftovers(batch):
+    return [p for p in batch.rglob("*") if p.name.endswith(".tmp") or ".tmp" in p.name] + list(batch.glob("work/*"))
+
+
+def kill_at_random(folder, times, seed=1):
+    """Kills a run at random moments, runs the rest, and returns how many jobs were done before the last run, with the bytes of all."""
+    batch = folder / "batch"
+    random_moment = random.Random(seed)
+    start = time.monotonic()
+    run("batch", "run", "batch", "--threads", "2", folder=folder)
+    lasts, whole = time.monotonic() - start, results_of(batch)
+    partial = 0
+    for _ in range(times):
+        shutil.rmtree(batch / "results")
+        process = begin(folder, "--threads", "2")
+        time.sleep(random_moment.uniform(0, lasts))
+        process.kill()
+        process.wait()
+        partial += 0 < len(list(batch.glob("results/*/*/done.json"))) < 6
+        run("batch", "run", "batch", "--threads", "2", folder=folder)
+        assert results_of(batch) == whole and not leftovers(batch), leftovers(batch)
+    return partial
+
+
+def test_killed_at_any_moment_and_run_again_it_is_the_same(folder):
+    """bench/batch.py kills fifty times."""
+    plan(folder, "--set", "size=128")
+    kill_at_random(folder, 4)
+
+
+def test_a_job_whose_worker_is_killed_is_tried_again(folder):
+    batch = plan(folder, "--set", "size=512")
+    process = begin(folder, "--threads", "1", "--workers", "1")
+    killed = 0
+    while process.poll() is None and killed < 2:
+        if list(batch.glob("work/*/files")):  # a job is under way
+            for child in children_of(process.pid):
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(child, signal.SIGSEGV)
+                    killed += 1
+            time.sleep(0.05)
+    assert process.wait() == 0 and killed == 2
+    lines = [json.loads(line) for log in batch.glob("log/*.jsonl") for line in log.read_text().splitlines()]
+    ended = [line for line in lines if line["status"] == "failed"]
+    assert len(ended) == 2 and all("signal 11" in line["reason"] for line in ended), ended
+    assert set(statuses(folder)[0].values()) == {"kept"} and not leftovers(batch)
+    # One that ends its worker every time fails by itself.
+    shutil.rmtree(batch / "results")
+    process = begin(folder, "--threads", "1", "--workers", "1")
+    while process.poll() is None:
+        for child in children_of(process.pid):
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(child, signal.SIGKILL)
+    assert process.wait() == 1
+
+
+def test_an_interrupted_run_ends_in_order(folder):
+    batch = plan(folder, "--set", "size=512")
+    for number in [signal.SIGINT, signal.SIGTERM]:
+        process = subprocess.Popen([PROGRAM, "batch", "run", "batch", "--threads", "1"], cwd=folder, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT,
+                                   preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        while not list(batch.glob("work/*/files")) and process.poll() is None:
+            time.sleep(0.005)
+        process.send_signal(number)
+        said = process.communicate(timeout=60)[1]
+        assert process.returncode == -number and "the same command does the others" in said, (process.returncode, said)
+        assert not leftovers(batch)
+    assert len(statuses(folder)[0]) == 6
+
+
+def test_runs_of_one_plan_at_once_share_the_work(folder):
+    batch = plan(folder, "--set", "size=256")
+    processes = [begin(folder, "--threads", "1") for _ in range(3)]
+    assert [process.wait() for process in processes] == [0, 0, 0]
+    lines = [json.loads(line) for log in batch.glob("log/*.jsonl") for line in log.read_text().splitlines()]
+    assert sorted(line["output"] for line in lines) == NAMES, "a job was done twice"
+    whole = results_of(batch)
+    shutil.rmtree(batch / "results")
+    run("batch", "run", "batch", folder=folder)
+    assert results_of(batch) == whole and not leftovers(batch)
+
+
+def test_a_full_disk_stops_the_run_and_leaves_whole_results(folder):
+    plan(folder)
+    batch = folder / "batch"
+    disk = folder / "disk"
+    disk.mkdir()
+    if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=160k", "tmpfs", disk], capture_output=True).returncode != 0:
+        raise Skipped("needs to mount a small file system")
+    try:
+        for file in batch.iterdir():
+            shutil.copy(file, disk)
+        said = run("batch", "run", "disk", "--threads", "1", folder=folder, code=1)
+        assert "the disk is full" in said.stderr, said
+        assert "not tried" in said.stdout and not leftovers(disk)
+        done = len(list(disk.glob("results/*/*/done.json")))
+        assert 0 < done < 6, done
+        subprocess.run(["mount", "-o", "remount,size=8m", disk], check=True)
+        assert f"6 of 6 jobs done, {done} before" in run("batch", "run", "disk", folder=folder).stdout
+        assert "all intact" in run("batch", "verify", "disk", folder=folder).stdout
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
+# --- results ---
+
+
+def test_merge_puts_results_under_the_names_of_the_outputs(folder):
+    batch = plan(folder)
+    run("batch", "run", "batch", folder=folder)  # the whole set: it is merged at once
+    assert sorted(str(p.relative_to(batch / "out")) for p in batch.glob("out/**/*") if p.is_symlink()) == NAMES
+    index = [json.loads(line) for line in (batch / "index.jsonl").read_text().splitlines()]
+    assert [entry["output"] for entry in index] == NAMES
+    for entry in index:
+        assert files_of(batch / "out" / entry["output"]) == {file["file"]: file["sha256"] for file in entry["files"]}
+    whole, results = files_of(batch / "out"), results_of(batch)
+    shutil.move(batch, folder / "elsewhere")  # relative links go with the folder
+    assert files_of(folder / "elsewhere/out") == whole
+    shutil.move(folder / "elsewhere", batch)
+    # Copies, further names, and links again.
+    for place in ["copy", "hardlink", "copy", "link"]:
+        told = json.loads(run("batch", "merge", "batch", "--place", place, "--json", folder=folder).stdout)
+        assert told["complete"] and (place == "copy" or told["placed"] == 6), (place, told)
+        assert results_of(batch) == results, place
+        links = [p for p in batch.glob("out/**/*") if p.is_symlink()]
+        assert (len(links) == 6) == (place == "link") and files_of(batch / "out") == whole, place
+    # An output that is no longer planned loses its link; a file that is not ours stays.
+    (batch / "out/note.txt").write_text("mine")
+    (folder / "hdris/noon.hdr").unlink()
+    plan(folder)
+    told = json.loads(run("batch", "merge", "batch", "--json", folder=folder).stdout)
+    assert not (batch / "out/noon").exists() and (batch / "out/note.txt").exists() and len(told["notes"]) == 2, told["notes"]
+
+
+def test_merge_tells_of_every_hole(folder):
+    batch = plan(folder)
+    run("batch", "run", "batch", "--shard", "1/2", folder=folder)
+    told = json.loads(run("batch", "merge", "batch", "--json", folder=folder, code=1).stdout)
+    done = {json.loads(p.read_text())["job"] for p in batch.glob("results/*/*/done.json")}
+    holes = [job["output"] for job in jobs_of(batch) if job["job"] not in done]
+    assert holes and [m["output"] for m in told["missing"]] == holes and not told["complete"]
+    assert not (batch / "index.jsonl").exists()
+    said = run("batch", "merge", "batch", folder=folder, code=1).stdout
+    assert all(f"{hole}: has no result" in said for hole in holes) and f"{len(holes)} are missing" in said
+    # What a worker on another machine has left is removed when the set is whole.
+    (batch / "work" / f"{'0' * 32}-elsewhere-1").mkdir(parents=True)
+    run("batch", "run", "batch", "--shard", "2/2", folder=folder)
+    assert (batch / "work").exists()
+    run("batch", "merge", "batch", folder=folder)
+    assert not (batch / "work").exists()
+
+
+def test_verify_finds_every_damage(folder):
+    batch = plan(folder)
+    run("batch", "run", "batch", folder=folder)
+    assert "all intact" in run("batch", "verify", "batch", folder=folder).stdout
+    run("batch", "merge", "batch", "--place", "copy", folder=folder)
+    (batch / "out/studio/sh.json").write_text("{}")
+    a, b, c = sorted(batch.glob("results/*/*/files/specular.ktx2"))[:3]
+    a.write_bytes(a.read_bytes()[:-1] + b"!")
+    b.unlink()
+    shutil.rmtree(c.parents[1])
+    problems = json.loads(run("batch", "verify", "batch", "--json", folder=folder, code=1).stdout)["problems"]
+    assert len(problems) == 4, problems
+    assert sorted(p["what"].split(": ")[-1] for p in problems) == ["has no result", "its contents are not those that were written",
+                                                                   "its contents are not those that were written", "its result is not whole"]
+
+
+def test_report_is_a_page_by_itself(folder):
+    (folder / "hdris/<script>alert(1)<").mkdir()
+    shutil.copy(folder / "hdris/noon.hdr", folder / "hdris/<script>alert(1)<" / "a b#.hdr")
+    (folder / "hdris/broken.hdr").write_bytes(b"x")
+    batch = plan(folder, "--set", "preview=true")
+    run("batch", "run", "batch", folder=folder, code=1)
+    run("batch", "report", "batch", folder=folder)
+    page = (batch / "report/index.html").read_text()
+    assert "http" not in page.replace("<!doctype html>", "") and "<script>alert" not in page
+    data = json.loads(page.split('id="data">')[1].split("</script>")[0])
+    assert len(data["jobs"]) == 8
+    for job in data["jobs"]:
+        if job["output"] == "broken":
+            assert job["status"] == "failed" and "known format" in job["reason"]
+            continue
+        assert job["status"] == "done" and job["seconds"] > 0 and job["bytes"] > 0 and job["error"] >= 0
+        for link in [job["thumb"], job["picture"], job["folder"]]:
+            assert (batch / "report" / link).exists(), link
+        assert (batch / "report" / job["thumb"]).read_bytes()[:2] == b"\xff\xd8"
 
 
 def prepare(folder):
