@@ -91,6 +91,17 @@ void declare(Arguments& a, RenderWords& w) {
     a.text("--maps", "DIR", w.maps,
            "split-sum, stretched, phong: the folder of a bake by `domelight bake` for the generic engine, with the "
            "lobe that the shading needs: ggx, or for phong a Phong lobe (baked in memory)");
+    a.text("--probes", "DIR", w.probes,
+           "split-sum, stretched, phong: the folder of a set by `domelight probes`; each point is lit by the probes "
+           "around it, and --env is the background alone");
+    a.choice("--parallax", w.parallax, std::vector<NamedValue<bool>>{{true, "on"}, {false, "off"}},
+             "off: reflections are looked up in a probe as if the point were where it is (on)");
+    a.integer("--probe-blend", "N", w.probe_blend, "the most probes that are blended at a point, 1 to 8 (8)");
+    a.choice("--probe-visibility", w.probe_visibility, std::vector<NamedValue<bool>>{{true, "on"}, {false, "off"}},
+             "off: all probes of a cell count, also those behind walls, as in engines that know no visibility (on)");
+    a.number("--probe-offset", "X", w.probe_offset,
+             "move each point along its normal by this part of the grid's spacing before the probes around it are "
+             "looked up, 0 to 1; three.js: 0.5 (0)");
     a.choice("--irradiance", w.sh_irradiance, std::vector<NamedValue<bool>>{{false, "cube"}, {true, "sh"}},
              "split-sum, stretched, phong: the irradiance cube, or nine harmonics (cube)");
     a.choice(
@@ -140,8 +151,8 @@ void print_result(const RenderWords& w, const Scene& scene, const RenderResult& 
 }
 
 /// One picture; with --save-every it is also written while it is being rendered.
-int run_picture(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler, const LightMaps* maps,
-                RenderOptions options) {
+int run_picture(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler,
+                const EngineLight& light, RenderOptions options) {
     using Clock = std::chrono::steady_clock;
     Interruption interruption;
     auto saved = Clock::now();
@@ -172,7 +183,7 @@ int run_picture(const RenderWords& w, const RayScene& scene, const EnvironmentSa
                 saved_samples = so_far.sample_count;
             };
         }
-        picture = draw_finished(w, scene, sampler, maps, options, w.ev);
+        picture = draw_finished(w, scene, sampler, light, options, w.ev);
     }
     if (failure) return print_error(*failure);
     if (!picture && Interruption::wanted())
@@ -188,7 +199,7 @@ int run_picture(const RenderWords& w, const RayScene& scene, const EnvironmentSa
 void warn_of_idle(const RenderWords& w, const Arguments& arguments) {
     const bool screen = std::ranges::any_of(w.outputs, is_screen_picture);
     const bool from_texture = w.shading == ShadingModel::mirror || w.shading == ShadingModel::refract;
-    const bool from_maps = !w.reference() && !from_texture;
+    const bool from_maps = !w.reference() && !from_texture && w.probes.empty();
     warn_of_idle_options(arguments,
                          {{"--tonemap", screen, "a .png or .jpg"},
                           {"--ev", screen, "a .png or .jpg"},
@@ -198,7 +209,7 @@ void warn_of_idle(const RenderWords& w, const Arguments& arguments) {
                           {"--time", w.reference(), "--shading reference"},
                           {"--bounces", w.reference(), "--shading reference"},
                           {"--maps", from_maps, "--shading split-sum, stretched or phong"},
-                          {"--irradiance", from_maps, "--shading split-sum, stretched or phong"},
+                          {"--irradiance", from_maps || !w.probes.empty(), "--shading split-sum, stretched or phong"},
                           {"--lookup", from_texture, "--shading mirror or refract"},
                           {"--lookup-size", from_texture, "--shading mirror or refract"},
                           {"--bent-lookup", w.shading == ShadingModel::split_sum, "--shading split-sum"}},
@@ -223,7 +234,7 @@ Result<void> check_places(const RenderWords& w) {
 }  // namespace
 
 Result<RenderResult> draw(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler,
-                          const LightMaps* maps, const RenderOptions& o) {
+                          const EngineLight& light, const RenderOptions& o) {
     if (w.reference()) return render_reference(scene, sampler, o);
     ShadingOptions shading;
     shading.model = *w.shading;
@@ -234,7 +245,8 @@ Result<RenderResult> draw(const RenderWords& w, const RayScene& scene, const Env
     shading.multiple_scattering = w.multiple_scattering;
     shading.diffuse_weight = w.diffuse_weight;
     shading.occlusion = o.occlusion;
-    return render_shaded(scene, *maps, sampler, shading, o);
+    return light.probes ? render_shaded(scene, *light.probes, sampler, shading, o)
+                        : render_shaded(scene, *light.maps, sampler, shading, o);
 }
 
 /// The lights of --lights, turned and brightened as the environment is. Warns of files without lights.
@@ -263,6 +275,7 @@ int run_render(const std::vector<std::string>& words) {
          "domelight render helmet.glb --env sunset.hdr -o truth.exr,truth.png --spp 256",
          "domelight render ball --env sunset.hdr --shading split-sum -o engine.png",
          "domelight render helmet.glb --background transparent --shadow-catcher -o cut-out.png",
+         "domelight render spheres --probes probes --shading split-sum -o probes.png --spp 4",
          "domelight render ball --frames 60 --spp 32 -o ball.png",
          "domelight render --study --env sunset.hdr -o study"});
     declare(arguments, w);
@@ -296,6 +309,8 @@ int run_render(const std::vector<std::string>& words) {
     if (!options) return print_error(options.error());
     auto environment = open();
     if (!environment) return print_error(environment.error());
+    const auto probes = probes_for(w, *scene);
+    if (!probes) return print_error(probes.error());
     auto lights = environment_lights(w, scene_options);
     if (!lights) return print_error(lights.error());
     options->environment_lights = std::move(*lights);
@@ -308,10 +323,12 @@ int run_render(const std::vector<std::string>& words) {
     print_warnings(environment->report().lines(), w.common, join(w.environment_files, " "));
     const auto maps = maps_for(w, *sampler);
     if (!maps) return print_error(maps.error());
-    const LightMaps* bound = *maps ? &**maps : nullptr;
-    options->background_maps = bound;
-    return w.frames ? run_turntable(w, *traced, *sampler, bound, *options)
-                    : run_picture(w, *traced, *sampler, bound, *options);
+    std::optional<ProbeBlender> blender;
+    if (*probes) blender.emplace(**probes, blend_options(w));
+    const EngineLight light{*maps ? &**maps : nullptr, blender ? &*blender : nullptr};
+    options->background_maps = light.maps;
+    return w.frames ? run_turntable(w, *traced, *sampler, light, *options)
+                    : run_picture(w, *traced, *sampler, light, *options);
 }
 
 }  // namespace domelight::cli

@@ -1,5 +1,8 @@
 #include "cli/render/render_job.h"
 
+#include "domelight/probe/scene_hash.h"
+
+#include "cli/console/print.h"
 #include "cli/render/render_outputs.h"
 #include "preview/exposure_meter.h"
 
@@ -11,12 +14,34 @@
 namespace domelight::cli {
 
 Result<std::optional<LightMaps>> maps_for(const RenderWords& w, const EnvironmentSampler& sampler) {
-    if (w.reference() && w.backdrop != Background::blurred) return std::optional<LightMaps>{};
+    const bool shades = !w.reference() && w.probes.empty();
+    if (!shades && w.backdrop != Background::blurred) return std::optional<LightMaps>{};
     const Lobe lobe = w.shading == ShadingModel::phong ? shading_lobe(ShadingModel::phong) : Lobe::ggx;
     auto maps = w.maps.empty() ? LightMaps::bake(sampler.image(), sampler.world_to_source(), w.threads(), lobe)
                                : LightMaps::load(w.maps);
     if (!maps) return maps.error();
     return std::optional<LightMaps>(std::move(*maps));
+}
+
+Result<std::optional<ProbeSet>> probes_for(const RenderWords& w, const Scene& scene) {
+    if (w.probes.empty()) return std::optional<ProbeSet>{};
+    auto set = ProbeSet::load(w.probes);
+    if (!set) return set.error();
+    if (!set->scene().sha256.empty() && set->scene().sha256 != scene_sha256(scene))
+        print_warnings({fmt::format("the probes were captured in another scene, or in {} before it was changed: their "
+                                    "light may not be that of this one",
+                                    set->scene().file)},
+                       w.common, w.probes);
+    return std::optional<ProbeSet>(std::move(*set));
+}
+
+BlendOptions blend_options(const RenderWords& w) {
+    BlendOptions o;
+    o.most = w.probe_blend.value_or(o.most);
+    o.visibility = w.probe_visibility;
+    o.parallax = w.parallax;
+    o.normal_offset = float(w.probe_offset);
+    return o;
 }
 
 PunctualLight turned_light(PunctualLight light, const Mat3& turn) {
@@ -57,8 +82,8 @@ Result<FinishedPicture> finish(const RenderWords& w, const RayScene& scene, cons
 }
 
 Result<FinishedPicture> draw_finished(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler,
-                                      const LightMaps* maps, const RenderOptions& options, double ev) {
-    auto traced = draw(w, scene, sampler, maps, tracing_options(w, options));
+                                      const EngineLight& light, const RenderOptions& options, double ev) {
+    auto traced = draw(w, scene, sampler, light, tracing_options(w, options));
     if (!traced) return traced.error();
     return finish(w, scene, sampler, options, std::move(*traced), ev);
 }

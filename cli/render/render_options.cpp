@@ -24,6 +24,8 @@ Result<void> check_numbers(const RenderWords& w) {
     } ranges[] = {{"--spp", double(w.spp.value_or(64)), 1, 1 << 20},
                   {"--bounces", double(w.bounces.value_or(4)), 0, 1000},
                   {"--lookup-size", double(w.lookup_size.value_or(512)), 1, 8192},
+                  {"--probe-blend", double(w.probe_blend.value_or(8)), 1, 8},
+                  {"--probe-offset", w.probe_offset, 0, 1},
                   {"--fov-deg", w.fov_deg, 0.1, 170},
                   {"--noise", w.noise, 0, 1},
                   {"--time", w.time, 0, 1e6},
@@ -76,6 +78,14 @@ Result<void> check_company(const RenderWords& w, const Arguments& a) {
         const char* what;
     } rules[] = {{"--background-roughness", blurred, "--background blurred"},
                  {"--camera-target", !w.camera_position.empty(), "--camera-position"},
+                 {"--probes",
+                  w.shading == ShadingModel::split_sum || w.shading == ShadingModel::stretched ||
+                      w.shading == ShadingModel::phong,
+                  "--shading split-sum, stretched or phong"},
+                 {"--parallax", !w.probes.empty(), "--probes"},
+                 {"--probe-blend", !w.probes.empty(), "--probes"},
+                 {"--probe-visibility", !w.probes.empty(), "--probes"},
+                 {"--probe-offset", !w.probes.empty(), "--probes"},
                  {"--fps", w.frames.has_value(), "--frames"},
                  {"--turn", w.frames.has_value(), "--frames"},
                  {"--resume", w.frames.has_value(), "--frames"},
@@ -106,9 +116,13 @@ Result<void> check_company(const RenderWords& w, const Arguments& a) {
     if (w.turn == "environment" && !w.maps.empty())
         return Error{"turns the light, and the maps of --maps would stay as they are", "--turn",
                      "Leave --maps out: each frame then bakes its own."};
+    if (w.turn == "environment" && !w.probes.empty())
+        return Error{"turns the light, and the probes of --probes would stay as they are", "--turn", ""};
+    if (!w.probes.empty() && !w.maps.empty())
+        return Error{"is the light of one environment, --probes that of a room", "--maps", "Leave one of them out."};
     if (w.study)
-        for (const char* option :
-             {"--frames", "--shadow-catcher", "--background", "--shading", "--strategy", "--maps", "--lights"})
+        for (const char* option : {"--frames", "--shadow-catcher", "--background", "--shading", "--strategy", "--maps",
+                                   "--probes", "--lights"})
             if (a.given(option)) return Error{"has no meaning with --study, which draws them all", option, ""};
     return {};
 }

@@ -30,7 +30,10 @@ struct RenderWords {
     Tonemap tonemap = Tonemap::agx;
     std::optional<Background> background;
     bool occlusion = true, sh_irradiance = false;
-    std::string maps, brdf = "scene";
+    std::string maps, probes, brdf = "scene";
+    bool parallax = true, probe_visibility = true;
+    std::optional<int> probe_blend;
+    double probe_offset = 0;
     std::optional<int> width, height, spp, bounces, seed, lookup_size;
     std::vector<double> camera_position, camera_target;
     std::string camera;

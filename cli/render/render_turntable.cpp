@@ -36,9 +36,9 @@ Vec3f turned(const Vec3f& v, double angle) {
 
 class Turntable {
   public:
-    Turntable(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler, const LightMaps* maps,
+    Turntable(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler, const EngineLight& light,
               const RenderOptions& options)
-        : words_(w), scene_(scene), sampler_(sampler), maps_(maps), options_(options) {
+        : words_(w), scene_(scene), sampler_(sampler), light_(light), options_(options) {
         const auto [low, high] = scene.scene().bounds();
         centre_ = w.camera_target.empty() ? (low + high) * 0.5f
                                           : Vec3f(Vec3d{w.camera_target[0], w.camera_target[1], w.camera_target[2]});
@@ -89,7 +89,7 @@ class Turntable {
             Affine& m = o.camera.to_world;
             m = {turned(m.x, angle), turned(m.y, angle), turned(m.z, angle),
                  centre_ + turned(m.translation - centre_, angle)};
-            return draw_finished(words, scene_, sampler_, maps_, o, ev);
+            return draw_finished(words, scene_, sampler_, light_, o, ev);
         }
         auto light = EnvironmentSampler::build(sampler_.image(), sampler_.options(),
                                                sampler_.world_to_source() * rotation_y(angle).transposed());
@@ -99,13 +99,13 @@ class Turntable {
         const LightMaps* own = *maps ? &**maps : nullptr;
         o.background_maps = own;
         for (PunctualLight& l : o.environment_lights) l = turned_light(l, rotation_y(angle));
-        return draw_finished(words, scene_, *light, own, o, ev);
+        return draw_finished(words, scene_, *light, {own, light_.probes}, o, ev);
     }
 
     const RenderWords& words_;
     const RayScene& scene_;
     const EnvironmentSampler& sampler_;
-    const LightMaps* maps_;
+    const EngineLight& light_;
     const RenderOptions& options_;
     Vec3f centre_;
 };
@@ -165,12 +165,12 @@ void print_turntable(const RenderWords& w, const RenderOptions& o, const Turntab
 
 }  // namespace
 
-int run_turntable(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler, const LightMaps* maps,
-                  const RenderOptions& given) {
+int run_turntable(const RenderWords& w, const RayScene& scene, const EnvironmentSampler& sampler,
+                  const EngineLight& light, const RenderOptions& given) {
     Interruption interruption;
     RenderOptions options = given;
     options.progress = [](std::string_view, double) { return !Interruption::wanted(); };
-    const Turntable turntable(w, scene, sampler, maps, options);
+    const Turntable turntable(w, scene, sampler, light, options);
     const auto stop = [&] {
         const std::string have = existing(turntable);
         return interruption.end(

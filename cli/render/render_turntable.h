@@ -13,6 +13,6 @@ std::string frame_file(const std::string& file, int frame);
 /// Draws --frames pictures while the camera, or the environment, goes once around the scene. Writes each into numbered
 /// files, and an animation beside pictures for a screen. Prints what was done and returns the exit code.
 int run_turntable(const RenderWords& words, const RayScene& scene, const EnvironmentSampler& sampler,
-                  const LightMaps* maps, const RenderOptions& options);
+                  const EngineLight& light, const RenderOptions& options);
 
 }  // namespace domelight::cli

@@ -109,10 +109,13 @@ struct ProbeBlender::Weighted {
 ProbeBlender::ProbeBlender(const ProbeSet& set, const BlendOptions& options) : set_(&set), options_(options) {
     options_.most = std::clamp(options_.most, 1, 8);
     for (int i = 0; i < int(set.probes().size()); ++i)
-        if (set.probes()[std::size_t(i)].valid) usable_.push_back(i);
+        if (set.probes()[std::size_t(i)].valid || !options_.visibility) usable_.push_back(i);
     if (usable_.empty())  // better the light that invalid probes were given than none
         for (int i = 0; i < int(set.probes().size()); ++i) usable_.push_back(i);
-    if (set.grid()) return;
+    if (set.grid()) {
+        offset_ = set.grid()->spacing * options_.normal_offset;
+        return;
+    }
     // An invalid probe would leave a hole between the other corners of its tetrahedra, so it is no corner at all.
     std::vector<Vec3f> positions;
     for (const int i : usable_) positions.push_back(set.probes()[std::size_t(i)].position);
@@ -121,16 +124,15 @@ ProbeBlender::ProbeBlender(const ProbeSet& set, const BlendOptions& options) : s
 
 float ProbeBlender::importance(int number, const Vec3f& point, const Vec3f& normal) const {
     const Probe& probe = set_->probes()[std::size_t(number)];
-    if (!probe.valid) return 0;
     float weight = influence_at(probe, point);
-    if (!(weight > 0)) return 0;
+    if (!options_.visibility || !(weight > 0)) return weight;
+    if (!probe.valid) return 0;
     const Vec3f to_probe = probe.position - point;
     const float distance = length(to_probe);
     if (distance > 0) {
         const float half = (1 + dot(to_probe, normal) / distance) / 2;
         weight *= half * half + 0.02f;
     }
-    if (!options_.visibility) return weight;
     if (set_->distance_size() == 0 || !(distance > 0)) return weight;
     const float tolerance = distance_tolerance(set_->distance_size());
     return weight * chebyshev_visibility(set_->distance(number, -to_probe), distance * (1 - tolerance));
@@ -202,7 +204,8 @@ void ProbeBlender::add_nearest(Weighted& sum, const Nearest& near, const Vec3f& 
     for (std::size_t i = 0; i < count; ++i) sum.add(near.probes[i].probe, missing * weight[i] / total);
 }
 
-ProbeBlend ProbeBlender::at(const Vec3f& point, const Vec3f& normal) const {
+ProbeBlend ProbeBlender::at(const Vec3f& surface, const Vec3f& normal) const {
+    const Vec3f point = surface + product(normal, offset_);
     Weighted sum;
     std::optional<Nearest> near;
     if (tetrahedra_) {

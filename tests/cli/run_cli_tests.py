@@ -69,10 +69,11 @@ def named_files(value):
 def test_examples_in_every_help_run(folder):
     shutil.copy(folder / "evening.hdr", folder / "sunset.hdr")
     (folder / "helmet.glb").write_bytes(make_glb())
-    smaller = {"render": ["--width", "8", "--height", "8", "--spp", "1", "--quiet"]}  # if an option is repeated, the last one counts
+    smaller = {"render": ["--width", "8", "--height", "8", "--spp", "1", "--quiet"],
+               "probes": ["--size", "8", "--spp", "1", "--bounces", "0", "--distance-size", "8"]}  # if an option is repeated, the last one counts
     (folder / "hdris").mkdir()
     shutil.copy(folder / "studio.hdr", folder / "hdris")
-    for command in ["bake", "batch", "brdf", "compare", "convert", "info", "lights", "render", "sample", "sky"]:
+    for command in ["bake", "batch", "brdf", "compare", "convert", "info", "lights", "probes", "render", "sample", "sky"]:
         text = run(command, "--help", folder=folder).stdout
         assert text.startswith("Examples:\n"), f"{command} --help does not open with examples"
         examples = [line.strip() for line in text.split("\n\n")[0].splitlines()[1:]]
@@ -126,6 +127,31 @@ def test_probes_are_written_whole_and_described(folder):
     assert again.stdout == ""
     for name in ("specular.ktx2", "irradiance.ktx2", "distance.ktx2", "probes.json"):
         assert (folder / "at" / name).read_bytes() == (folder / "at2" / name).read_bytes(), name
+
+
+def test_a_render_is_lit_by_probes(folder):
+    run("probes", "spheres", "-o", "set", "--grid", "2,2,2", *PROBES, folder=folder)
+    view = ["spheres", "--width", "16", "--height", "8", "--spp", "1", "--background", "transparent", "--shading", "split-sum", "--quiet"]
+    pictures = []
+    for options in [[], ["--parallax", "off"], ["--probe-blend", "1"], ["--probe-visibility", "off"], ["--probe-visibility", "off", "--probe-offset", "0.5"],
+                    ["--irradiance", "sh"], ["--shading", "stretched"], ["--shading", "phong"]]:
+        shown = run("render", *view, "--probes", "set", *options, "-o", "lit.hdr", folder=folder)
+        assert shown.stderr == "", shown.stderr
+        pictures.append((folder / "lit.hdr").read_bytes())
+    assert len(set(pictures)) >= len(pictures) - 1  # parallax needs proxies
+    changed = run("render", "ball", *view[1:-1], "--probes", "set", "-o", "lit.hdr", folder=folder)
+    assert "captured in another scene, or in spheres before it was changed" in changed.stderr, changed.stderr
+
+    def refused(*words, code=2):
+        return run("render", *view, *words, "-o", "refused.hdr", folder=folder, code=code).stderr
+
+    assert "--probes: goes with --shading split-sum" in refused("--probes", "set", "--shading", "mirror")
+    assert "--parallax: goes with --probes only" in refused("--parallax", "off")
+    assert "--probe-blend" in refused("--probes", "set", "--probe-blend", "9")
+    assert "--maps: is the light of one environment" in refused("--probes", "set", "--maps", "set")
+    assert "none/probes.json" in refused("--probes", "none", code=1)
+    (folder / "set/irradiance.ktx2").write_bytes(b"damaged")
+    assert "irradiance.ktx2" in refused("--probes", "set", code=1)
 
 
 def test_probes_refuse_what_cannot_work(folder):

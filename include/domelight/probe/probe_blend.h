@@ -21,8 +21,12 @@ struct BlendOptions {
     /// taken, less the largest weight that is left out: so a probe enters and leaves the blend with weight 0. With 1,
     /// the picture has steps.
     int most = 8;
-    /// Probes that a wall hides from the point get no weight. Without it, light leaks through walls.
+    /// Probes that are invalid or that a wall hides from the point get no weight, and those behind the surface little.
+    /// Without it all probes of a cell count, as in engines that know no visibility, and light leaks through walls.
     bool visibility = true;
+    /// The point is moved along the normal by this part of the grid's spacing, on each axis by that axis'
+    /// own, before its cell is looked up, 0 .. 1. 0.5 is three.js' LightProbeGrid. Without a grid it is not moved.
+    float normal_offset = 0;
     /// Lookups by direction are corrected for the probe's distance from the point, where the probe has a proxy.
     bool parallax = true;
 };
@@ -89,7 +93,8 @@ class ProbeBlender {
 
     const ProbeSet* set_;
     BlendOptions options_;
-    std::vector<int> usable_;               ///< the valid probes, or all if none is
+    Vec3f offset_;                          ///< metres, for a normal of 1 on each axis
+    std::vector<int> usable_;               ///< the valid probes, or all if none is or validity does not count
     std::optional<Tetrahedra> tetrahedra_;  ///< between those, where there is no grid
 };
 

@@ -8,6 +8,7 @@
 #include "engines/chain.h"
 #include "io/file/json.h"
 #include "projection/bilinear.h"
+#include "render/shading/shading_models.h"
 
 #include <fmt/core.h>
 
@@ -34,12 +35,6 @@ LightMaps::LightMaps(LightMaps&&) noexcept = default;
 LightMaps& LightMaps::operator=(LightMaps&&) noexcept = default;
 
 namespace {
-
-/// The roughness that corresponds to an exponent by Beckmann's relation n = 2 / alpha^2 - 2: a coordinate in which the
-/// levels of a Phong chain are about evenly spaced; exponent infinity has roughness 0, exponent 0 has roughness 1.
-float matching_roughness(double exponent) {
-    return float(std::pow(2 / (exponent + 2), 0.25));
-}
 
 Result<Lobe> lobe_of(const std::string& name) {
     if (const auto lobe = from_name<Lobe>(name); lobe && *lobe != Lobe::charlie) return *lobe;
@@ -70,6 +65,23 @@ Result<std::vector<Cubemap>> read_cubes(const std::filesystem::path& file) {
 }
 
 }  // namespace
+
+float matching_roughness(double exponent) {
+    return float(std::pow(2 / (exponent + 2), 0.25));
+}
+
+LightAt::ScaleBias look_up_brdf(const ImageF& t, float NdotV, float roughness) {
+    const float x = std::clamp(NdotV * float(t.width()) - 0.5f, 0.f, float(t.width() - 1)),
+                y = std::clamp(roughness * float(t.height()) - 0.5f, 0.f, float(t.height() - 1));
+    const int i = int(x), j = int(y), i1 = std::min(i + 1, t.width() - 1), j1 = std::min(j + 1, t.height() - 1);
+    const float a = x - float(i), b = y - float(j);
+    const auto channel = [&](int c) {
+        const float upper = t.at(i, j)[c] + a * (t.at(i1, j)[c] - t.at(i, j)[c]),
+                    lower = t.at(i, j1)[c] + a * (t.at(i1, j1)[c] - t.at(i, j1)[c]);
+        return upper + b * (lower - upper);
+    };
+    return {channel(0), channel(1)};
+}
 
 Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
     LightMaps maps;
@@ -185,18 +197,8 @@ Vec3f LightMaps::irradiance_over_pi_sh(const Vec3f& normal) const {
     return Vec3f(Vec3d{std::max(0.0, e.x), std::max(0.0, e.y), std::max(0.0, e.z)});
 }
 
-LightMaps::ScaleBias LightMaps::brdf(float NdotV, float roughness) const {
-    const ImageF& t = impl_->brdf;
-    const float x = std::clamp(NdotV * float(t.width()) - 0.5f, 0.f, float(t.width() - 1)),
-                y = std::clamp(roughness * float(t.height()) - 0.5f, 0.f, float(t.height() - 1));
-    const int i = int(x), j = int(y), i1 = std::min(i + 1, t.width() - 1), j1 = std::min(j + 1, t.height() - 1);
-    const float a = x - float(i), b = y - float(j);
-    const auto channel = [&](int c) {
-        const float upper = t.at(i, j)[c] + a * (t.at(i1, j)[c] - t.at(i, j)[c]),
-                    lower = t.at(i, j1)[c] + a * (t.at(i1, j1)[c] - t.at(i, j1)[c]);
-        return upper + b * (lower - upper);
-    };
-    return {channel(0), channel(1)};
+LightAt::ScaleBias LightMaps::brdf(float NdotV, float roughness) const {
+    return look_up_brdf(impl_->brdf, NdotV, roughness);
 }
 
 }  // namespace domelight

@@ -4,10 +4,12 @@
 #include "domelight/base/parallel.h"
 #include "domelight/sampling/sequences.h"
 
+#include "base/field_place.h"
 #include "render/background.h"
 #include "render/camera.h"
 #include "render/film.h"
 #include "render/punctual.h"
+#include "render/shading/probe_light.h"
 #include "render/shading/shading_models.h"
 
 #include <fmt/core.h>
@@ -21,11 +23,13 @@ namespace {
 
 class ShadedTracer {
   public:
-    ShadedTracer(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment,
-                 const ShadingOptions& shading, const RenderOptions& options)
+    /// Either the maps or the probes are null.
+    ShadedTracer(const RayScene& scene, const LightMaps* maps, const ProbeBlender* probes,
+                 const EnvironmentSampler& environment, const ShadingOptions& shading, const RenderOptions& options)
         : rays_(scene.impl()),
           scene_(scene.scene()),
           maps_(maps),
+          probes_(probes),
           environment_(environment),
           reflected_(environment, shading.lookup, shading.lookup_size, options.threads),
           shading_(shading),
@@ -88,20 +92,21 @@ class ShadedTracer {
 
     ShadedLight shade(const SurfacePoint& s, const Hit& hit, const Vec3f& V) const {
         const float ior = scene_.materials[scene_.meshes[scene_.instances[hit.instance].mesh].material].ior;
-        const ShadedLight maps = shade_by_maps(s, hit, V, ior),
-                          lights = shade_lights(shading_.model, s, V, ior, lights_);
-        return {maps.diffuse + lights.diffuse, maps.specular + lights.specular};
+        const ShadedLight around = probes_ ? shade_by(ProbeLight(*probes_, s), s, hit, V, ior)
+                                           : shade_by(*maps_, s, hit, V, ior),
+                          lights = shade_by_lights(s, V, ior);
+        return {around.diffuse + lights.diffuse, around.specular + lights.specular};
     }
 
-    ShadedLight shade_by_maps(const SurfacePoint& s, const Hit& hit, const Vec3f& V, float ior) const {
+    ShadedLight shade_by(const LightAt& light, const SurfacePoint& s, const Hit& hit, const Vec3f& V, float ior) const {
         const float occlusion = shading_.occlusion ? occlusion_at(scene_, hit) : 1;
         switch (shading_.model) {
             case ShadingModel::split_sum:
-                return shade_split_sum(s, V, occlusion, maps_, shading_);
+                return shade_split_sum(s, V, occlusion, light, shading_);
             case ShadingModel::stretched:
-                return shade_stretched(s, V, occlusion, maps_, shading_);
+                return shade_stretched(s, V, occlusion, light, shading_);
             case ShadingModel::phong:
-                return shade_phong(s, V, occlusion, maps_, shading_);
+                return shade_phong(s, V, occlusion, light, shading_);
             case ShadingModel::mirror:
                 return shade_mirror(s, V, reflected_);
             case ShadingModel::refract:
@@ -110,9 +115,28 @@ class ShadedTracer {
         return shade_refract(s, V, ior, reflected_);
     }
 
+    /// With probes the lights cast shadows: in a room, most of what they would light is behind walls.
+    ShadedLight shade_by_lights(const SurfacePoint& s, const Vec3f& V, float ior) const {
+        if (!probes_ || !options_.occlusion) return shade_lights(shading_.model, s, V, ior, lights_);
+        ShadedLight sum;
+        for (const PunctualLight& light : lights_) {
+            const PunctualArrival arrival = arrival_at(light, s.position);
+            if (arrival.strength <= 0 || is_shadowed(s, arrival)) continue;
+            const ShadedLight one = shade_lights(shading_.model, s, V, ior, {&light, 1});
+            sum.diffuse += one.diffuse, sum.specular += one.specular;
+        }
+        return sum;
+    }
+
+    bool is_shadowed(const SurfacePoint& s, const PunctualArrival& arrival) const {
+        const Hit hit = rays_.intersect(s.ray_to(arrival.direction), false);
+        return hit.instance >= 0 && hit.distance < arrival.distance;
+    }
+
     const RayScene::Impl& rays_;
     const Scene& scene_;
-    const LightMaps& maps_;
+    const LightMaps* maps_;
+    const ProbeBlender* probes_;
     const EnvironmentSampler& environment_;
     const EnvironmentMap reflected_;  ///< the map that mirror and refract read
     const ShadingOptions& shading_;
@@ -127,20 +151,18 @@ Lobe shading_lobe(ShadingModel model) {
     return model == ShadingModel::phong ? Lobe::phong_brdf : Lobe::ggx;
 }
 
-Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment,
-                                   const ShadingOptions& shading, const RenderOptions& o) {
-    if (auto fine = check_size(o.width, o.height); !fine) return fine.error();
-    if (auto fine = check_background(o); !fine) return fine.error();
+namespace {
+
+Result<void> check_options(const ShadingOptions& shading, const RenderOptions& o) {
+    if (auto fine = check_size(o.width, o.height); !fine) return fine;
+    if (auto fine = check_background(o); !fine) return fine;
     if (shading.lookup_size < 1 || shading.lookup_size > 8192)
         return Error{fmt::format("a map of {} texels is not from 1 to 8192", shading.lookup_size), "", ""};
-    const bool wants_phong = shading_lobe(shading.model) == Lobe::phong_brdf,
-               reads_chain = shading.model < ShadingModel::mirror;
-    if (reads_chain && wants_phong != (maps.lobe() != Lobe::ggx))
-        return Error{
-            fmt::format("has a chain of lobe {}, which {} does not read", name_of(maps.lobe()), name_of(shading.model)),
-            "", fmt::format("Bake with `lobe` {}.", name_of(shading_lobe(shading.model)))};
+    return {};
+}
+
+Result<RenderResult> trace(const ShadedTracer& tracer, const RenderOptions& o) {
     const auto start = std::chrono::steady_clock::now();
-    const ShadedTracer tracer(scene, maps, environment, shading, o);
     Film film(o.width, o.height);
     std::atomic<bool> cancelled{false};
     std::atomic<int> done{0};
@@ -161,6 +183,30 @@ Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps,
     RenderResult out = develop(film, o.width, o.height);
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return out;
+}
+
+}  // namespace
+
+Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment,
+                                   const ShadingOptions& shading, const RenderOptions& o) {
+    if (auto fine = check_options(shading, o); !fine) return fine.error();
+    const bool wants_phong = shading_lobe(shading.model) == Lobe::phong_brdf,
+               reads_chain = shading.model < ShadingModel::mirror;
+    if (reads_chain && wants_phong != (maps.lobe() != Lobe::ggx))
+        return Error{
+            fmt::format("has a chain of lobe {}, which {} does not read", name_of(maps.lobe()), name_of(shading.model)),
+            "", fmt::format("Bake with `lobe` {}.", name_of(shading_lobe(shading.model)))};
+    return trace(ShadedTracer(scene, &maps, nullptr, environment, shading, o), o);
+}
+
+Result<RenderResult> render_shaded(const RayScene& scene, const ProbeBlender& probes,
+                                   const EnvironmentSampler& environment, const ShadingOptions& shading,
+                                   const RenderOptions& o) {
+    if (auto fine = check_options(shading, o); !fine) return fine.error();
+    if (shading.model >= ShadingModel::mirror)
+        return Error{fmt::format("{} reads the environment, not probes", name_of(shading.model)), field_place("model"),
+                     "With probes: split-sum, stretched or phong."};
+    return trace(ShadedTracer(scene, nullptr, &probes, environment, shading, o), o);
 }
 
 }  // namespace domelight

@@ -6,7 +6,7 @@
 
 namespace domelight {
 
-ShadedLight shade_phong(const SurfacePoint& s, const Vec3f& V, float occlusion, const LightMaps& maps,
+ShadedLight shade_phong(const SurfacePoint& s, const Vec3f& V, float occlusion, const LightAt& maps,
                         const ShadingOptions& o) {
     const Bsdf& b = s.bsdf;
     ShadedLight light;

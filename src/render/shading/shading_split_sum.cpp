@@ -25,11 +25,11 @@ Vec3f diffuse_weight_fresnel(const Vec3f& f0, const Vec3f& f90, float NdotV) {
     return Vec3f{1, 1, 1} - fresnel_schlick(NdotV, f0, f90);
 }
 
-Vec3f diffuse_weight_energy(const Vec3f& f0, const Vec3f& f90, LightMaps::ScaleBias table) {
+Vec3f diffuse_weight_energy(const Vec3f& f0, const Vec3f& f90, LightAt::ScaleBias table) {
     return Vec3f{1, 1, 1} - (f0 * table.scale + f90 * table.bias);
 }
 
-Vec3f multiple_scattering(const Vec3f& f0, const Vec3f& f90, LightMaps::ScaleBias table) {
+Vec3f multiple_scattering(const Vec3f& f0, const Vec3f& f90, LightAt::ScaleBias table) {
     const Vec3f single = f0 * table.scale + f90 * table.bias;
     const float lost = 1 - (table.scale + table.bias);
     const auto channel = [&](float f, float once) {
@@ -40,10 +40,10 @@ Vec3f multiple_scattering(const Vec3f& f0, const Vec3f& f90, LightMaps::ScaleBia
 }
 
 ShadedLight shade_metallic_roughness(const SurfacePoint& s, float NdotV, float occlusion, const LobeLight& lobe,
-                                     const LightMaps& maps, const ShadingOptions& o) {
+                                     const LightAt& maps, const ShadingOptions& o) {
     const Bsdf& b = s.bsdf;
     const Vec3f E = diffuse_irradiance_over_pi(s.normal, maps, o);
-    const LightMaps::ScaleBias table = maps.brdf(NdotV, std::sqrt(b.alpha));
+    const LightAt::ScaleBias table = maps.brdf(NdotV, std::sqrt(b.alpha));
     ShadedLight light;
     light.specular = product(lobe.scale, b.f0 * table.scale) + product(lobe.bias, b.f90 * table.bias);
     Vec3f weight = o.diffuse_weight == DiffuseWeight::fresnel ? diffuse_weight_fresnel(b.f0, b.f90, NdotV)
@@ -58,7 +58,7 @@ ShadedLight shade_metallic_roughness(const SurfacePoint& s, float NdotV, float o
     return light;
 }
 
-ShadedLight shade_split_sum(const SurfacePoint& s, const Vec3f& V, float occlusion, const LightMaps& maps,
+ShadedLight shade_split_sum(const SurfacePoint& s, const Vec3f& V, float occlusion, const LightAt& maps,
                             const ShadingOptions& o) {
     const Bsdf& b = s.bsdf;
     if (b.kind == Bsdf::Kind::lambert)

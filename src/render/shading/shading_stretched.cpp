@@ -8,7 +8,7 @@ namespace domelight {
 namespace {
 
 /// The lobe's light, by a row of lookups in the plane of incidence.
-LobeLight stretched_light(const Vec3f& N, const Vec3f& V, float NdotV, float roughness, const LightMaps& maps) {
+LobeLight stretched_light(const Vec3f& N, const Vec3f& V, float NdotV, float roughness, const LightAt& maps) {
     const Vec3f R = reflect_about(V, N), across = R - N * dot(N, R);
     const float sine = length(across);
     // From R towards N, in the plane of both. Seen from straight above all tilts are 0, and any direction is right.
@@ -25,7 +25,7 @@ LobeLight stretched_light(const Vec3f& N, const Vec3f& V, float NdotV, float rou
 
 }  // namespace
 
-ShadedLight shade_stretched(const SurfacePoint& s, const Vec3f& V, float occlusion, const LightMaps& maps,
+ShadedLight shade_stretched(const SurfacePoint& s, const Vec3f& V, float occlusion, const LightAt& maps,
                             const ShadingOptions& o) {
     const Bsdf& b = s.bsdf;
     if (b.kind == Bsdf::Kind::lambert)

@@ -1,9 +1,10 @@
 #pragma once
-// A scene as a real-time engine draws it, lit by the maps that `bake` writes. Each model follows its shader.
+// A scene as a real-time engine draws it, lit by the maps that `bake` writes or by probes. Each model follows its shader.
 
 #include "domelight/base/names.h"
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
 #include "domelight/filtering/kernel/zonal_kernel.h"
+#include "domelight/probe/probe_blend.h"
 #include "domelight/render/render.h"
 
 #include <memory>
@@ -11,8 +12,32 @@
 
 namespace domelight {
 
-/// The maps of a bake. Lookups take world directions.
-class LightMaps {
+/// The light that a shader looks up at a point. Lookups take world directions.
+class LightAt {
+  public:
+    virtual ~LightAt() = default;
+
+    /// The prefiltered radiance from a direction.
+    virtual Vec3f specular(const Vec3f& direction, float roughness) const = 0;
+    /// The same for a Phong lobe, by exponent.
+    virtual Vec3f phong(const Vec3f& direction, float exponent) const = 0;
+    /// E / pi by an irradiance cube, or by the nine spherical-harmonic coefficients.
+    virtual Vec3f irradiance_over_pi(const Vec3f& normal) const = 0;
+    virtual Vec3f irradiance_over_pi_sh(const Vec3f& normal) const = 0;
+    /// Scale and bias from the BRDF table, by bilinear lookup.
+    struct ScaleBias {
+        float scale, bias;
+    };
+    virtual ScaleBias brdf(float NdotV, float roughness) const = 0;
+
+  protected:
+    LightAt() = default;
+    LightAt(const LightAt&) = default;
+    LightAt& operator=(const LightAt&) = default;
+};
+
+/// The maps of a bake: the same light at every point.
+class LightMaps final : public LightAt {
   public:
     /// Reads a bake for the generic engine (`domelight bake -o DIR`) with the lobe ggx or one of Phong's:
     /// specular.ktx2, irradiance.ktx2, sh.json and brdf.ktx2, and the roughness or exponent of each level from
@@ -21,7 +46,7 @@ class LightMaps {
     /// Bakes the maps of the generic engine in memory. lobe: ggx, or phong_brdf with its default exponents.
     static Result<LightMaps> bake(ImageView<const float> latlong, const Mat3& world_to_source, int threads = 0,
                                   Lobe lobe = Lobe::ggx);
-    ~LightMaps();
+    ~LightMaps() override;
     LightMaps(LightMaps&&) noexcept;
     LightMaps& operator=(LightMaps&&) noexcept;
 
@@ -29,18 +54,13 @@ class LightMaps {
     Lobe lobe() const;
     /// The prefiltered environment, interpolated between the two levels nearest in roughness, without seams at the
     /// edges of faces.
-    Vec3f specular(const Vec3f& direction, float roughness) const;
+    Vec3f specular(const Vec3f& direction, float roughness) const override;
     /// The same for a Phong chain, by exponent. Below the exponent of the last level it is interpolated towards the
     /// irradiance (exponent 0).
-    Vec3f phong(const Vec3f& direction, float exponent) const;
-    /// E / pi by the irradiance cube, or by the nine spherical-harmonic coefficients.
-    Vec3f irradiance_over_pi(const Vec3f& normal) const;
-    Vec3f irradiance_over_pi_sh(const Vec3f& normal) const;
-    /// Scale and bias from the BRDF table, by bilinear lookup.
-    struct ScaleBias {
-        float scale, bias;
-    };
-    ScaleBias brdf(float NdotV, float roughness) const;
+    Vec3f phong(const Vec3f& direction, float exponent) const override;
+    Vec3f irradiance_over_pi(const Vec3f& normal) const override;
+    Vec3f irradiance_over_pi_sh(const Vec3f& normal) const override;
+    ScaleBias brdf(float NdotV, float roughness) const override;
 
   private:
     struct Impl;
@@ -131,5 +151,13 @@ Lobe shading_lobe(ShadingModel model);
 /// highlight. Errors: maps of another lobe than the model's; "cancelled".
 Result<RenderResult> render_shaded(const RayScene& scene, const LightMaps& maps, const EnvironmentSampler& environment,
                                    const ShadingOptions& shading, const RenderOptions& options);
+
+/// The same, lit at each point by the probes around it, with split-sum, stretched or phong (by the lobe of GGX that
+/// matches each exponent); `environment` is the background alone. What probes have captured, they light: windows, glowing
+/// surfaces, light that is reflected between walls. The scene's lights and RenderOptions::environment_lights, which no
+/// probe sees directly, cast shadows unless RenderOptions::occlusion is false. Errors: mirror or refract; "cancelled".
+Result<RenderResult> render_shaded(const RayScene& scene, const ProbeBlender& probes,
+                                   const EnvironmentSampler& environment, const ShadingOptions& shading,
+                                   const RenderOptions& options);
 
 }  // namespace domelight
