@@ -20,6 +20,8 @@ const isEnvironment = (name: string) => /\.(hdr|exr|env|dds|ktx2?|jpe?g)$/i.test
 const k_frames = 64;
 const k_noisy_frames = 4096;
 const k_brdf_size = 128;
+/// Until it is asked again whether the graphics card has done its work.
+const k_pause_ms = 4;
 
 export interface Events extends JobEvents {
     /// A frame was drawn.
@@ -45,7 +47,8 @@ export class App {
     private screen = {width: 1, height: 1, inset: {right: 0, bottom: 0}};
     private scheduled = false;
     private readonly openedListeners: (() => void)[] = [];
-    private waiting: {frames: number; index: number; resolve: (base64: string) => void}[] = [];
+    private readonly phongListeners: (() => void)[] = [];
+    private waiting: {frames: number; index: number; resolve: (base64: Promise<string>) => void}[] = [];
 
     constructor(
         canvas: HTMLCanvasElement,
@@ -92,6 +95,10 @@ export class App {
     /// Calls back whenever another model or environment is shown.
     onOpened(listener: () => void): void {
         this.openedListeners.push(listener);
+    }
+    /// Calls back when the Phong chain of the environment has been made.
+    onPhong(listener: () => void): void {
+        this.phongListeners.push(listener);
     }
     private opened(): void {
         for (const listener of this.openedListeners) listener();
@@ -154,8 +161,7 @@ export class App {
     resize(width: number, height: number, inset: {right: number; bottom: number}): void {
         this.screen = {width, height, inset};
         const scale = this.reduced, scaled = (v: number) => Math.max(1, Math.round(v * scale));
-        this.stage.inset = {right: inset.right * scale, bottom: inset.bottom * scale};
-        this.stage.resize(scaled(width), scaled(height));
+        this.stage.resize(scaled(width), scaled(height), {right: inset.right * scale, bottom: inset.bottom * scale});
         this.redraw();
     }
     redraw(): void {
@@ -166,19 +172,24 @@ export class App {
     /// Reads and filters the environment that is chosen now. Whether that went well.
     private relight(what = 'filtering the environment'): Promise<boolean> {
         return this.work(what, async () => {
-            const info = await (this.state.furnace ? builtIn('furnace') : this.source)(this.baker), bake = await this.baker.bake(this.state.size);
+            const info = await (this.state.furnace ? builtIn('furnace') : this.source)(this.baker);
+            const [bake, map] = await Promise.all([this.baker.bake(this.state.size), this.stage.upload(info)]);
             ++this.light;
             this.needed = {phong: false, rows: 0};
             this.phongLevels = 0;
             this.environmentName = info.name;
             Object.assign(this.timings, {open: info.milliseconds, bake: bake.milliseconds});
-            this.stage.setEnvironment(info);
+            this.stage.setEnvironment(map);
             this.stage.setBake((this.bake = bake));
             await this.provide();
             this.opened();
         });
     }
 
+    private get lacking(): boolean {
+        const {shown, needed, state} = this;
+        return (shown.includes('phong') && !needed.phong) || (shown.includes('monte-carlo') && needed.rows !== state.rows);
+    }
     /// Has the maps computed that the modes on the screen need and that do not exist yet.
     private async provide(): Promise<void> {
         const {shown, state, light} = this;
@@ -188,6 +199,7 @@ export class App {
             if (light !== this.light) return;
             this.phongLevels = chain.levels.length;
             this.stage.setPhong(chain);
+            for (const listener of this.phongListeners) listener();
         }
         if (shown.includes('monte-carlo') && this.needed.rows !== state.rows) {
             this.needed.rows = state.rows;
@@ -202,7 +214,7 @@ export class App {
         if (changed.has('model') && make && state.model !== this.model.name) this.showModel(make());
         if (changed.has('environment') && state.environment !== this.environmentName) this.source = builtIn(state.environment);
         if (changed.has('environment') || changed.has('furnace') || changed.has('size')) void this.relight();
-        else if (this.bake) void this.work('filtering the environment', () => this.provide());
+        else if (this.bake && this.lacking) void this.work('filtering the environment', () => this.provide());
         const onlyShown = new Set<keyof State>(['exposure', 'tonemap', 'divider', 'panel', 'view', 'other']);
         if ([...changed].some(key => !onlyShown.has(key))) this.stage.restart();
         else if (changed.has('other')) this.stage.panes[1].count = 0;
@@ -227,6 +239,7 @@ export class App {
         this.scheduled = false;
         if (!this.bake || this.stage.lost) return;
         const {state, stage} = this;
+        if (!stage.ready(this.shown)) return void setTimeout(() => this.redraw(), k_pause_ms);
         stage.apply(state);
         let unfinished = false;
         this.shown.forEach((mode, k) => {

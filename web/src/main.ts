@@ -88,6 +88,10 @@ function start(served: Session | null): void {
     void app.start();
 }
 
-const lack = whatIsMissing();
+/// The page is on the screen before the graphics card is asked for anything, which may take a while.
+const shown = new Promise<void>(resolve => requestAnimationFrame(() => setTimeout(resolve)));
+const session = readSession();
+await shown;
+const lack = whatIsMissing(layout.canvas);
 if (lack) document.body.append(element('p', {className: 'surface', id: 'unable', role: 'alert'}, lack));
-else void readSession().then(start);
+else start(await session);

@@ -7,10 +7,10 @@ export interface Pictures {
     width: number;
     height: number;
     /// RGBA bytes of sRGB, rows from the top.
-    test: Uint8Array;
-    reference: Uint8Array;
+    test: Uint8Array<ArrayBuffer>;
+    reference: Uint8Array<ArrayBuffer>;
     /// The number of the object in each pixel, 0 for the background.
-    objects: Uint16Array;
+    objects: Uint16Array<ArrayBuffer>;
     map: 'difference' | 'flip';
 }
 export interface ObjectError {

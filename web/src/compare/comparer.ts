@@ -5,25 +5,25 @@ import type {Comparison, Pictures} from './compare_worker';
 export class Comparer {
     private readonly worker = new Worker(new URL('./compare_worker.ts', import.meta.url), {type: 'module'});
     private busy = false;
-    private next: (() => Pictures) | null = null;
+    private next: (() => Promise<Pictures>) | null = null;
 
     constructor(done: (result: Comparison) => void) {
         this.worker.addEventListener('message', ({data}: MessageEvent<Comparison>) => {
             this.busy = false;
             done(data);
-            if (this.next) this.ask(this.next);
+            if (this.next) void this.ask(this.next);
         });
     }
 
     /// read: called when the worker is free, to read the pictures as they are then.
-    ask(read: () => Pictures): void {
+    async ask(read: () => Promise<Pictures>): Promise<void> {
         this.next = null;
         if (this.busy) {
             this.next = read;
             return;
         }
         this.busy = true;
-        const pictures = read();
-        this.worker.postMessage(pictures, [pictures.test.buffer, pictures.reference.buffer, pictures.objects.buffer] as Transferable[]);
+        const pictures = await read();
+        this.worker.postMessage(pictures, [pictures.test.buffer, pictures.reference.buffer, pictures.objects.buffer]);
     }
 }

@@ -29,7 +29,7 @@ export class LevelPictures {
         });
     }
 
-    draw(canvas: HTMLCanvasElement, state: State, {map, level, shape, width}: LevelOptions): void {
+    async draw(canvas: HTMLCanvasElement, state: State, {map, level, shape, width}: LevelOptions): Promise<void> {
         const height = shape === 'ball' ? width : shape === 'faces' ? Math.round((width * 2) / 3) : width / 2, u = this.pass.uniforms;
         u.u_cube!.value = this.stage.uniforms[map === 'phong' ? 'u_phong' : map === 'specular' ? 'u_specular' : 'u_irradiance']!.value;
         if (!u.u_cube!.value) return;
@@ -40,8 +40,8 @@ export class LevelPictures {
         this.stage.setDisplay(u, state);
         const target = new THREE.WebGLRenderTarget(width, height, {depthBuffer: false});
         this.pass.run(this.stage.renderer, target);
-        canvas.width = width;
-        canvas.height = height;
-        canvas.getContext('2d')!.putImageData(new ImageData(new Uint8ClampedArray(readBytes(this.stage, target)), width, height), 0, 0);
+        const bytes = await readBytes(this.stage, target);
+        Object.assign(canvas, {width, height});
+        canvas.getContext('2d')!.putImageData(new ImageData(new Uint8ClampedArray(bytes.buffer), width, height), 0, 0);
     }
 }

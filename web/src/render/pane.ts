@@ -21,7 +21,7 @@ export class Pane {
     private next: THREE.WebGLRenderTarget;
     private readonly frame: THREE.WebGLRenderTarget;
     private readonly smooth: THREE.WebGLRenderTarget;
-    private readonly add = new Pass(accumulateProgram, {u_mean: {value: null}, u_picture: {value: null}, u_weight: {value: 1}});
+    readonly add = new Pass(accumulateProgram, {u_mean: {value: null}, u_picture: {value: null}, u_weight: {value: 1}});
 
     constructor(private readonly renderer: THREE.WebGLRenderer) {
         this.mean = floatTarget(1, 1);

@@ -15,10 +15,19 @@ export class Pass {
         this.material = new THREE.RawShaderMaterial({...program, glslVersion: THREE.GLSL3, uniforms, depthTest: false, depthWrite: false});
         this.scene.add(triangle(this.material));
     }
+    compile(renderer: THREE.WebGLRenderer): Promise<void> {
+        return compile(renderer, this.scene, camera);
+    }
     run(renderer: THREE.WebGLRenderer, target: THREE.WebGLRenderTarget | null): void {
         renderer.setRenderTarget(target);
         renderer.render(this.scene, camera);
     }
+}
+
+/// Compiles the shaders of a scene beside the page, where the browser can; otherwise they are begun.
+export async function compile(renderer: THREE.WebGLRenderer, scene: THREE.Scene, camera: THREE.Camera): Promise<void> {
+    if (renderer.getContext().getSupportedExtensions()?.includes('KHR_parallel_shader_compile')) await renderer.compileAsync(scene, camera);
+    else renderer.compile(scene, camera);
 }
 
 /// Three vertices without attributes: the vertex shaders place them.

@@ -5,12 +5,14 @@ import {matchingRoughness} from '../bake/chain';
 import type {Bake, BrdfTable, Chain, EnvironmentInfo, Latlong, Tables} from '../bake/types';
 import {radians} from '../scene/framing';
 import {backgrounds, lookups, strategies, tables, tonemaps, type Mode, type State} from '../state';
+import {Backlog} from './backlog';
 import {LookupMaps} from './lookup_maps';
 import {brdfTexture, chainTexture, cubeTexture, latlongTexture, tableTexture} from './maps';
 import {Pane} from './pane';
-import {Pass, triangle} from './passes';
+import {compile, Pass, triangle} from './passes';
 import {backgroundProgram, presentProgram, type Purpose} from './programs';
 import {litMeshes, type LitMesh, type Uniforms} from './surfaces';
+import {uploadInSlices} from './upload';
 
 const uniform = <T>(value: T) => ({value});
 
@@ -18,7 +20,9 @@ export class Stage {
     readonly renderer: THREE.WebGLRenderer;
     readonly camera = new THREE.PerspectiveCamera();
     readonly panes: [Pane, Pane];
-    /// Pixels that the panel covers: the model stands in the middle of the rest.
+    readonly backlog: Backlog;
+    /// Pixels of the picture, and those of them that the panel covers: the model stands in the middle of the rest.
+    private size = {width: 1, height: 1};
     inset = {right: 0, bottom: 0};
     readonly uniforms: Uniforms = {
         u_eye: uniform(new THREE.Vector3()), u_turn: uniform(new THREE.Matrix3()), u_environment: uniform(new THREE.Matrix3()),
@@ -42,11 +46,17 @@ export class Stage {
     /// How many pictures there have been: a comparison with an earlier one is out of date.
     pictures = 0;
     private readonly sky: THREE.Mesh;
+    /// What the model can be drawn for without waiting.
+    private readonly prepared = new Set<Purpose>();
+    private preparing = false;
+    private readonly tiny = new THREE.WebGLRenderTarget(1, 1);
+    private uploads = 0;
 
     constructor(canvas: HTMLCanvasElement) {
         this.renderer = new THREE.WebGLRenderer({canvas, antialias: false, depth: false, stencil: false, alpha: false});
         this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;  // the shaders write what the screen shows
         this.renderer.autoClear = true;
+        this.backlog = new Backlog(this.renderer);
         this.panes = [new Pane(this.renderer), new Pane(this.renderer)];
         this.lookups = new LookupMaps(this.renderer, this.uniforms.u_latlong!);
         this.sky = triangle(new THREE.RawShaderMaterial({
@@ -61,9 +71,52 @@ export class Stage {
         });
     }
 
-    resize(width: number, height: number): void {
+    /// Takes effect with the next frame.
+    resize(width: number, height: number, inset: {right: number; bottom: number}): void {
+        this.size = {width, height};
+        this.inset = inset;
+    }
+    private fit(): void {
+        const {width, height} = this.size;
+        if (this.panes[0].width === width && this.panes[0].height === height) return;
         this.renderer.setSize(width, height, false);
         for (const pane of this.panes) pane.resize(width, height);
+    }
+
+    /// Whether a frame can be drawn now without waiting for the graphics card: it has done the last one, and has the textures of the model and
+    /// the compiled shaders of these modes, which are otherwise begun here.
+    ready(modes: Mode[]): boolean {
+        if (!this.preparing && modes.some(mode => !this.prepared.has(mode))) void this.prepare(modes);
+        // A picture becomes no better while the next environment is on its way.
+        if (this.preparing || (this.uploads > 0 && this.panes[0].count > 0) || !this.backlog.done) return false;
+        this.fit();
+        return true;
+    }
+    private async prepare(modes: Mode[]): Promise<void> {
+        this.preparing = true;
+        const {meshes, renderer, backlog} = this, {add} = this.panes[0];
+        for (const texture of new Set(meshes.flatMap(mesh => mesh.textures))) {
+            await backlog.emptied();
+            renderer.initTexture(texture);
+            backlog.mark();
+        }
+        await Promise.all([add.compile(renderer), this.present.compile(renderer)]);
+        for (const mode of modes) {
+            for (const mesh of meshes) mesh.use(mode);
+            await compile(renderer, this.scene, this.camera);
+            await backlog.emptied();
+            if (meshes === this.meshes) this.firstUse(mode);
+        }
+        this.preparing = false;
+    }
+    /// three.js asks for the uniforms of a shader when it is first drawn with, and waits for all that was given to the card before: little, here.
+    private firstUse(mode: Mode): void {
+        for (const mesh of this.meshes) mesh.use(mode);
+        this.renderer.setRenderTarget(this.tiny);
+        this.renderer.render(this.scene, this.camera);
+        for (const pass of [this.panes[0].add, this.present]) pass.run(this.renderer, this.tiny);
+        this.backlog.mark();
+        this.prepared.add(mode);
     }
 
     setModel(root: THREE.Object3D): void {
@@ -72,11 +125,19 @@ export class Stage {
         this.model = root;
         this.meshes = litMeshes(root, this.uniforms);
         this.scene.add(root);
+        this.prepared.clear();
         this.restart();
     }
 
-    setEnvironment(info: EnvironmentInfo): void {
-        this.replace('u_latlong', latlongTexture(info));
+    /// The map of an environment as a texture that the graphics card has. Not in use before setEnvironment().
+    async upload(info: EnvironmentInfo): Promise<THREE.DataTexture> {
+        const texture = latlongTexture(info);
+        ++this.uploads;
+        await uploadInSlices(this.renderer, texture, this.backlog).finally(() => --this.uploads);
+        return texture;
+    }
+    setEnvironment(map: THREE.DataTexture): void {
+        this.replace('u_latlong', map);
         this.lookups.forget();
     }
     setBake(bake: Bake): void {
@@ -153,6 +214,8 @@ export class Stage {
     }
     /// The graphics card is back: three.js uploads what it is given; what was drawn has to be drawn again.
     restore(): void {
+        this.prepared.clear();
+        this.backlog.forget();
         this.lookups.forget();
         this.restart();
     }
@@ -162,7 +225,7 @@ export class Stage {
 
     /// Width over height of what the panel does not cover.
     get freeAspect(): number {
-        const {width, height} = this.panes[0], {right, bottom} = this.inset;
+        const {size: {width, height}, inset: {right, bottom}} = this;
         return Math.max(1, width - right) / Math.max(1, height - bottom);
     }
     /// Points the camera at a part of the picture, from pixel (x, y) on.
@@ -201,6 +264,7 @@ export class Stage {
         u.u_view!.value = mapped ? 1 : 0;
         this.setDisplay(u, state);
         this.present.run(this.renderer, null);
+        this.backlog.mark();
     }
     setDisplay(u: Uniforms, state: State): void {
         u.u_tonemap!.value = tonemaps.indexOf(state.tonemap);

@@ -30,6 +30,9 @@ export class LitMesh {
         this.side = source.side;
     }
 
+    get textures(): THREE.Texture[] {
+        return Object.values(this.surface.uniforms).map(({value}) => value).filter(value => value instanceof THREE.Texture);
+    }
     use(purpose: Purpose): void {
         let material = this.materials.get(purpose);
         if (!material) this.materials.set(purpose, (material = this.make(purpose)));
@@ -41,7 +44,7 @@ export class LitMesh {
         for (const material of this.materials.values()) material.dispose();
         if (!whole) return;
         this.mesh.geometry.dispose();
-        for (const {value} of Object.values(this.surface.uniforms)) if (value instanceof THREE.Texture) value.dispose();
+        for (const texture of this.textures) texture.dispose();
     }
 
     private make(purpose: Purpose): THREE.RawShaderMaterial {

@@ -43,10 +43,10 @@ export class CompareSection {
         this.done = key;
         const {width, height} = stage.panes[0];
         this.size = [width, height];
-        this.comparer.ask(() => ({
-            width, height, test: this.inspector.displayed(state, 0), reference: this.inspector.displayed(state, 1), objects: this.inspector.objects(),
-            map: state.view === 'difference' ? 'difference' : 'flip',
-        }));
+        void this.comparer.ask(async () => {
+            const [test, reference, objects] = await Promise.all([this.inspector.displayed(state, 0), this.inspector.displayed(state, 1), this.inspector.objects()]);
+            return {width, height, test, reference, objects, map: state.view === 'difference' ? 'difference' : 'flip'};
+        });
     }
 
     private show({all, objects, map}: Comparison): void {

@@ -9,6 +9,7 @@ import type {Status} from './status';
 export class Hover {
     private place: [number, number] | null = null;
     private reading = false;
+    private probing = false;
     private readonly inspector: Inspector;
 
     constructor(
@@ -24,7 +25,7 @@ export class Hover {
         const {width, height} = this.app.stage.panes[0];
         this.place = [Math.floor((x / innerWidth) * width), Math.floor((y / innerHeight) * height)];
         void this.refresh();
-        if (this.map.wantsLobe) this.showLobe();
+        if (this.map.wantsLobe && !this.probing) void this.showLobe();
     }
 
     /// Reads the pixel again, because the picture has become better.
@@ -38,10 +39,13 @@ export class Hover {
         this.reading = false;
     }
 
-    private showLobe(): void {
-        const [x, y] = this.place!, {stage} = this.app, found = this.inspector.probe(x, y);
-        if (!found) return this.map.setLobe(null);
+    private async showLobe(): Promise<void> {
+        const [x, y] = this.place!, {stage} = this.app;
+        this.probing = true;
+        const reading = this.inspector.probe(x, y);
         const view = new THREE.Vector3(0, 0, 0.5).unproject(stage.camera).sub(stage.camera.position).normalize();  // the probe looked at this pixel alone
-        this.map.setLobe({direction: view.reflect(found.normal), roughness: found.roughness});
+        const found = await reading;
+        this.probing = false;
+        this.map.setLobe(found && {direction: view.reflect(found.normal), roughness: found.roughness});
     }
 }

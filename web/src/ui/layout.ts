@@ -25,8 +25,7 @@ export function layOut(store: Store): Layout {
     canvas.setAttribute('role', 'img');
     canvas.setAttribute('aria-label', 'The lit model. Arrow keys orbit, plus and minus come nearer and go farther, the question mark lists all keys.');
     const view = element('main', {id: 'view'}, canvas);
-    const caption = element('p');
-    const header = element('header', {className: 'surface'}, element('h1', {}, 'Domelight'), caption);
+    const header = document.querySelector('header')!, caption = header.querySelector('p')!;  // in the page's own text, which is shown first
     const status = element('div', {id: 'status', className: 'surface'});
     const tags: [HTMLElement, HTMLElement] = [element('div', {className: 'tag surface', hidden: true}), element('div', {className: 'tag surface', hidden: true})];
 
@@ -48,7 +47,8 @@ export function layOut(store: Store): Layout {
     const notes = element('div', {id: 'notes', role: 'alert'});
     const drop = element('div', {id: 'drop', hidden: true}, element('p', {}, 'Drop environments and models anywhere'));
     view.append(divider, ...tags, status);
-    document.body.append(view, header, bar, unfold, aside, notes, drop, progress, spoken);
+    document.body.prepend(view);
+    document.body.append(bar, unfold, aside, notes, drop, progress, spoken);
 
     const fold = () => document.body.classList.toggle('folded', !store.state.panel);
     fold();

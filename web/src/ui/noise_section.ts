@@ -13,6 +13,9 @@ export class NoiseSection {
     private readonly text = note();
     private points: [samples: number, error: number][] = [];
     private last?: {count: number; pixels: Float32Array};
+    private asked = 0;
+    /// Grows with each new picture: what is read of an earlier one does not count.
+    private series = 0;
 
     constructor(private readonly app: App) {
         this.plot.setAttribute('class', 'plot');
@@ -22,7 +25,7 @@ export class NoiseSection {
         this.draw();
     }
 
-    /// Called after each frame. With 1, 2, 4, ... frames the mean is compared with that of its first half: the two halves are independent, so
+    /// Called after each frame. With 2, 4, 8, ... frames the mean is compared with that of its first half: the two halves are independent, so
     /// that the standard deviation of (first - second) / 2, which is first - mean, is the standard error of the mean.
     update(): void {
         const {state, stage} = this.app, pane = stage.panes[0];
@@ -30,11 +33,16 @@ export class NoiseSection {
         if (pane.count <= 1) {
             this.points = [];
             this.last = undefined;
+            ++this.series;
         }
-        if ((pane.count & (pane.count - 1)) !== 0 || pane.count === this.last?.count) return;
-        const pixels = readPixels(stage, 0);
-        if (this.last && pane.count === 2 * this.last.count) this.points.push([pane.count * state.samples, relativeError(this.last.pixels, pixels)]);
-        this.last = {count: pane.count, pixels};
+        if (pane.count > 1 && (pane.count & (pane.count - 1)) === 0 && pane.count !== this.asked) void this.measure(pane.count, state.samples);
+        this.asked = pane.count;
+    }
+    private async measure(count: number, samples: number): Promise<void> {
+        const {series} = this, pixels = await readPixels(this.app.stage, 0).catch(() => null);
+        if (!pixels || series !== this.series) return;
+        if (this.last && count === 2 * this.last.count && pixels.length === this.last.pixels.length) this.points.push([count * samples, relativeError(this.last.pixels, pixels)]);
+        this.last = {count, pixels};
         this.draw();
     }
 
