@@ -34,6 +34,7 @@ ROOMS = [
     ("preview", "tone mapping, plots, contact sheets"),
     ("engines", "one small file for each engine: what it loads, and in which convention"),
     ("render", "path tracing, surfaces, and the shading that engines draw"),
+    ("convert", "a converted environment as files of any format"),
     ("compare", "differences of images, FLIP, audit of a bake"),
     ("bake", "plan, filter, write, manifest"),
     ("capture", "probes of a scene: where they are placed, what they capture, and their files"),

@@ -26,11 +26,6 @@ std::span<const std::string> light_and_screen_endings() {
     return all;
 }
 
-bool has_texture_ending(const std::string& file) {
-    const std::string extension = lower_case_extension(file);
-    return extension == ".ktx2" || extension == ".ktx" || extension == ".dds";
-}
-
 Result<void> check_ending(const char* option, const std::string& file, std::span<const std::string> accepted) {
     if (file.empty() || std::find(accepted.begin(), accepted.end(), lower_case_extension(file)) != accepted.end())
         return {};

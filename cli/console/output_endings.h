@@ -12,9 +12,6 @@ namespace domelight::cli {
 /// Endings of files that hold radiance (.hdr, .exr), then those of pictures for a screen (write_image.h).
 std::span<const std::string> light_and_screen_endings();
 
-/// Whether a file's name ends as that of a texture does (.ktx2, .ktx, .dds), in any case.
-bool has_texture_ending(const std::string& file);
-
 /// An error at `option` unless the file's name ends in one of `accepted`, in any case. An empty name is accepted: the
 /// option was not given.
 Result<void> check_ending(const char* option, const std::string& file, std::span<const std::string> accepted);

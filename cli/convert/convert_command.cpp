@@ -11,11 +11,12 @@
 #include "cli/console/console.h"
 #include "cli/console/display_options.h"
 #include "cli/console/environment_options.h"
+#include "cli/console/field_options.h"
 #include "cli/console/output_endings.h"
 #include "cli/console/print.h"
 #include "cli/console/suggestion.h"
-#include "cli/convert/convert_output.h"
 #include "cli/convert/convert_picture.h"
+#include "convert/converted_files.h"
 #include "io/file/json.h"
 #include "preview/screen_picture.h"
 #include "projection/latlong_convention.h"
@@ -23,6 +24,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -88,68 +90,32 @@ void declare(Arguments& a, ConvertWords& w) {
     add_common_options(a, w.common);
 }
 
-/// Turns directions about `axis` (of any length) by `angle`, in the sense of rotation_y. (Rodrigues' formula.)
-Mat3 rotation(const Vec3d& axis, double angle) {
-    const Vec3d k = normalize(axis);
-    const double c = std::cos(angle), s = -std::sin(angle);
-    const auto column = [&](const Vec3d& v) { return v * c + cross(k, v) * s + k * (dot(k, v) * (1 - c)); };
-    return Mat3{{column({1, 0, 0}), column({0, 1, 0}), column({0, 0, 1})}}.transposed();
-}
-
-Result<Mat3> parse_rotation(const std::string& words) {
-    const auto wrong = [&](const std::string& what) {
-        return Error{fmt::format("\"{}\" {}", words, what), "--rotate",
-                     "Write an axis and degrees: X,Y,Z,DEGREES, as in 0,0,1,90."};
-    };
+Result<std::array<double, 4>> parse_rotation(const std::string& words) {
+    const Error wrong{fmt::format("\"{}\" is not four numbers", words), "--rotate",
+                      "Write an axis and degrees: X,Y,Z,DEGREES, as in 0,0,1,90."};
     const auto parts = split(words, ',');
-    if (parts.size() != 4) return wrong("is not four numbers");
-    double v[4];
+    if (parts.size() != 4) return wrong;
+    std::array<double, 4> v;
     for (std::size_t k = 0; k < 4; ++k) {
         const auto number = parse_number(parts[k]);
-        if (!number || !std::isfinite(*number)) return wrong("is not four numbers");
+        if (!number || !std::isfinite(*number)) return wrong;
         v[k] = *number;
     }
-    const Vec3d axis{v[0], v[1], v[2]};
-    if (!(length(axis) > 0) || !std::isfinite(length(axis))) return wrong("has no axis");
-    // Quarter turns about an axis of the world only exchange axes: exactly.
-    Mat3 m = rotation(axis, v[3] * k_pi / 180);
-    for (Vec3d& row : m.row)
-        for (double* e : {&row.x, &row.y, &row.z})
-            if (std::abs(*e - std::round(*e)) < 1e-14) *e = std::round(*e);
-    return m;
+    return v;
 }
 
 Result<Mat3> light_turn(const ConvertWords& w) {
-    Mat3 turn;
+    std::vector<std::array<double, 4>> rotations;
     for (const std::string& words : w.rotations) {
-        const auto m = parse_rotation(words);
-        if (!m) return m.error();
-        turn = *m * turn;
+        const auto rotation = parse_rotation(words);
+        if (!rotation) return rotation.error();
+        rotations.push_back(*rotation);
     }
-    if (w.mirror.empty()) return turn;
-    Mat3 mirror;
-    if (w.mirror == "x" || w.mirror == "X")
-        mirror.row[0].x = -1;
-    else if (w.mirror == "y" || w.mirror == "Y")
-        mirror.row[1].y = -1;
-    else if (w.mirror == "z" || w.mirror == "Z")
-        mirror.row[2].z = -1;
-    else
-        return Error{fmt::format("\"{}\" is not an axis", w.mirror), "--mirror", "Accepted: x, y, z."};
-    return mirror * turn;
-}
-
-/// Width and height of a chart.
-Result<std::pair<int, int>> chart_size(const ConvertWords& w, const Environment& environment,
-                                       const Projection& target) {
-    const int height = w.size.value_or(matched_height(environment, target));
-    const std::int64_t width = std::llround(height * target.shape().aspect());
-    const std::int64_t bytes = width * height * target.charts() * 12;
-    if (bytes > std::int64_t(4) << 30)
-        return Error{
-            fmt::format("{} x {} texels a picture need {} bytes, more than the limit of 4 GiB", width, height, bytes),
-            "--size", ""};
-    return std::pair{int(width), height};
+    const auto turn = domelight::light_turn(rotations, w.mirror);
+    if (turn) return turn;
+    Error error = with_options(turn.error());
+    if (error.where == "--rotate") error.hint = "Write an axis and degrees: X,Y,Z,DEGREES, as in 0,0,1,90.";
+    return error;
 }
 
 double relative(double before, double after) {
@@ -272,18 +238,8 @@ int run_picture(const ConvertWords& w) {
 /// How the target's pixels are shown on a screen. Each counts by its solid angle for the exposure.
 Display display_for(const ConvertWords& w, const Environment& environment, const ProjectedImage& image) {
     const bool for_screen = environment.format == "PNG" || environment.format == "JPEG";
-    return display_of(w.display, for_screen, [&]() -> double {
-        if (w.environment.exposure != 0) return 0;
-        ImageF weights(image.width(), image.height() * image.projection.charts(), 1);
-        std::vector<double> row(std::size_t(image.width()));
-        for (int y = 0; y < weights.height(); ++y) {
-            image.projection.texel_solid_angles(y % image.height(), image.width(), image.height(), row);
-            // Times the number of texels, so that the weights do not get small with the picture's size.
-            for (int x = 0; x < image.width(); ++x)
-                *weights.at(x, y) = float(row[std::size_t(x)] * image.width() * image.height());
-        }
-        return automatic_ev(image.pixels, weights);
-    });
+    return display_of(w.display, for_screen,
+                      [&] { return w.environment.exposure != 0 ? 0.0 : automatic_ev_of_sphere(image); });
 }
 
 }  // namespace
@@ -314,7 +270,8 @@ int run_convert(const std::vector<std::string>& words) {
     const auto target = projection_from_name(w.to);
     if (!target)
         return print_error({target.error().what, "--to", meant_projection(w.to) + target.error().hint}, exit_usage);
-    if (auto ok = check_output(w.output, *target); !ok) return print_error(ok.error(), exit_usage);
+    if (auto ok = check_converted_files(w.output, *target); !ok)
+        return print_error(with_options(ok.error()), exit_usage);
     warn_of_idle_options(
         arguments,
         {{"--sharp", target->name() == "cube" || target->name().starts_with("latlong"), "--to cube or latlong"}},
@@ -327,8 +284,8 @@ int run_convert(const std::vector<std::string>& words) {
     auto environment = open_environment_or_sky(w.files, w.environment);
     if (!environment) return print_error(environment.error());
     w.output.inputs = environment->files;
-    const auto size = chart_size(w, *environment, *target);
-    if (!size) return print_error(size.error());
+    const auto size = chart_size(*target, w.size.value_or(matched_height(*environment, *target)));
+    if (!size) return print_error(with_options(size.error()));
     ProgressBar bar(w.output.file, w.common);
     ConvertOptions options{*turn, size->first, size->second, w.sharp, threads, bar.callback()};
     const auto made = convert(*environment, *target, options);

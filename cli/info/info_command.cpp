@@ -11,6 +11,7 @@
 #include "cli/console/output_endings.h"
 #include "cli/console/print.h"
 #include "compare/picture_survey.h"
+#include "convert/converted_files.h"
 #include "io/file/json.h"
 #include "io/file/path_inside.h"
 #include "io/file/sha256.h"

@@ -35,7 +35,7 @@ struct JobEstimate {
 struct JobCall {
     std::map<std::string, std::vector<std::filesystem::path>> inputs;  ///< by their role
     Json options;
-    std::string name;              ///< the last part of the output: of its folder, or of its file without the ending
+    std::string name;              ///< the last part of the output: of its folder, or of its file
     std::filesystem::path folder;  ///< exists and is empty; the job's files go there
     int threads = 1;
     const std::vector<std::filesystem::path>& files(const std::string& role) const { return inputs.at(role); }

@@ -44,6 +44,8 @@ class Placer {
     /// Whether something had to be done.
     Result<bool> place(const Place& place) {
         const fs::path to = out_ / place.name;
+        if (names_.contains(place.name.string()))
+            return Error{"two outputs have this file", (out_ / place.name).string(), "Name one of them otherwise."};
         remember(place.name);
         // A folder that was a link must not be written through: it leads to a result.
         std::error_code failure;

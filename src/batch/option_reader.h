@@ -53,6 +53,8 @@ class OptionReader {
         check_range(name, double(field), low, high);
     }
 
+    /// For a member that the caller has read itself.
+    void know(const char* name) { known_.emplace_back(name); }
     bool given(const char* name) const { return options_.contains(name); }
     void fail(Error error);
     /// Errors: the first fault; a member that is not an option, with the list of those that are.

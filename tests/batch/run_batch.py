@@ -176,6 +176,33 @@ def test_a_run_writes_what_the_commands_write(folder):
     assert not (batch / "work").exists()
 
 
+def test_conversions_write_what_convert_writes(folder):
+    cases = {"usd": ({"to": "latlong/usd", "format": "exr", "exposure": 1}, ["--to", "latlong/usd", "--exposure", "1"], "usd.exr"),
+             "cube": ({"format": "ktx2", "size": 8, "rotate": [0, 0, 1, 90], "mirror": "x", "encoding": "rgb9e5"},
+                      ["--size", "8", "--rotate", "0,0,1,90", "--mirror", "x", "--encoding", "rgb9e5"], "cube.ktx2"),
+             "faces": ({"to": "cube", "layout": "faces", "format": "hdr", "rotate": [[0, 1, 0, 30], [1, 0, 0, 5]]},
+                       ["--to", "cube", "--layout", "faces", "--rotate", "0,1,0,30", "--rotate", "1,0,0,5"], "faces.hdr"),
+             "ball": ({"to": "mirror-ball/fov=20", "size": 16, "format": "hdr"}, ["--to", "mirror-ball/fov=20", "--size", "16"], "ball.hdr"),
+             "eye": ({"format": "png", "tonemap": "neutral", "ev": -1}, ["--tonemap", "neutral", "--ev", "-1"], "eye.png"),
+             "seen": ({"format": "jpg", "sharp": True, "size": 8}, ["--sharp", "--size", "8"], "seen.jpg")}
+    manifest(folder, *[{"kind": "convert", "environment": "hdris/noon.hdr", "output": f"made/{name}", "options": options} for name, (options, _, _) in cases.items()])
+    run("batch", "plan", "jobs.jsonl", "-o", "batch", folder=folder)
+    run("batch", "run", "batch", folder=folder)
+    (folder / "bare").mkdir()
+    for _, words, file in cases.values():
+        run("convert", "hdris/noon.hdr", "-o", f"bare/{file}", *words, "--quiet", folder=folder)
+    made = files_of(folder / "batch/out/made")
+    assert made == files_of(folder / "bare") and len(made) == 11, (made, files_of(folder / "bare"))
+    run("batch", "report", "batch", folder=folder)
+    assert len(list((folder / "batch/report/thumbs").iterdir())) == 6
+    run("batch", "plan", "hdris", "-o", "all", "--kind", "convert", "--set", "format=hdr", "--set", "size=8", folder=folder)
+    assert [job["output"] for job in jobs_of(folder / "all")] == [name + ".hdr" for name in NAMES]
+    for options, says in [({"format": "tga"}, "--format"), ({"to": "cubist"}, "--to"), ({"rotate": [1, 2]}, "--rotate"), ({"mirror": "w"}, "--mirror"),
+                          ({"format": "exr", "encoding": "bc6h"}, "--encoding"), ({"size": 0}, "--size"), ({"rotate": [0, 0, 0, 1]}, "--rotate")]:
+        manifest(folder, {"kind": "convert", "environment": "hdris/noon.hdr", "output": "x", "options": options})
+        assert says in run("batch", "plan", "jobs.jsonl", "-o", "bad", folder=folder, code=1).stderr, says
+
+
 def test_a_second_run_does_nothing_and_a_damaged_result_is_made_again(folder):
     batch = plan(folder)
     statuses(folder)

@@ -239,8 +239,8 @@ def test_completions_name_every_command_and_option(folder):
 
 def test_wrong_usage_exits_2_and_lists_what_is_accepted(folder):
     cases = [
-        (["nonsense"], "bake, batch, brdf, compare, convert, info, render, lights, sample, sky"),
-        (["--nonsense"], "bake, batch, brdf, compare, convert, info, render, lights, sample, sky"),
+        (["nonsense"], "bake, batch, brdf, compare, convert, info, probes, render, lights, sample, sky"),
+        (["--nonsense"], "bake, batch, brdf, compare, convert, info, probes, render, lights, sample, sky"),
         (["bake", "-o", "o", "--nonsense"], "--lobe"),
         (["bake"], "-o DIR"),
         (["bake", "-o", "o", "--lobe", "blinn"], "ggx, charlie, phong, phong-plain"),

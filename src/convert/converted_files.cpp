@@ -1,22 +1,22 @@
-#include "cli/convert/convert_output.h"
+#include "convert/converted_files.h"
 
 #include "domelight/image/cube_layout.h"
 #include "domelight/io/file/atomic_file.h"
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
-#include "cli/console/arguments.h"
-#include "cli/console/output_endings.h"
+#include "base/field_place.h"
 #include "io/file/input_guard.h"
 #include "preview/screen_picture.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
-namespace domelight::cli {
+namespace domelight {
 namespace {
 
 std::vector<std::string> layouts_of(const Projection& projection, const std::string& file) {
@@ -77,6 +77,14 @@ std::vector<Picture> pictures(const ProjectedImage& image, const std::string& la
     return list;
 }
 
+/// Turns directions about `axis` (of any length) by `angle`, in the sense of rotation_y. (Rodrigues' formula.)
+Mat3 rotation(const Vec3d& axis, double angle) {
+    const Vec3d k = normalize(axis);
+    const double c = std::cos(angle), s = -std::sin(angle);
+    const auto column = [&](const Vec3d& v) { return v * c + cross(k, v) * s + k * (dot(k, v) * (1 - c)); };
+    return Mat3{{column({1, 0, 0}), column({0, 1, 0}), column({0, 0, 1})}}.transposed();
+}
+
 /// The picture as a level to encode.
 FilteredMap as_level(const ProjectedImage& image) {
     if (image.projection.charts() == 6) return {Layout::cube, image.pixels};
@@ -99,24 +107,82 @@ Result<void> write_picture(const std::string& file, ImageView<const float> pictu
 
 }  // namespace
 
-Result<void> check_output(ConvertOutput& output, const Projection& projection) {
+std::span<const std::string> converted_file_extensions() {
+    static const std::vector<std::string> all{".hdr", ".exr", ".png", ".jpg", ".jpeg", ".ktx2", ".ktx", ".dds"};
+    return all;
+}
+
+bool has_texture_ending(const std::string& file) {
+    const std::string extension = lower_case_extension(file);
+    return extension == ".ktx2" || extension == ".ktx" || extension == ".dds";
+}
+
+Result<std::pair<int, int>> chart_size(const Projection& target, int height) {
+    const std::int64_t width = std::llround(height * target.shape().aspect());
+    const std::int64_t bytes = width * height * target.charts() * 12;
+    if (bytes > std::int64_t(4) << 30)
+        return Error{
+            fmt::format("{} x {} texels a picture need {} bytes, more than the limit of 4 GiB", width, height, bytes),
+            field_place("size"), ""};
+    return std::pair{int(width), height};
+}
+
+Result<Mat3> light_turn(std::span<const std::array<double, 4>> rotations, const std::string& mirror) {
+    Mat3 turn;
+    for (const auto& v : rotations) {
+        const Vec3d axis{v[0], v[1], v[2]};
+        if (!(length(axis) > 0) || !std::isfinite(length(axis)) || !std::isfinite(v[3]))
+            return Error{fmt::format("({:g}, {:g}, {:g}), {:g} degrees has no axis", v[0], v[1], v[2], v[3]),
+                         field_place("rotate"), "An axis and degrees: 0,0,1,90."};
+        // Quarter turns about an axis of the world only exchange axes: exactly.
+        Mat3 m = rotation(axis, v[3] * k_pi / 180);
+        for (Vec3d& row : m.row)
+            for (double* e : {&row.x, &row.y, &row.z})
+                if (std::abs(*e - std::round(*e)) < 1e-14) *e = std::round(*e);
+        turn = m * turn;
+    }
+    if (mirror.empty()) return turn;
+    Mat3 mirrored;
+    const std::size_t axis = std::string_view("xyzXYZ").find(mirror);
+    if (mirror.size() != 1 || axis == std::string_view::npos)
+        return Error{fmt::format("\"{}\" is not an axis", mirror), field_place("mirror"), "Accepted: x, y, z."};
+    double* const diagonal[] = {&mirrored.row[0].x, &mirrored.row[1].y, &mirrored.row[2].z};
+    *diagonal[axis % 3] = -1;
+    return mirrored * turn;
+}
+
+double automatic_ev_of_sphere(const ProjectedImage& image) {
+    ImageF weights(image.width(), image.height() * image.projection.charts(), 1);
+    std::vector<double> row(std::size_t(image.width()));
+    for (int y = 0; y < weights.height(); ++y) {
+        image.projection.texel_solid_angles(y % image.height(), image.width(), image.height(), row);
+        // Times the number of texels, so that the weights do not get small with the picture's size.
+        for (int x = 0; x < image.width(); ++x)
+            *weights.at(x, y) = float(row[std::size_t(x)] * image.width() * image.height());
+    }
+    return automatic_ev(image.pixels, weights);
+}
+
+Result<void> check_converted_files(ConvertOutput& output, const Projection& projection) {
     const std::string extension = lower_case_extension(output.file);
-    static const std::vector<std::string> formats{".hdr", ".exr", ".png", ".jpg", ".jpeg", ".ktx2", ".ktx", ".dds"};
-    if (auto ok = check_ending("OUT", output.file, formats); !ok) return ok;
-    const auto check = [&](std::string& value, const char* option, const std::vector<std::string>& accepted,
+    const auto formats = converted_file_extensions();
+    if (std::ranges::find(formats, extension) == formats.end())
+        return Error{fmt::format("\"{}\" ends in none of the formats", output.file), "OUT",
+                     fmt::format("Accepted: {}.", fmt::join(formats, ", "))};
+    const auto check = [&](std::string& value, const char* field, const std::vector<std::string>& accepted,
                            const std::string& of) -> Result<void> {
         if (value.empty()) value = accepted[0];
         if (std::find(accepted.begin(), accepted.end(), value) != accepted.end()) return {};
-        return Error{fmt::format("\"{}\" does not go with {}", value, of), option,
-                     "Accepted: " + join(accepted, ", ") + "."};
+        return Error{fmt::format("\"{}\" does not go with {}", value, of), field_place(field),
+                     fmt::format("Accepted: {}.", fmt::join(accepted, ", "))};
     };
-    if (auto ok = check(output.layout, "--layout", layouts_of(projection, output.file),
+    if (auto ok = check(output.layout, "layout", layouts_of(projection, output.file),
                         fmt::format("{} in {}", projection.name(), extension));
         !ok)
         return ok;
     if (output.layout == "envmap" && extension != ".exr")
-        return Error{"cube/openexr is OpenEXR's own", "--to", "Write an .exr, or convert to cube."};
-    return check(output.encoding, "--encoding", encodings_of(output.file), extension);
+        return Error{"cube/openexr is OpenEXR's own", field_place("to"), "Write an .exr, or convert to cube."};
+    return check(output.encoding, "encoding", encodings_of(output.file), extension);
 }
 
 Result<WrittenPicture> write_projected(const ProjectedImage& image, const ConvertOutput& asked) {
@@ -167,4 +233,4 @@ Result<WrittenPicture> write_projected(const ProjectedImage& image, const Conver
     return written;
 }
 
-}  // namespace domelight::cli
+}  // namespace domelight
