@@ -1,5 +1,6 @@
 #include "domelight/base/version.h"
 #include "domelight/capture/probe_bake.h"
+#include "domelight/capture/probe_rooms.h"
 #include "domelight/probe/scene_hash.h"
 
 #include "cli/commands.h"
@@ -27,17 +28,26 @@ void declare(Arguments& a, ProbesWords& w) {
         "engine");
     a.texts("--env", "ENV", w.environment_files, fmt::format("the environment; without it {}", k_built_in_sky));
     a.text("-o,--output", "DIR", w.output, "the folder for probes.json and its .ktx2 files");
-    a.group("Placement (one of the first three)");
+    a.group("Placement (one of the first four)");
     a.numbers("--grid", "NX,NY,NZ", w.grid, "a regular grid of so many places that fills the region");
     a.number("--density", "D", w.density,
              "a regular grid with D probes to the square metre: neighbours are 1 / sqrt(D) metres apart on every axis");
     a.texts("--at", "X,Y,Z", w.at, "a place in metres; may be given several times");
+    a.integer("--auto", "N", w.auto_count,
+              "up to N places, 8 or more: first in about cubic cells, then where the light changes most");
     a.numbers("--region", "X0,Y0,Z0,X1,Y1,Z1", w.region,
-              "two corners of the box that a grid fills, in metres (the box around the scene)");
+              "two corners of the box that --grid, --density and --auto fill, in metres (the box around the scene)");
     a.number("--nearest", "M", w.nearest,
              "metres that a probe keeps from surfaces (a twentieth of the spacing, or 0.1)");
     a.number("--farthest", "M", w.farthest,
              "metres by which a probe may be moved out of geometry (0.45 of the spacing, or 0.5); 0: none is moved");
+    a.text("--influence", "WHERE", w.influence,
+           "where a probe contributes: everywhere, room (the box of --proxy, fading over its last tenth), or a radius "
+           "in metres (everywhere)");
+    a.text("--proxy", "BOX", w.proxy,
+           "the box of the walls, for the correction of parallax: room (what rays from the probe meet on each side), "
+           "none, or "
+           "x0,y0,z0,x1,y1,z1 (room)");
     a.group("Capture");
     a.integer("--size", "N", w.size, "texels along a face of each probe's cube, 8 to 1024 (64)");
     a.integer("--spp", "N", w.spp, "samples of each texel (32)");
@@ -63,41 +73,34 @@ void declare(Arguments& a, ProbesWords& w) {
     add_common_options(a, w.common);
 }
 
-/// The places that were asked for.
-struct Places {
-    std::vector<Vec3f> places;
+ProbeBox region_of(const ProbesWords& w, const Scene& scene) {
+    const Scene::Box bounds = scene.bounds();
+    if (w.region.empty()) return {bounds.low, bounds.high};
+    return {Vec3f(Vec3d{w.region[0], w.region[1], w.region[2]}), Vec3f(Vec3d{w.region[3], w.region[4], w.region[5]})};
+}
+
+/// Probes where they were asked for.
+struct Placed {
+    std::vector<Probe> probes;
     std::optional<ProbeGrid> grid;
     std::string how;
 };
 
-Result<Places> places_for(const ProbesWords& w, const Scene& scene) {
-    Places out;
-    const Scene::Box bounds = scene.bounds();
-    ProbeBox region{bounds.low, bounds.high};
-    if (!w.region.empty())
-        region = {Vec3f(Vec3d{w.region[0], w.region[1], w.region[2]}),
-                  Vec3f(Vec3d{w.region[3], w.region[4], w.region[5]})};
-    if (!w.places.empty()) {
-        out.places = w.places;
-        out.how = "at";
-        return out;
-    }
+Result<std::optional<ProbeGrid>> grid_for(const ProbesWords& w, const Scene& scene) {
+    if (!w.places.empty()) return std::optional<ProbeGrid>();
+    const ProbeBox region = region_of(w, scene);
     const auto grid = w.grid.empty() ? grid_over(region, {.density = w.density})
                                      : grid_over(region, int(w.grid[0]), int(w.grid[1]), int(w.grid[2]));
     if (!grid) return grid.error();
-    out.grid = *grid;
-    out.places = places_of(*grid);
-    out.how = w.grid.empty() ? fmt::format("density {:g}", w.density) : "grid";
-    return out;
+    return std::optional(*grid);
 }
 
-float least_spacing(const Places& places) {
-    if (!places.grid) return 0;
-    const ProbeGrid& g = *places.grid;
+/// The least distance between neighbours in a grid; 0 where there are none.
+float least_spacing(const std::optional<ProbeGrid>& grid) {
     float least = std::numeric_limits<float>::infinity();
-    if (g.nx > 1) least = std::min(least, g.spacing.x);
-    if (g.ny > 1) least = std::min(least, g.spacing.y);
-    if (g.nz > 1) least = std::min(least, g.spacing.z);
+    if (grid && grid->nx > 1) least = std::min(least, grid->spacing.x);
+    if (grid && grid->ny > 1) least = std::min(least, grid->spacing.y);
+    if (grid && grid->nz > 1) least = std::min(least, grid->spacing.z);
     return std::isinf(least) ? 0 : least;
 }
 
@@ -107,6 +110,50 @@ RelocationOptions relocation(const ProbesWords& w, float spacing) {
     r.farthest = w.farthest >= 0 ? float(w.farthest) : spacing > 0 ? 0.45f * spacing : 0.5f;
     r.threads = w.threads();
     return r;
+}
+
+Result<Placed> place_automatically(const ProbesWords& w, const RayScene& scene, const EnvironmentSampler& light,
+                                   Progress progress) {
+    AutoPlacementOptions options;
+    options.count = *w.auto_count;
+    options.region = region_of(w, scene.scene());
+    options.bounces = std::min(2, w.bounces.value_or(2));
+    options.seed = std::uint64_t(w.seed.value_or(0));
+    options.threads = w.threads();
+    options.progress = std::move(progress);
+    auto probes = auto_places(scene, light, options);
+    if (!probes) return probes.error();
+    return Placed{*std::move(probes), std::nullopt, fmt::format("auto {}", *w.auto_count)};
+}
+
+Result<Placed> place(const ProbesWords& w, const RayScene& scene, const EnvironmentSampler& light, Progress progress) {
+    if (w.auto_count) return place_automatically(w, scene, light, std::move(progress));
+    const auto grid = grid_for(w, scene.scene());
+    if (!grid) return grid.error();
+    RelocationOptions options = relocation(w, least_spacing(*grid));
+    options.light = &light;
+    auto probes = place_probes(scene, *grid ? places_of(**grid) : w.places, options);
+    if (!probes) return probes.error();
+    if (auto ok = fill_invalid(scene, *probes, w.threads()); !ok) return ok.error();
+    return Placed{*std::move(probes), *grid,
+                  !*grid           ? "at"
+                  : w.grid.empty() ? fmt::format("density {:g}", w.density)
+                                   : "grid"};
+}
+
+/// The part of a box of influence over which it fades, of its shortest side.
+constexpr float k_fade = 0.1f;
+
+void set_boxes(const ProbesWords& w, const RayScene& scene, std::vector<Probe>& probes) {
+    if (w.proxy == "room") set_proxies(scene, probes, w.threads());
+    for (Probe& probe : probes) {
+        if (w.box) probe.proxy = w.box;
+        ProbeInfluence& influence = probe.influence;
+        if (w.shape == ProbeInfluence::Shape::sphere) influence = {w.shape, {}, w.radius, k_fade * w.radius};
+        if (w.shape != ProbeInfluence::Shape::box || !probe.proxy) continue;
+        const Vec3f size = probe.proxy->high - probe.proxy->low;
+        influence = {w.shape, *probe.proxy, 0, k_fade * std::min({size.x, size.y, size.z})};
+    }
 }
 
 std::vector<std::string> sentences(const std::vector<Probe>& probes) {
@@ -157,15 +204,12 @@ std::vector<std::string> warnings_of(const ProbeBakeReport& report) {
 }
 
 int run_capture(const ProbesWords& w, Scene scene, const Environment& environment) {
-    const auto places = places_for(w, scene);
-    if (!places) return print_error(with_options(places.error()));
     ProbeBakeOptions options;
     options.capture = w.capture();
     options.filter.levels = w.levels.value_or(0);
     options.filter.irradiance_size = w.irradiance_size.value_or(16);
     options.filter.distance_size = w.distance_size.value_or(-1);
     options.encoding = w.encoding;
-    options.placement = places->how;
     options.scene = {std::filesystem::path(w.scene_name()).filename().string(), scene_sha256(scene)};
     const auto hash = environment_sha256(environment);
     if (!hash) return print_error(hash.error());
@@ -179,21 +223,21 @@ int run_capture(const ProbesWords& w, Scene scene, const Environment& environmen
     if (!traced) return print_error(traced.error().at(w.scene_name()));
     auto sampler = EnvironmentSampler::build(environment, reference_sampler_options(LightStrategy::mis, w.threads()));
     if (!sampler) return print_error(sampler.error());
-    RelocationOptions relocate = relocation(w, least_spacing(*places));
-    relocate.light = &*sampler;
-    auto probes = place_probes(*traced, places->places, relocate);
-    if (!probes) return print_error(with_options(probes.error()));
-    if (auto ok = fill_invalid(*traced, *probes, w.threads()); !ok) return print_error(with_options(ok.error()));
     print_warnings(environment.report().lines(), w.common, join(w.environment_files, " "));
+    Result<Placed> placed = Error{};
     Result<ProbeBakeReport> report = Error{};
     {
         ProgressBar bar(w.output, w.common);
+        placed = place(w, *traced, *sampler, bar.callback());
+        if (!placed) return print_error(with_options(placed.error()));
+        set_boxes(w, *traced, placed->probes);
+        options.placement = placed->how;
         options.capture.progress = bar.callback();
-        report = bake_probes(*traced, *sampler, *probes, places->grid, options, w.output);
+        report = bake_probes(*traced, *sampler, placed->probes, placed->grid, options, w.output);
     }
     if (!report) return print_error(with_options(report.error()));
     print_warnings(with_options(warnings_of(*report)), w.common, w.output);
-    print_result(w, *probes, *report);
+    print_result(w, placed->probes, *report);
     return w.engines.empty() ? exit_done : write_for_engines(w, w.output, w.output);
 }
 

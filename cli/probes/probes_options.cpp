@@ -42,6 +42,7 @@ Result<void> check_numbers(const ProbesWords& w, const Arguments& a) {
                   {"--irradiance-size", double(w.irradiance_size.value_or(16)), 1, 256},
                   {"--distance-size", double(w.distance_size.value_or(0)), 0, 1024},
                   {"--density", a.given("--density") ? w.density : 1, 1e-9, 1e9},
+                  {"--auto", double(w.auto_count.value_or(8)), 8, 1 << 20},
                   {"--nearest", a.given("--nearest") ? w.nearest : 1, 1e-6, 1e6},
                   {"--farthest", a.given("--farthest") ? w.farthest : 1, 0, 1e6}};
     for (const auto& r : ranges)
@@ -59,9 +60,9 @@ Result<void> check_region(const ProbesWords& w) {
 }
 
 Result<void> check_placement(ProbesWords& w, const Arguments& a) {
-    const int ways = int(a.given("--grid")) + int(a.given("--density")) + int(a.given("--at"));
+    const int ways = int(a.given("--grid")) + int(a.given("--density")) + int(a.given("--at")) + int(a.given("--auto"));
     if (ways != 1)
-        return Error{ways == 0 ? "is missing" : "are given together", "--grid, --density, --at",
+        return Error{ways == 0 ? "is missing" : "are given together", "--grid, --density, --at, --auto",
                      "Say in one of these ways where the probes are to be."};
     if (!w.grid.empty()) {
         if (w.grid.size() != 3) return Error{"needs three numbers", "--grid", "nx,ny,nz"};
@@ -69,13 +70,56 @@ Result<void> check_placement(ProbesWords& w, const Arguments& a) {
             if (!(n >= 1 && n <= 4096 && n == std::floor(n)))
                 return Error{fmt::format("{:g} is not a number of places from 1 to 4096", n), "--grid", ""};
     }
-    if (a.given("--at") && a.given("--region")) return Error{"goes with --grid and --density only", "--region", ""};
+    if (a.given("--at") && a.given("--region"))
+        return Error{"goes with --grid, --density and --auto only", "--region", ""};
     for (const std::string& text : w.at) {
         const auto place = parse_place(text);
         if (!place) return place.error();
         w.places.push_back(*place);
     }
+    if (w.auto_count)
+        for (const char* option : {"--nearest", "--farthest"})
+            if (a.given(option))
+                return Error{"has no meaning with --auto, which goes by the size of its cells", option, ""};
     return check_region(w);
+}
+
+Result<ProbeBox> parse_box(const std::string& text, const char* option, const char* hint) {
+    const Error wrong{fmt::format("\"{}\" is none of them", text), option, hint};
+    double v[6];
+    const auto words = split(text, ',');
+    if (words.size() != 6) return wrong;
+    for (std::size_t i = 0; i < 6; ++i) {
+        const auto number = parse_number(words[i]);
+        if (!number || !(std::abs(*number) <= 1e9)) return wrong;
+        v[i] = *number;
+    }
+    const ProbeBox box{Vec3f(Vec3d{v[0], v[1], v[2]}), Vec3f(Vec3d{v[3], v[4], v[5]})};
+    if (box.low.x < box.high.x && box.low.y < box.high.y && box.low.z < box.high.z) return box;
+    return Error{fmt::format("\"{}\" is a box without volume", text), option,
+                 "The second corner must have the larger coordinates."};
+}
+
+/// --proxy and --influence.
+Result<void> check_boxes(ProbesWords& w) {
+    if (w.proxy != "room" && w.proxy != "none") {
+        const auto box = parse_box(w.proxy, "--proxy", "Accepted: room, none, x0,y0,z0,x1,y1,z1.");
+        if (!box) return box.error();
+        w.box = *box;
+    }
+    if (w.influence == "everywhere") return {};
+    if (w.influence == "room") {
+        if (w.proxy == "none") return Error{"room is the box of --proxy, which is none", "--influence", ""};
+        w.shape = ProbeInfluence::Shape::box;
+        return {};
+    }
+    const auto radius = parse_number(w.influence);
+    if (!radius || !(*radius > 0 && *radius <= 1e9))
+        return Error{fmt::format("\"{}\" is none of them", w.influence), "--influence",
+                     "Accepted: everywhere, room, a radius in metres above 0."};
+    w.shape = ProbeInfluence::Shape::sphere;
+    w.radius = float(*radius);
+    return {};
 }
 
 }  // namespace
@@ -101,7 +145,8 @@ Result<void> check_words(ProbesWords& w, const Arguments& a) {
                      fmt::format("One model, or a built-in scene: {}.", join(built_in_scene_names(), ", "))};
     if (w.output.empty()) return Error{"is missing", "--output", "Say where the probes go: -o probes."};
     if (auto ok = check_numbers(w, a); !ok) return ok;
-    return check_placement(w, a);
+    if (auto ok = check_placement(w, a); !ok) return ok;
+    return check_boxes(w);
 }
 
 }  // namespace domelight::cli

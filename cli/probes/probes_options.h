@@ -2,6 +2,7 @@
 
 #include "domelight/capture/capture.h"
 #include "domelight/io/environment/open_environment.h"
+#include "domelight/probe/probe.h"
 #include "domelight/texture/texture.h"
 
 #include "cli/console/arguments.h"
@@ -23,10 +24,16 @@ struct ProbesWords {
     std::vector<double> grid, region;
     double density = 0, noise = 0, lux_per_unit = 683;
     double nearest = 0, farthest = -1;  ///< not given: 0, and -1
-    std::optional<int> size, spp, bounces, seed, levels, irradiance_size, distance_size;
+    std::optional<int> auto_count, size, spp, bounces, seed, levels, irradiance_size, distance_size;
     Encoding encoding = Encoding::rgb9e5;
 
-    std::vector<Vec3f> places;  ///< `at`, set by check_words()
+    std::string influence = "everywhere", proxy = "room";
+
+    // Set by check_words().
+    std::vector<Vec3f> places;  ///< `at`
+    ProbeInfluence::Shape shape = ProbeInfluence::Shape::everywhere;
+    float radius = 0;             ///< of a sphere of influence
+    std::optional<ProbeBox> box;  ///< `proxy`, where it is stated
 
     int threads() const { return common.threads.value_or(0); }
     std::string scene_name() const { return scenes.empty() ? "" : scenes.front(); }

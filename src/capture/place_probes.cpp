@@ -12,6 +12,7 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <optional>
 
 namespace domelight {
 namespace {
@@ -30,10 +31,11 @@ class Placer {
         const bool inside = around.inside();
         for (int move = 0; move < k_moves; ++move) {
             if (!around.inside() && around.front_distance >= options_.nearest) return probe;
-            const Vec3f next = probe.position + step(around);
-            if (length(next - wanted) > options_.farthest) break;
-            probe.position = next, probe.moved = true;
-            around = look(next);
+            const auto next =
+                around.inside() ? way_out(probe.position, wanted) : away_from_front(around, probe.position);
+            if (!next || length(*next - wanted) > options_.farthest) break;
+            probe.position = *next, probe.moved = true;
+            around = look(*next);
         }
         // A place near a surface is better than none: it stays where it was asked for, if that is outside of bodies.
         probe.position = wanted, probe.moved = false;
@@ -64,11 +66,30 @@ class Placer {
         return dark;
     }
 
-    /// Through the nearest back, or away from the nearest front, to a little more than the distance that a probe keeps.
-    Vec3f step(const Surroundings& around) const {
-        const float keep = 1.01f * options_.nearest;
-        return around.inside() ? around.to_back * (around.back_distance + keep)
-                               : around.to_front * (around.front_distance - keep);
+    /// How far behind or before a surface a probe is moved to.
+    float keep() const { return 1.01f * options_.nearest; }
+
+    std::optional<Vec3f> away_from_front(const Surroundings& around, const Vec3f& from) const {
+        return from + around.to_front * (around.front_distance - keep());
+    }
+
+    /// From inside of a body through one of the surfaces around: to where the fewest rays meet backs, which is not
+    /// behind the wall that the body stands at, and the nearest of these.
+    std::optional<Vec3f> way_out(const Vec3f& from, const Vec3f& wanted) const {
+        std::optional<Vec3f> best;
+        std::pair<float, float> least{0.25f, 0};  // the share of backs, and the distance
+        for (int x = -1; x <= 1; ++x)
+            for (int y = -1; y <= 1; ++y)
+                for (int z = -1; z <= 1; ++z) {
+                    if (x == 0 && y == 0 && z == 0) continue;
+                    const Vec3f direction = normalize(Vec3f{float(x), float(y), float(z)});
+                    const float distance = surface_along(scene_, from, direction).distance + keep();
+                    const Vec3f out = from + direction * distance;
+                    if (!(length(out - wanted) <= options_.farthest)) continue;
+                    const std::pair<float, float> found{look(out).backs, distance};
+                    if (found < least) least = found, best = out;
+                }
+        return best;
     }
 
     const RayScene& scene_;

@@ -22,19 +22,19 @@ Surroundings look_around(const RayScene& scene, const Vec3f& from, std::span<con
         ++surfaces;
         const bool back = is_back(scene.scene(), hit, direction, which);
         backs += back;
-        float& nearest = back ? around.back_distance : around.front_distance;
-        if (hit.distance >= nearest) continue;
-        nearest = hit.distance;
-        (back ? around.to_back : around.to_front) = direction;
+        if (back || hit.distance >= around.front_distance) continue;
+        around.front_distance = hit.distance;
+        around.to_front = direction;
     }
     around.backs = float(backs) / float(directions.size());
     around.surfaces = float(surfaces) / float(directions.size());
     return around;
 }
 
-float distance_along(const RayScene& scene, const Vec3f& from, const Vec3f& direction) {
+SurfaceAlong surface_along(const RayScene& scene, const Vec3f& from, const Vec3f& direction) {
     const Hit hit = scene.impl().intersect({from, direction, 0}, false);
-    return hit.instance < 0 ? std::numeric_limits<float>::infinity() : hit.distance;
+    if (hit.instance < 0) return {};
+    return {hit.distance, normalize(hit.geometric_normal)};
 }
 
 int surfaces_between(const RayScene& scene, const Vec3f& from, const Vec3f& to, int most) {

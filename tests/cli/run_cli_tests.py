@@ -154,13 +154,27 @@ def test_a_render_is_lit_by_probes(folder):
     assert "irradiance.ktx2" in refused("--probes", "set", code=1)
 
 
+def test_probes_are_placed_automatically_with_their_boxes(folder):
+    report = json.loads(run("probes", "spheres", "-o", "auto", "--auto", "12", "--region", "-1,0,-1,1,2,1", "--json", *PROBES, folder=folder).stdout)
+    record = json.loads((folder / "auto/probes.json").read_text())
+    assert 8 <= report["probes"] == len(record["probes"]) <= 12 and record["tetrahedra"] and record["grid"] is None
+    assert all(p["valid"] for p in record["probes"])
+    run("probes", "spheres", "-o", "boxes", "--at", "0,1,4", "--proxy", "-5,0,-5,5,3,5", "--influence", "room", *PROBES, folder=folder)
+    probe = json.loads((folder / "boxes/probes.json").read_text())["probes"][0]
+    assert probe["proxy"] == {"low": [-5, 0, -5], "high": [5, 3, 5]}
+    assert probe["influence"]["shape"] == "box" and abs(probe["influence"]["fade"] - 0.3) < 1e-6
+    run("probes", "spheres", "-o", "spheres", "--at", "0,1,4", "--proxy", "none", "--influence", "2.5", *PROBES, folder=folder)
+    probe = json.loads((folder / "spheres/probes.json").read_text())["probes"][0]
+    assert "proxy" not in probe and probe["influence"]["radius"] == 2.5, probe
+
+
 def test_probes_refuse_what_cannot_work(folder):
     def refused(*words, code, says, scene="spheres"):
         error = run("probes", scene, "-o", "set", *PROBES, *words, folder=folder, code=code).stderr
         assert says in error, error
         assert not (folder / "set").exists(), words
 
-    refused(code=2, says="--grid, --density, --at: is missing")
+    refused(code=2, says="--grid, --density, --at, --auto: is missing")
     refused("--grid", "1,1,1", "--at", "0,0,0", code=2, says="are given together")
     refused("--grid", "0,1,1", code=2, says="--grid: 0 is not a number of places")
     refused("--grid", "2,2", code=2, says="--grid: needs three numbers")
@@ -170,6 +184,13 @@ def test_probes_refuse_what_cannot_work(folder):
     refused("--at", "0,0", code=2, says="--at: \"0,0\" is not three numbers")
     refused("--grid", "1,1,1", "--region", "0,0,0,0,0,0", code=2, says="--region: from (0, 0, 0) to (0, 0, 0) has no volume")
     refused("--grid", "1,1,1", "--region", "1,0,0,0,1,1", code=2, says="--region")
+    refused("--auto", "7", code=2, says="--auto")
+    refused("--auto", "9", "--nearest", "1", code=2, says="--nearest: has no meaning with --auto")
+    refused("--auto", "9", "--region", "0,0,0,1,0,1", code=2, says="--region")
+    refused("--grid", "1,1,1", "--proxy", "0,0,0,1,0,1", code=2, says="--proxy: \"0,0,0,1,0,1\" is a box without volume")
+    refused("--grid", "1,1,1", "--proxy", "wall", code=2, says="--proxy: \"wall\" is none of them")
+    refused("--grid", "1,1,1", "--influence", "0", code=2, says="--influence: \"0\" is none of them")
+    refused("--grid", "1,1,1", "--influence", "room", "--proxy", "none", code=2, says="--influence")
     refused("--grid", "1,1,1", "--size", "4", code=2, says="--size")
     refused("--grid", "1,1,1", "--levels", "9", code=2, says="--levels: 9 levels are more than faces of 8 texels have")
     refused("--grid", "1,1,1", code=1, says="nothing.glb", scene="nothing.glb")

@@ -38,12 +38,31 @@ struct RelocationOptions {
 /// Makes probes of places, and moves them out of geometry as Majercik et al. 2019 and 2021 do ("Dynamic diffuse global
 /// illumination with ray-traced irradiance fields", "Scaling probe-based real-time dynamic global illumination for
 /// production"): where more than a quarter of the rays meet backs of surfaces, the place lies inside a body and the
-/// probe is moved through the nearest back; where a front is nearer than `nearest`, it is moved away from it. A place
+/// probe is moved through one of the surfaces around to where the fewest rays meet backs; where a front is nearer than `nearest`, it is moved away from it. A place
 /// inside a body from which no way out was found stays and is not valid. Surfaces that are double-sided have no back, unless `light` is set.
 ///
 /// Errors: an option out of its range; a place that is not finite (it is named); "cancelled".
 Result<std::vector<Probe>> place_probes(const RayScene& scene, std::span<const Vec3f> places,
                                         const RelocationOptions& options = {});
+
+struct AutoPlacementOptions {
+    int count = 100;  ///< the most probes, 8 .. 2^20
+    ProbeBox region;  ///< in which they are placed: an extent on every axis
+    int bounces = 2;  ///< of the small captures by which the light is judged
+    std::uint64_t seed = 0;
+    int threads = 0;
+    Progress progress = {};
+};
+
+/// Places more probes where the light changes more. The region is divided into about cubic cells with a place at each
+/// corner. Then, again and again, the cell whose corners' light differs most is divided into eight, until there are
+/// `count` probes; the light of a place is judged by a small capture, as the irradiance from six sides. Places are moved
+/// out of geometry as by place_probes(), with distances in proportion to their cell. Those inside bodies are left out,
+/// so all probes are valid.
+///
+/// Errors: an option out of its range; no place lies in the open; "cancelled".
+Result<std::vector<Probe>> auto_places(const RayScene& scene, const EnvironmentSampler& light,
+                                       const AutoPlacementOptions& options);
 
 /// All places of a grid, in its order.
 std::vector<Vec3f> places_of(const ProbeGrid& grid);
