@@ -15,6 +15,16 @@ function screenError(a, b) {
     return 255 * Math.sqrt(sum / count);
 }
 
+/// A picture whose pixels are the means of `n` x `n` of a larger one: Domelight's are means over a pixel's area.
+function reduced(picture, n) {
+    const width = picture.width / n, height = picture.height / n, rgba = new Float32Array(4 * width * height);
+    for (let k = 0; k < picture.rgba.length; ++k) {
+        const pixel = k >> 2, x = Math.floor(pixel % picture.width / n), y = Math.floor(pixel / picture.width / n);
+        rgba[4 * (y * width + x) + k % 4] += picture.rgba[k] / n ** 2;
+    }
+    return {width, height, rgba};
+}
+
 /// `tools`: {claim, domelight, work, browser, server, log, keep}.
 export async function testProbes({claim, domelight, work, browser, server, log, keep}) {
     writeRoom(work);
@@ -36,7 +46,7 @@ export async function testProbes({claim, domelight, work, browser, server, log, 
     };
     const engine = async (name, page, load) => {
         await call(page, ...load);
-        const picture = await draw(page, {model: `/files/${file}`, eye, target, fovDeg, width, height});
+        const picture = reduced(await draw(page, {model: `/files/${file}`, eye, target, fovDeg, width: 4 * width, height: 4 * height}), 4);
         keep(name, picture);
         await page.close();
         return picture;
@@ -52,6 +62,10 @@ export async function testProbes({claim, domelight, work, browser, server, log, 
 
     const one = set('one', '--at', '0,1.2,0.3', '--for', 'babylon');
     const babylon = await engine('babylon-probe', await open(browser, server.url, 'babylon', log), ['load', {probes: '/files/one/babylon/probes.json'}]);
-    compare('babylon: a local probe lights a room as our own renderer does from the same probe', babylon, ours('babylon-probe-ours', one));
+    const lit = ours('babylon-probe-ours', one);
+    compare('babylon: a local probe lights a room as our own renderer does from the same probe', babylon, lit);
+    const righthanded = await engine('babylon-probe-righthanded', await open(browser, server.url, 'babylon', log),
+                                     ['load', {probes: '/files/one/babylon/probes.json', rightHanded: true}]);
+    compare('babylon: the same in a right-handed world', righthanded, lit);
     fs.rmSync(path.join(work, file));
 }
