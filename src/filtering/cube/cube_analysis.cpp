@@ -70,7 +70,8 @@ Spectrum analyse_cube(const BorderedCube& cube, int band_limit, int threads) {
     return analysis.finish(grids, threads);
 }
 
-PointLights bright_points(const BorderedCube& cube, const Vec3d& mean, int band_limit, double least_share) {
+PointLights bright_points(const BorderedCube& cube, const Vec3d& mean, int band_limit, double least_share,
+                          std::size_t most) {
     const int n = cube.size();
     struct Texel {
         double power;
@@ -90,6 +91,7 @@ PointLights bright_points(const BorderedCube& cube, const Vec3d& mean, int band_
                 if (power > least) texels.push_back({power, f, x, y});
             }
     std::stable_sort(texels.begin(), texels.end(), [](const Texel& a, const Texel& b) { return a.power > b.power; });
+    if (texels.size() > most) texels.resize(most);
     const auto axis = axis_nodes(n, nodes_a_cell(n, band_limit));
     const int count = int(axis.size()), per_cell = count / (n + 1);
     PointLights points;

@@ -20,6 +20,9 @@ constexpr int k_least_size = 16, k_most_size = 256;
 constexpr DegreeLimits k_probe_degrees{64, 13};
 /// A light of this part of the total power has a truncation error of 1e-5 of the level's RMS value.
 constexpr double k_probe_least_share = 1e-3;
+/// Of more such lights than this the strongest are taken. They are then the windows of a dark room, or a capture's
+/// noise, whose truncation errors cancel: docs/math/prefilter.md, "Probes".
+constexpr std::size_t k_probe_most_lights = 12;
 
 /// Enough nodes along a texel's side that a function of this band limit is integrated over it; an even number.
 int nodes_a_cell(int size, int band_limit) {
@@ -89,7 +92,9 @@ Result<FilterResult> ProbeFilter::filter(const Cubemap& source) const {
     from.whole = analysis.finish(grids, p.options.threads);
     result.mean = mean_radiance(from.whole);
     result.band_limit = p.plan.band_limit;
-    from.bright = [&](int band_limit) { return bright_points(cube, result.mean, band_limit, k_probe_least_share); };
+    from.bright = [&](int band_limit) {
+        return bright_points(cube, result.mean, band_limit, k_probe_least_share, k_probe_most_lights);
+    };
     if (auto done = make_levels(from, p.plan, p.options, result, &p.levels); !done) return done.error();
     return result;
 }
