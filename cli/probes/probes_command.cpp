@@ -1,6 +1,7 @@
 #include "domelight/base/version.h"
 #include "domelight/capture/probe_bake.h"
 #include "domelight/capture/probe_rooms.h"
+#include "domelight/probe/probe_check.h"
 #include "domelight/probe/scene_hash.h"
 
 #include "cli/commands.h"
@@ -28,6 +29,8 @@ void declare(Arguments& a, ProbesWords& w) {
         "engine");
     a.texts("--env", "ENV", w.environment_files, fmt::format("the environment; without it {}", k_built_in_sky));
     a.text("-o,--output", "DIR", w.output, "the folder for probes.json and its .ktx2 files");
+    a.text("--check", "DIR", w.check,
+           "captures nothing: whether the set of probes in DIR is whole, and still that of SCENE (and of --env)");
     a.group("Placement (one of the first four)");
     a.numbers("--grid", "NX,NY,NZ", w.grid, "a regular grid of so many places that fills the region");
     a.number("--density", "D", w.density,
@@ -59,6 +62,9 @@ void declare(Arguments& a, ProbesWords& w) {
         "--lux-per-unit", "LUX", w.lux_per_unit,
         "the illuminance that a radiance of 1 from all around stands for, over pi: scales the scene's lights (683)");
     a.group("Files");
+    a.number(
+        "--budget", "MB", w.budget,
+        "chooses --size, a power of two from 8 to 512, so that the files of the set have at most so many megabytes");
     a.integer("--levels", "N", w.levels, "levels of the specular chain (down to 4 x 4 texels)");
     a.integer("--irradiance-size", "N", w.irradiance_size, "texels along a face of the irradiance (16)");
     a.integer("--distance-size", "N", w.distance_size,
@@ -176,6 +182,7 @@ void print_result(const ProbesWords& w, const std::vector<Probe>& probes, const 
         print_document({{"version", version()},
                         {"folder", w.output},
                         {"probes", probes.size()},
+                        {"size", report.size},
                         {"moved", moved},
                         {"invalid", invalid},
                         {"rays", report.rays},
@@ -187,7 +194,8 @@ void print_result(const ProbesWords& w, const std::vector<Probe>& probes, const 
         return;
     }
     if (w.common.quiet) return;
-    print("{}: {} probes, {:.1f} MB\n", w.output, probes.size(), double(report.bytes) / 1e6);
+    print("{}: {} probes of {} x {} texels a face, {:.1f} MB\n", w.output, probes.size(), report.size, report.size,
+          double(report.bytes) / 1e6);
     for (const std::string& line : sentences(probes)) print("  {}\n", line);
     print("  {:.3g} million rays in {:.1f} s, filtered in {:.2f} s of processor time\n", double(report.rays) / 1e6,
           report.capture_seconds, report.filter_seconds);
@@ -232,6 +240,12 @@ int run_capture(const ProbesWords& w, Scene scene, const Environment& environmen
         if (!placed) return print_error(with_options(placed.error()));
         set_boxes(w, *traced, placed->probes);
         options.placement = placed->how;
+        if (w.budget > 0) {
+            const auto size = size_for_budget(options.filter, options.encoding, std::uint64_t(w.budget * 1e6),
+                                              int(placed->probes.size()));
+            if (!size) return print_error(with_options(size.error()));
+            options.capture.size = *size;
+        }
         options.capture.progress = bar.callback();
         report = bake_probes(*traced, *sampler, placed->probes, placed->grid, options, w.output);
     }
@@ -239,6 +253,26 @@ int run_capture(const ProbesWords& w, Scene scene, const Environment& environmen
     print_warnings(with_options(warnings_of(*report)), w.common, w.output);
     print_result(w, placed->probes, *report);
     return w.engines.empty() ? exit_done : write_for_engines(w, w.output, w.output);
+}
+
+/// --check.
+int check_set(const ProbesWords& w, const Scene& scene) {
+    ProbeCheck check{scene_sha256(scene), ""};
+    if (!w.environment_files.empty()) {
+        const auto environment = open_light_to_draw_from(w.environment_files, w.environment);
+        if (!environment) return print_error(environment.error());
+        const auto hash = environment_sha256(*environment);
+        if (!hash) return print_error(hash.error());
+        check.environment_sha256 = *hash;
+    }
+    const auto changes = check_probe_set(w.check, check);
+    if (!changes) return print_error(changes.error());
+    if (w.common.json)
+        print_document({{"version", version()}, {"folder", w.check}, {"changes", *changes}});
+    else if (!w.common.quiet && changes->empty())
+        print("{}: whole, and of this scene\n", w.check);
+    for (const std::string& change : *changes) print_error({change, w.check, "Capture it again: domelight probes."});
+    return changes->empty() ? exit_done : exit_failed;
 }
 
 }  // namespace
@@ -254,7 +288,8 @@ int run_probes(const std::vector<std::string>& words) {
     declare(arguments, w);
     if (const auto code = begin_command(arguments, words, w.common)) return *code;
     if (auto ok = check_words(w, arguments); !ok) return print_error(ok.error(), exit_usage);
-    if (auto ok = check_output_folder(w.output); !ok) return print_error(ok.error());
+    if (w.check.empty())
+        if (auto ok = check_output_folder(w.output); !ok) return print_error(ok.error());
 
     if (names_a_set(w)) return write_for_engines(w, w.scene_name(), w.output);
     SceneOptions scene_options;
@@ -267,6 +302,7 @@ int run_probes(const std::vector<std::string>& words) {
     print_warnings(scene->warnings, w.common, name);
     print_warnings(not_rendered(*scene), w.common, name);
     w.environment.threads = w.threads();
+    if (!w.check.empty()) return check_set(w, *scene);
     auto environment = open_light_to_draw_from(w.environment_files, w.environment);
     if (!environment) return print_error(environment.error());
     return run_capture(w, *std::move(scene), *environment);

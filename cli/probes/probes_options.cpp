@@ -38,6 +38,7 @@ Result<void> check_numbers(const ProbesWords& w, const Arguments& a) {
                   {"--bounces", double(w.bounces.value_or(3)), 0, 1000},
                   {"--noise", w.noise, 0, 1},
                   {"--lux-per-unit", w.lux_per_unit, 1e-12, 1e12},
+                  {"--budget", a.given("--budget") ? w.budget : 1, 1e-3, 1e9},
                   {"--levels", double(w.levels.value_or(2)), 2, 11},
                   {"--irradiance-size", double(w.irradiance_size.value_or(16)), 1, 256},
                   {"--distance-size", double(w.distance_size.value_or(0)), 0, 1024},
@@ -143,7 +144,14 @@ Result<void> check_words(ProbesWords& w, const Arguments& a) {
     if (w.scenes.size() != 1)
         return Error{w.scenes.empty() ? "is missing" : "is given twice", "SCENE",
                      fmt::format("One model, or a built-in scene: {}.", join(built_in_scene_names(), ", "))};
+    if (!w.check.empty()) {
+        for (const char* option : {"--output", "--grid", "--density", "--at", "--auto", "--for"})
+            if (a.given(option)) return Error{"has no meaning with --check", option, ""};
+        return within("--lux-per-unit", w.lux_per_unit, 1e-12, 1e12);
+    }
     if (w.output.empty()) return Error{"is missing", "--output", "Say where the probes go: -o probes."};
+    if (a.given("--size") && a.given("--budget"))
+        return Error{"is chosen by --budget", "--size", "Leave one of them out."};
     if (auto ok = check_numbers(w, a); !ok) return ok;
     if (auto ok = check_placement(w, a); !ok) return ok;
     return check_boxes(w);

@@ -20,9 +20,9 @@ struct ProbesWords {
     CommonOptions common;
     std::vector<std::string> scenes, environment_files, at, engines;
     EnvironmentOptions environment;
-    std::string output;
+    std::string output, check;
     std::vector<double> grid, region;
-    double density = 0, noise = 0, lux_per_unit = 683;
+    double density = 0, noise = 0, budget = 0, lux_per_unit = 683;
     double nearest = 0, farthest = -1;  ///< not given: 0, and -1
     std::optional<int> auto_count, size, spp, bounces, seed, levels, irradiance_size, distance_size;
     Encoding encoding = Encoding::rgb9e5;

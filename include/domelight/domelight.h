@@ -98,6 +98,7 @@
 #include "domelight/preview/preview.h"
 #include "domelight/probe/probe.h"
 #include "domelight/probe/probe_blend.h"
+#include "domelight/probe/probe_check.h"
 #include "domelight/probe/probe_grid.h"
 #include "domelight/probe/probe_set.h"
 #include "domelight/probe/scene_hash.h"

@@ -120,6 +120,7 @@ Result<ProbeBakeReport> run(const RayScene& scene, const EnvironmentSampler& sam
                                   });
     if (!captured) return captured.error();
     ProbeBakeReport report;
+    report.size = options.capture.size;
     report.rays = rays;
     report.non_finite_samples = non_finite;
     report.filter_seconds = filter_seconds;

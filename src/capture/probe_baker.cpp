@@ -46,6 +46,12 @@ int default_distance_size(int size) {
     return size / block;
 }
 
+ProbeBakerOptions with_defaults(ProbeBakerOptions options) {
+    if (options.levels == 0) options.levels = default_levels(options.size);
+    if (options.distance_size == -1) options.distance_size = default_distance_size(options.size);
+    return options;
+}
+
 Result<void> check(const ProbeBakerOptions& o) {
     const struct {
         const char* field;
@@ -87,12 +93,35 @@ Cubemap moments(const CapturedCube& captured, float farthest, int size) {
 
 }  // namespace
 
+std::uint64_t probe_bytes(const ProbeBakerOptions& given, Encoding encoding) {
+    const ProbeBakerOptions o = with_defaults(given);
+    const auto cube = [](int size) { return std::uint64_t(6) * std::uint64_t(size) * std::uint64_t(size); };
+    std::uint64_t texels = cube(o.irradiance_size);
+    for (int l = 0; l < o.levels; ++l) texels += cube(std::max(1, o.size >> l));
+    // In probes.json a probe takes about a kilobyte.
+    return texels * std::uint64_t(encoding_bytes(encoding)) +
+           cube(o.distance_size) * std::uint64_t(encoding_bytes(Encoding::rg32f)) + 1000;
+}
+
+Result<int> size_for_budget(const ProbeBakerOptions& options, Encoding encoding, std::uint64_t bytes, int probes) {
+    std::uint64_t needed = 0;
+    for (const int size : {512, 256, 128, 64, 32, 16, 8}) {
+        ProbeBakerOptions o = options;
+        o.size = size;
+        // Stated levels or distances may not go with every size.
+        if (!check(with_defaults(o))) continue;
+        needed = probe_bytes(o, encoding) * std::uint64_t(probes);
+        if (needed <= bytes) return size;
+    }
+    return Error{fmt::format("{:.3g} MB are too few for {} probes, which take {:.3g} MB at least", double(bytes) / 1e6,
+                             probes, double(needed) / 1e6),
+                 field_place("budget"), "Fewer probes, or a larger budget, would do."};
+}
+
 Result<ProbeBaker> ProbeBaker::make(const ProbeBakerOptions& options) {
     ProbeBaker filter;
     Impl& impl = *filter.impl_;
-    impl.options = options;
-    if (impl.options.levels == 0) impl.options.levels = default_levels(options.size);
-    if (impl.options.distance_size == -1) impl.options.distance_size = default_distance_size(options.size);
+    impl.options = with_defaults(options);
     const ProbeBakerOptions& o = impl.options;
     if (auto ok = check(o); !ok) return ok.error();
     const Engine& generic = engines().front();

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 namespace domelight {
@@ -14,8 +15,15 @@ constexpr int k_format = 1;
 /// More probes than this are refused.
 constexpr std::size_t k_most_probes = 1 << 20;
 
+/// The shortest decimal number that reads as this float.
+Json number_json(float value) {
+    const std::string text = fmt::format("{}", value);
+    double number = value;
+    std::from_chars(text.data(), text.data() + text.size(), number);
+    return number;
+}
 Json vector_json(const Vec3f& v) {
-    return Json::array({v.x, v.y, v.z});
+    return Json::array({number_json(v.x), number_json(v.y), number_json(v.z)});
 }
 Json box_json(const ProbeBox& box) {
     return {{"low", vector_json(box.low)}, {"high", vector_json(box.high)}};
@@ -34,8 +42,8 @@ const char* shape_name(ProbeInfluence::Shape shape) {
 Json influence_json(const ProbeInfluence& influence) {
     Json json{{"shape", shape_name(influence.shape)}};
     if (influence.shape == ProbeInfluence::Shape::box) json.update(box_json(influence.box));
-    if (influence.shape == ProbeInfluence::Shape::sphere) json["radius"] = influence.radius;
-    if (influence.shape != ProbeInfluence::Shape::everywhere) json["fade"] = influence.fade;
+    if (influence.shape == ProbeInfluence::Shape::sphere) json["radius"] = number_json(influence.radius);
+    if (influence.shape != ProbeInfluence::Shape::everywhere) json["fade"] = number_json(influence.fade);
     return json;
 }
 
@@ -72,8 +80,8 @@ Json specular_json(const ProbeSetRecord& r) {
     for (std::size_t l = 0; l < r.roughness.size(); ++l)
         levels.push_back({{"level", l},
                           {"size", std::max(1, r.specular.size >> l)},
-                          {"roughness", r.roughness[l]},
-                          {"alpha", r.roughness[l] * r.roughness[l]}});
+                          {"roughness", number_json(r.roughness[l])},
+                          {"alpha", number_json(r.roughness[l] * r.roughness[l])}});
     json["levels"] = std::move(levels);
     return json;
 }
@@ -224,9 +232,6 @@ Result<ProbeSetRecord> record_of(const Json& json) {
 }  // namespace
 
 std::string probe_record_text(const ProbeSetRecord& r) {
-    Json probes = Json::array(), tetrahedra = Json::array();
-    for (std::size_t i = 0; i < r.probes.size(); ++i) probes.push_back(probe_json(r.probes[i], r.harmonics[i]));
-    for (const auto& t : r.tetrahedra) tetrahedra.push_back(Json(t));
     Json irradiance = map_json(r.irradiance);
     irradiance["quantity"] = "irradiance_over_pi";
     Json json{{"format", k_format},
@@ -240,12 +245,21 @@ std::string probe_record_text(const ProbeSetRecord& r) {
     if (r.distance) {
         Json distance = map_json(*r.distance);
         distance["quantity"] = "distance, and its square";
-        distance["farthest"] = r.farthest;
+        distance["farthest"] = number_json(r.farthest);
         json["distance"] = std::move(distance);
     }
-    json["probes"] = std::move(probes);
-    if (!r.tetrahedra.empty()) json["tetrahedra"] = std::move(tetrahedra);
-    return json.dump(1) + "\n";
+    // A line for each probe. The whole as one value would take ten kilobytes of memory a probe.
+    std::string text = json.dump(1);
+    text.resize(text.rfind('\n'));
+    const auto append = [&](const char* member, std::size_t count, const auto& element) {
+        text += fmt::format(",\n \"{}\": [", member);
+        for (std::size_t i = 0; i < count; ++i) text += (i > 0 ? ",\n  " : "\n  ") + element(i).dump();
+        text += "\n ]";
+    };
+    append("probes", r.probes.size(), [&](std::size_t i) { return probe_json(r.probes[i], r.harmonics[i]); });
+    if (!r.tetrahedra.empty())
+        append("tetrahedra", r.tetrahedra.size(), [&](std::size_t i) { return Json(r.tetrahedra[i]); });
+    return text + "\n}\n";
 }
 
 Result<ProbeSetRecord> read_probe_record(const std::filesystem::path& folder) {

@@ -209,6 +209,23 @@ TEST_CASE("ProbeBaker: surfaces farther away than `farthest` count as that far")
     CHECK(maps->distance.pixels()[1] == doctest::Approx(4));
 }
 
+TEST_CASE("size_for_budget: the largest size that fits, by the bytes that files have") {
+    // Faces of 64, 32, 16, 8, 4 and of 16 texels of 4 bytes, and of 32 texels of 8 bytes.
+    const std::uint64_t maps = 6 * (4 * (4096 + 1024 + 256 + 64 + 16 + 256) + 8 * 1024);
+    CHECK(probe_bytes({.size = 64}, Encoding::rgb9e5) == maps + 1000);
+    const auto size = [](std::uint64_t bytes, int probes) {
+        const auto found = size_for_budget({}, Encoding::rgb9e5, bytes, probes);
+        return found ? *found : 0;
+    };
+    CHECK(size(10 * (maps + 1000), 10) == 64);
+    CHECK(size(10 * (maps + 1000) - 1, 10) == 32);
+    CHECK(size(1u << 30, 1) == 512);
+    CHECK(size(30000, 10) == 0);
+    CHECK(size_for_budget({}, Encoding::rgb9e5, 30000, 10).error().where == "`budget`");
+    // Distances of 32 texels need faces of at least as many.
+    CHECK(*size_for_budget({.distance_size = 32}, Encoding::rgba32f, 210'000, 1) == 32);
+}
+
 TEST_CASE("ProbeBaker: errors name the field") {
     const auto where = [](ProbeBakerOptions options) { return ProbeBaker::make(options).error().where; };
     CHECK(where({.size = 4}) == "`size`");

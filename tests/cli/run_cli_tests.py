@@ -112,8 +112,11 @@ PROBES = ["--size", "8", "--spp", "2", "--bounces", "1"]
 
 def test_probes_are_written_whole_and_described(folder):
     told = run("probes", "spheres", "-o", "set", "--grid", "2,1,1", *PROBES, folder=folder).stdout
-    assert told.startswith("set: 2 probes, "), told
+    assert told.startswith("set: 2 probes of 8 x 8 texels a face, "), told
     assert sorted(p.name for p in (folder / "set").iterdir()) == ["distance.ktx2", "irradiance.ktx2", "probes.json", "specular.ktx2"]
+    assert run("probes", "spheres", "--check", "set", folder=folder).stdout == "set: whole, and of this scene\n"
+    changed = run("probes", "ball", "--check", "set", "--json", folder=folder, code=1)
+    assert len(json.loads(changed.stdout)["changes"]) == 1 and "the scene is not the one that was captured: spheres" in changed.stderr, changed.stderr
     described = run("info", "set/specular.ktx2", folder=folder).stdout
     assert "8 x 8, 6 faces, 2 layers, 2 levels" in described and "domelight.roughness" in described, described
     record = json.loads((folder / "set/probes.json").read_text())
@@ -125,6 +128,9 @@ def test_probes_are_written_whole_and_described(folder):
     assert report["probes"] == 2 and report["rays"] > 0 and report["invalid"] == 0, report
     again = run("probes", "spheres", "-o", "at2", "--at", "0,0,4", "--at", "9,0,0", "--quiet", *PROBES, "--threads", "2", folder=folder)
     assert again.stdout == ""
+    (folder / "at2/distance.ktx2").write_bytes((folder / "at2/distance.ktx2").read_bytes()[:-1] + b"x")
+    assert "distance.ktx2 is not the file" in run("probes", "spheres", "--check", "at2", folder=folder, code=1).stderr
+    (folder / "at2/distance.ktx2").write_bytes((folder / "at/distance.ktx2").read_bytes())
     for name in ("specular.ktx2", "irradiance.ktx2", "distance.ktx2", "probes.json"):
         assert (folder / "at" / name).read_bytes() == (folder / "at2" / name).read_bytes(), name
 
@@ -163,8 +169,10 @@ def test_probes_are_placed_automatically_with_their_boxes(folder):
     probe = json.loads((folder / "boxes/probes.json").read_text())["probes"][0]
     assert probe["proxy"] == {"low": [-5, 0, -5], "high": [5, 3, 5]}
     assert probe["influence"]["shape"] == "box" and abs(probe["influence"]["fade"] - 0.3) < 1e-6
-    run("probes", "spheres", "-o", "spheres", "--at", "0,1,4", "--proxy", "none", "--influence", "2.5", *PROBES, folder=folder)
-    probe = json.loads((folder / "spheres/probes.json").read_text())["probes"][0]
+    run("probes", "spheres", "-o", "round", "--at", "0,1,4", "--proxy", "none", "--influence", "2.5", *PROBES, folder=folder)
+    report = json.loads(run("probes", "spheres", "-o", "fits", "--at", "0,1,4", "--at", "0,2,4", "--budget", "0.1", "--spp", "1", "--json", folder=folder).stdout)
+    assert report["size"] == 32 and report["bytes"] <= 100_000, report
+    probe = json.loads((folder / "round/probes.json").read_text())["probes"][0]
     assert "proxy" not in probe and probe["influence"]["radius"] == 2.5, probe
 
 
@@ -191,6 +199,9 @@ def test_probes_refuse_what_cannot_work(folder):
     refused("--grid", "1,1,1", "--proxy", "wall", code=2, says="--proxy: \"wall\" is none of them")
     refused("--grid", "1,1,1", "--influence", "0", code=2, says="--influence: \"0\" is none of them")
     refused("--grid", "1,1,1", "--influence", "room", "--proxy", "none", code=2, says="--influence")
+    assert "--budget: 0.002 MB are too few" in run("probes", "spheres", "-o", "set", "--grid", "1,1,1", "--budget", "0.002", folder=folder, code=2).stderr
+    refused("--grid", "1,1,1", "--check", "set", code=2, says="has no meaning with --check")
+    assert "--size: is chosen by --budget" in run("probes", "spheres", "-o", "set", "--grid", "1,1,1", "--size", "8", "--budget", "1", folder=folder, code=2).stderr
     refused("--grid", "1,1,1", "--size", "4", code=2, says="--size")
     refused("--grid", "1,1,1", "--levels", "9", code=2, says="--levels: 9 levels are more than faces of 8 texels have")
     refused("--grid", "1,1,1", code=1, says="nothing.glb", scene="nothing.glb")

@@ -29,6 +29,7 @@ struct ProbeBakeOptions {
 };
 
 struct ProbeBakeReport {
+    int size = 0;  ///< texels along a face of level 0
     std::int64_t rays = 0;
     double capture_seconds = 0, filter_seconds = 0;  ///< of processor time, all threads together
     std::int64_t non_finite_samples = 0;             ///< counted as black

@@ -2,6 +2,7 @@
 
 #include "domelight/capture/capture.h"
 #include "domelight/probe/probe_set.h"
+#include "domelight/texture/texture.h"
 
 #include <memory>
 #include <vector>
@@ -17,6 +18,15 @@ struct ProbeBakerOptions {
     /// Metres, > 0: farther surfaces, and directions in which there is none, count as this far.
     float farthest = 1000;
 };
+
+/// Bytes of one probe's maps on disk. The options must be valid.
+std::uint64_t probe_bytes(const ProbeBakerOptions& options, Encoding encoding);
+
+/// The largest size, a power of two from 8 to 512, at which so many probes take at most `bytes` on disk. Errors: not even
+/// the least does.
+///
+/// options   of which `size` is not read
+Result<int> size_for_budget(const ProbeBakerOptions& options, Encoding encoding, std::uint64_t bytes, int probes);
 
 /// Makes a probe's maps from what it captured: what all probes share is computed once.
 ///
