@@ -153,10 +153,10 @@ TEST_CASE("ProbeSet::load: a damaged set is an error that names the file") {
     };
     const fs::path json = set / "probes.json";
     for (const auto& [from, to] : {std::pair{"\"format\": 1", "\"format\": 9"},
-                                   {"\"valid\": true", "\"valid\": 3"},
-                                   {"\"filled_from\": 0", "\"filled_from\": 8"},
+                                   {"\"valid\":true", "\"valid\":3"},
+                                   {"\"filled_from\":0", "\"filled_from\":8"},
                                    {"\"file\": \"specular.ktx2\"", "\"file\": \"../specular.ktx2\""},
-                                   {"\"harmonics\": [", "\"harmonics\": [1,"},
+                                   {"\"harmonics\":[", "\"harmonics\":[1,"},
                                    {"\"roughness\": 1.0", "\"roughness\": 7.0"}}) {
         INFO(from);
         replace(from, to);
