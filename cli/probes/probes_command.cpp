@@ -9,6 +9,7 @@
 #include "cli/console/environment_options.h"
 #include "cli/console/field_options.h"
 #include "cli/console/interruption.h"
+#include "cli/console/light_options.h"
 #include "cli/console/print.h"
 #include "cli/probes/probes_engines.h"
 #include "cli/probes/probes_options.h"
@@ -28,6 +29,7 @@ void declare(Arguments& a, ProbesWords& w) {
         "a .glb, .gltf, .obj or .ply, or a built-in scene; or the folder of a set of probes, to write it for an "
         "engine");
     a.texts("--env", "ENV", w.environment_files, fmt::format("the environment; without it {}", k_built_in_sky));
+    a.texts("--lights", "FILE", w.light_files, k_lights_help);
     a.text("-o,--output", "DIR", w.output, "the folder for probes.json and its .ktx2 files");
     a.text("--check", "DIR", w.check,
            "captures nothing: whether the set of probes in DIR is whole, and still that of SCENE (and of --env)");
@@ -211,7 +213,7 @@ std::vector<std::string> warnings_of(const ProbeBakeReport& report) {
     return warnings;
 }
 
-int run_capture(const ProbesWords& w, Scene scene, const Environment& environment) {
+int run_capture(const ProbesWords& w, Scene scene, const Environment& environment, std::vector<PunctualLight> lights) {
     ProbeBakeOptions options;
     options.capture = w.capture();
     options.filter.levels = w.levels.value_or(0);
@@ -224,6 +226,8 @@ int run_capture(const ProbesWords& w, Scene scene, const Environment& environmen
     options.environment = {environment.file.filename().string(), *hash};
     options.inputs = environment.files;
     options.inputs.push_back(w.scene_name());
+    options.inputs.insert(options.inputs.end(), w.light_files.begin(), w.light_files.end());
+    options.capture.environment_lights = std::move(lights);
     const Scene::Box bounds = scene.bounds();
     options.filter.farthest = std::max(1e-3f, length(bounds.high - bounds.low));
 
@@ -305,7 +309,9 @@ int run_probes(const std::vector<std::string>& words) {
     if (!w.check.empty()) return check_set(w, *scene);
     auto environment = open_light_to_draw_from(w.environment_files, w.environment);
     if (!environment) return print_error(environment.error());
-    return run_capture(w, *std::move(scene), *environment);
+    auto lights = environment_lights(w.light_files, w.environment, scene_options, w.common);
+    if (!lights) return print_error(lights.error());
+    return run_capture(w, *std::move(scene), *environment, *std::move(lights));
 }
 
 }  // namespace domelight::cli

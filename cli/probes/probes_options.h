@@ -18,7 +18,7 @@ namespace domelight::cli {
 /// The command line of `probes`.
 struct ProbesWords {
     CommonOptions common;
-    std::vector<std::string> scenes, environment_files, at, engines;
+    std::vector<std::string> scenes, environment_files, light_files, at, engines;
     EnvironmentOptions environment;
     std::string output, check;
     std::vector<double> grid, region;

@@ -5,6 +5,7 @@
 #include "cli/console/environment_options.h"
 #include "cli/console/field_options.h"
 #include "cli/console/interruption.h"
+#include "cli/console/light_options.h"
 #include "cli/console/output_endings.h"
 #include "cli/console/print.h"
 #include "cli/render/render_outputs.h"
@@ -63,9 +64,7 @@ void declare(Arguments& a, RenderWords& w) {
     a.flag("--resume", w.resume, "keep the frames that exist, render the others");
     a.group("The light");
     a.texts("--env", "ENV", w.environment_files, fmt::format("the environment ({})", k_built_in_sky));
-    a.texts("--lights", "FILE", w.light_files,
-            "lights that were taken out of the environment: lights.gltf of `domelight lights`, whose remainder is "
-            "--env; they turn with --rotate-y-deg and brighten with --exposure as the environment does");
+    a.texts("--lights", "FILE", w.light_files, k_lights_help);
     a.number(
         "--lux-per-unit", "LUX", w.lux_per_unit,
         "the illuminance in lux that an irradiance of 1 in the environment's unit stands for; used for glTF lights "
@@ -249,23 +248,6 @@ Result<RenderResult> draw(const RenderWords& w, const RayScene& scene, const Env
                         : render_shaded(scene, *light.maps, sampler, shading, o);
 }
 
-/// The lights of --lights, turned and brightened as the environment is. Warns of files without lights.
-Result<std::vector<PunctualLight>> environment_lights(const RenderWords& w, const SceneOptions& options) {
-    std::vector<PunctualLight> lights;
-    for (const std::string& file : w.light_files) {
-        const auto found = load_environment_lights(file, options);
-        if (!found) return found.error().at(file);
-        print_warnings(found->warnings, w.common, file);
-        if (found->lights.empty()) print_warnings({"there is no light in it"}, w.common, file);
-        const Mat3 turn = rotation_y((w.environment.rotate_y_deg - found->rotate_y_deg) * k_pi / 180);
-        for (const PunctualLight& light : found->lights) {
-            lights.push_back(turned_light(light, turn));
-            lights.back().intensity = light.intensity * float(std::exp2(w.environment.exposure));
-        }
-    }
-    return lights;
-}
-
 int run_render(const std::vector<std::string>& words) {
     RenderWords w;
     Arguments arguments(
@@ -311,7 +293,7 @@ int run_render(const std::vector<std::string>& words) {
     if (!environment) return print_error(environment.error());
     const auto probes = probes_for(w, *scene);
     if (!probes) return print_error(probes.error());
-    auto lights = environment_lights(w, scene_options);
+    auto lights = environment_lights(w.light_files, w.environment, scene_options, w.common);
     if (!lights) return print_error(lights.error());
     options->environment_lights = std::move(*lights);
 

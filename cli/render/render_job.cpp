@@ -44,12 +44,6 @@ BlendOptions blend_options(const RenderWords& w) {
     return o;
 }
 
-PunctualLight turned_light(PunctualLight light, const Mat3& turn) {
-    light.direction = Vec3f(turn * Vec3d(light.direction));
-    light.position = Vec3f(turn * Vec3d(light.position));
-    return light;
-}
-
 std::vector<std::string> non_finite_warning(std::int64_t samples) {
     if (samples == 0) return {};
     return {fmt::format("{} sample{} infinite or not a number, and count as black", samples,

@@ -27,9 +27,6 @@ struct EngineLight {
 Result<RenderResult> draw(const RenderWords& words, const RayScene& scene, const EnvironmentSampler& sampler,
                           const EngineLight& light, const RenderOptions& options);
 
-/// A light of the environment after the environment has been turned about the origin.
-PunctualLight turned_light(PunctualLight light, const Mat3& turn);
-
 /// A warning if samples were lost because their radiance was not finite; otherwise nothing.
 std::vector<std::string> non_finite_warning(std::int64_t samples);
 

@@ -5,6 +5,7 @@
 #include "domelight/io/write_image.h"
 
 #include "cli/console/interruption.h"
+#include "cli/console/light_options.h"
 #include "cli/console/print.h"
 #include "cli/render/render_outputs.h"
 #include "io/file/file_reader.h"

@@ -145,6 +145,13 @@ def test_a_render_is_lit_by_probes(folder):
         assert shown.stderr == "", shown.stderr
         pictures.append((folder / "lit.hdr").read_bytes())
     assert len(set(pictures)) >= len(pictures) - 1  # parallax needs proxies
+    (folder / "sun.hdr").write_bytes((folder / "evening.hdr").read_bytes())
+    run("lights", "sun.hdr", "-o", "sun", "--no-preview", folder=folder)
+    split = ["--env", "sun/" + next(p.name for p in (folder / "sun").iterdir() if p.stem == "remainder"), "--lights", "sun/lights.gltf"]
+    run("probes", "spheres", "-o", "sunny", "--grid", "2,1,1", *split, *PROBES, folder=folder)
+    run("probes", "spheres", "-o", "dull", "--grid", "2,1,1", *split[:2], *PROBES, folder=folder)
+    harmonics = [json.loads((folder / name / "probes.json").read_text())["probes"][0]["harmonics"][0][1] for name in ["sunny", "dull"]]
+    assert harmonics[0] > harmonics[1] > 0, "the spheres reflect the light of --lights into the probes"
     changed = run("render", "ball", *view[1:-1], "--probes", "set", "-o", "lit.hdr", folder=folder)
     assert "captured in another scene, or in spheres before it was changed" in changed.stderr, changed.stderr
 
