@@ -57,6 +57,32 @@ export async function testFormats({claim, skip, domelight, work, modules, browse
         claim(`ktx-parse reads KTX2 in ${encoding}`, wrong, `VkFormat ${file.vkFormat}, ${file.levels.length} levels`);
     }
 
+    // A set of three probes: its arrays of cubes, in which each cube is where docs/probes.md says.
+    const probes = path.join(work, 'format-probes');
+    domelight('probes', 'spheres', '--env', source, '-o', probes, '--at', '0,1,9', '--at', '9,1,0', '--at', '0,9,0', '--size', 16, '--spp', 1, '--encoding', 'rgba32f', '--quiet');
+    const arrays = [['specular', 109, 16, 3, 'rgba'], ['irradiance', 109, 16, 1, 'rgba'], ['distance', 103, 16, 1, 'rg']], faults = [];
+    for (const [name, format, size, levels, channels] of arrays) {
+        const file = read(fs.readFileSync(path.join(probes, `${name}.ktx2`)));
+        if (file.vkFormat !== format || file.pixelWidth !== size || file.layerCount !== 3 || file.faceCount !== 6 || file.levels.length !== levels)
+            faults.push(`${name}: VkFormat ${file.vkFormat}, ${file.pixelWidth} texels, ${file.layerCount} layers, ${file.levels.length} levels`);
+        file.levels.forEach(({levelData}, l) => {
+            const bytes = 3 * 6 * (size >> l) ** 2 * 4 * channels.length;
+            if (levelData.byteLength !== bytes) faults.push(`${name}: level ${l} has ${levelData.byteLength} bytes and not ${bytes}`);
+        });
+    }
+    const {harmonics} = JSON.parse(fs.readFileSync(path.join(probes, 'probes.json'))).probes[2];
+    const level = read(fs.readFileSync(path.join(probes, 'specular.ktx2'))).levels[0].levelData, texels = new Float32Array(level.slice().buffer);
+    // The mean over the sphere is the first coefficient over 2 sqrt(pi).
+    let sum = 0, area = 0;
+    for (let k = 0; k < 6 * 256; ++k) {
+        const at = j => (2 * j + 1) / 16 - 1, weight = (1 + at(k % 16) ** 2 + at((k >> 4) % 16) ** 2) ** -1.5;
+        sum += weight * texels[4 * (2 * 6 * 256 + k) + 1];
+        area += weight;
+    }
+    const mean = harmonics[0][1] / (2 * Math.sqrt(Math.PI));
+    if (Math.abs(sum / area - mean) > 0.01 * mean) faults.push(`the last probe's mean is ${sum / area} by its texels, ${mean} by its harmonics`);
+    claim('ktx-parse reads the cubes of a set of probes', faults, `${texels.length / 4} texels in level 0`);
+
     const dds = fs.readFileSync(path.join(bake('dds', '--encoding', 'rgba32f', '--format', 'dds', '--size', 16, '--levels', 5), 'specular.dds'));
     const small = read(fs.readFileSync(path.join(bake('small', '--encoding', 'rgba32f', '--size', 16, '--levels', 5), 'specular.ktx2')));
     const {images, cubemap} = parseDds(dds.buffer.slice(dds.byteOffset, dds.byteOffset + dds.length));
