@@ -29,7 +29,7 @@ engine_packages=(chromium nodejs npm openexr)
 # web/ and tests/web: what builds the browser app, and the browser that runs it.
 web_packages=(chromium nodejs npm)
 # The WebAssembly module (cmake --preset wasm) and the npm package: Debian has the C library of WASI, and libc++ compiled for it.
-wasm_packages=(clang-22 lld-22 wasi-libc libc++-22-dev-wasm32 libclang-rt-22-dev-wasm32 binaryen libhwy-dev libfmt-dev libimath-dev cmake ninja-build python3-pip)
+wasm_packages=(clang-22 lld-22 wasi-libc libc++-22-dev-wasm32 libclang-rt-22-dev-wasm32 binaryen libhwy-dev libfmt-dev libimath-dev nlohmann-json3-dev dpkg-dev cmake ninja-build python3-pip)
 # The command that each of them brings, where its name differs.
 declare -A command_of=([nodejs]=node [openexr]=exrheader)
 # tests/python: the headers of Python, and its virtual environments.

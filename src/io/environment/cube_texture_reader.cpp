@@ -4,6 +4,7 @@
 
 #include "image/repair.h"
 #include "scene/gltf/gltf_image_light.h"
+#include "texture/block/astc_codec.h"
 #include "texture/container/texture_reading.h"
 #include "texture/texel_order.h"
 
@@ -50,6 +51,8 @@ Result<Cubemap> read_cube_texture(std::span<const std::uint8_t> bytes, std::int6
             "", ""};
     const Result<Texture> texture = domelight::texture(source, decode);
     if (!texture) return texture.error();
+    const bool astc = texture->encoding == Encoding::astc4x4_hdr || texture->encoding == Encoding::astc6x6_hdr;
+    if (astc && !has_astc_codec()) return Error{"ASTC is not read by this build", "", "Convert it to BC6H or floats."};
     if (encoding_channels(texture->encoding) != 3) return Error{"texture has two channels, not a colour", "", ""};
 
     Cubemap cube(texture->width);

@@ -32,15 +32,6 @@ std::optional<CodePoints> code_points(cmsHPROFILE profile) {
     return CodePoints{tag[8], tag[9], tag[10], tag[11] != 0};
 }
 
-bool is_srgb(const ScreenColour& colour, int levels) {
-    if (colour.to_rec709) return false;
-    const std::vector<float> srgb = screen_curve(Decode::srgb, levels);
-    for (const auto& curve : colour.curves)
-        for (std::size_t i = 0; i < curve.size(); ++i)
-            if (std::abs(curve[i] - srgb[i]) > 1e-3f) return false;
-    return true;
-}
-
 bool set_channel(ScreenColour& colour, std::size_t channel, cmsHPROFILE profile, cmsTagSignature tag, int levels) {
     const auto* curve = static_cast<const cmsToneCurve*>(cmsReadTag(profile, tag));
     if (!curve) return false;
@@ -65,17 +56,7 @@ std::optional<ScreenColour> by_matrix(cmsHPROFILE profile, int levels) {
         if (!xyz) return std::nullopt;
         columns.row[c] = {xyz->X, xyz->Y, xyz->Z};
     }
-    const cmsCIEXYZ& d50 = *cmsD50_XYZ();
-    const double sum = d50.X + d50.Y + d50.Z;
-    const Mat3 matrix = *xyz_to_rec709(ColourPrimaries::Xy{d50.X / sum, d50.Y / sum}) * columns.transposed();
-    // Colourants are rounded to 1 / 65536, and sRGB's in several ways.
-    const Mat3 identity;
-    double change = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3d d = matrix.row[i] - identity.row[i];
-        change = std::max({change, std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-    }
-    if (change > 2e-3) colour.to_rec709 = matrix;
+    colour.to_rec709 = rec709_of_colourants(columns.transposed());
     return colour;
 }
 

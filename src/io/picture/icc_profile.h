@@ -14,4 +14,9 @@ namespace domelight {
 /// Errors: damaged; neither of RGB nor of grey.
 Result<ScreenColour> colour_of_icc_profile(std::span<const std::uint8_t> profile, int levels);
 
+/// Whether the curves are sRGB's, and the primaries those of Rec. 709.
+bool is_srgb(const ScreenColour& colour, int levels);
+/// From colours whose columns are XYZ of the D50 white to linear Rec. 709; nothing where that changes no colour.
+std::optional<Mat3> rec709_of_colourants(const Mat3& columns);
+
 }  // namespace domelight

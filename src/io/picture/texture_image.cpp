@@ -5,7 +5,6 @@
 #include "io/picture/jpeg_segments.h"
 
 #include <fmt/format.h>
-#include <webp/decode.h>
 
 #include <cmath>
 #include <cstring>
@@ -55,12 +54,8 @@ Result<TextureSize> claimed_size(std::span<const std::uint8_t> bytes) {
             return TextureSize{int(big_endian(bytes, 16, 4) & 0x7fffffff), int(big_endian(bytes, 20, 4) & 0x7fffffff)};
         case Format::jpeg:
             return jpeg_size(bytes);
-        case Format::webp: {
-            TextureSize size;
-            if (!WebPGetInfo(bytes.data(), bytes.size(), &size.width, &size.height))
-                return Error{"not a readable WebP", "", "The file is truncated or damaged."};
-            return size;
-        }
+        case Format::webp:
+            return webp_size(bytes);
         default:
             return not_read(bytes);
     }
@@ -80,17 +75,6 @@ Result<TextureSize> texture_image_size(std::span<const std::uint8_t> bytes) {
                                  size->height),
                      "", "The file is truncated, or its header is wrong."};
     return size;
-}
-
-Result<Rgba8Image> decode_webp_texture(std::span<const std::uint8_t> bytes) {
-    const auto size = texture_image_size(bytes);
-    if (!size) return size.error();
-    Rgba8Image image;
-    image.width = size->width, image.height = size->height;
-    image.rgba.resize(std::size_t(image.width) * std::size_t(image.height) * 4);
-    if (!WebPDecodeRGBAInto(bytes.data(), bytes.size(), image.rgba.data(), image.rgba.size(), image.width * 4))
-        return Error{"not a readable WebP", "", "The file is truncated or damaged."};
-    return image;
 }
 
 Result<Rgba8Image> decode_jpeg_texture(std::span<const std::uint8_t> bytes) {

@@ -17,6 +17,8 @@ struct TextureSize {
     int width = 0, height = 0;
 };
 Result<TextureSize> texture_image_size(std::span<const std::uint8_t> bytes);
+/// The size that a WebP's header states.
+Result<TextureSize> webp_size(std::span<const std::uint8_t> bytes);
 
 /// Its texels as stored: 8 bits, RGBA, top row first. 16-bit samples lose their lower half; colour profiles and gamma
 /// are ignored, as glTF asks. Errors: truncated or damaged.

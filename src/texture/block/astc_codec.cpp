@@ -141,6 +141,10 @@ void with_context(const Purpose& purpose, int count, Work work) {
 
 }  // namespace
 
+bool has_astc_codec() {
+    return true;
+}
+
 void encode_astc_hdr(int side, const float* rgb, int count, EncodingQuality quality, std::uint8_t* blocks) {
     with_context({side, true, quality}, count, [&](astcenc_context* context, int first, int here) {
         encode_strip(context, side, rgb + 3 * side * side * first, here, blocks + 16 * first);
