@@ -36,5 +36,7 @@ declare -A command_of=([nodejs]=node [openexr]=exrheader)
 python_packages=(python3-dev python3-venv)
 # ./test --package: a root of Debian with nothing in it.
 package_packages=(mmdebstrap)
+# ./test --slurm starts a cluster of two nodes on this machine
+slurm_packages=(slurm-wlm munge)
 # bench/peers.py: the program that is measured beside ours.
 peer_packages=(libfilament-tools)

@@ -43,6 +43,11 @@ const std::vector<Action>& actions() {
          "writes PLAN/report/index.html: a picture, times, size, errors and repairs of each job",
          batch_report,
          {}},
+        {"slurm",
+         "PLAN",
+         "submits an array of shards to Slurm, and a job that merges them",
+         batch_slurm,
+         {"--shards", "--cpus", "--sbatch", "--no-submit"}},
     };
     return table;
 }
@@ -82,7 +87,9 @@ void declare(Arguments& a, BatchWords& w) {
         "--shard", "I/N", w.shard,
         "run: the jobs of shard I of N, 1 to N, which are about equal in cost; with --shards N alone, I is read from "
         "SLURM_ARRAY_TASK_ID, AWS_BATCH_JOB_ARRAY_INDEX or JOB_COMPLETION_INDEX (all jobs)");
-    a.integer("--shards", "N", w.shards, "plan: lines of commands.txt (16); run: the N of --shard, 1 to 1000000");
+    a.integer(
+        "--shards", "N", w.shards,
+        "plan: lines of commands.txt (16); run: the N of --shard; slurm: members of the array (16); 1 to 1000000");
     a.group("Running");
     a.integer("--workers", "N", w.workers,
               "run: processes that do jobs side by side, 1 to 1024; --threads is for all of them together (as many as "
@@ -92,6 +99,13 @@ void declare(Arguments& a, BatchWords& w) {
         "run: what the jobs under way may need together by their estimates: 8G, 500M (three quarters of what is free)");
     a.integer("--attempts", "N", w.attempts, "run: how often a job that fails is tried, 1 to 100 (2)");
     a.flag("--check", w.check, "run: hash the results that are there, and do again what is not as it was written");
+    a.group("Slurm");
+    a.integer("--cpus", "N", w.cpus, "slurm: cores of each shard, 1 to 1024 (1)");
+    a.texts(
+        "--sbatch", "OPTION", w.sbatch,
+        "slurm: an option for sbatch, as in --sbatch=--partition=long; it overrides what is estimated; may be given "
+        "several times");
+    a.flag("--no-submit", w.no_submit, "slurm: write PLAN/slurm/array.sh and merge.sh, and submit nothing");
     a.group("Results");
     a.choice("--place", w.placing, "merge: relative links, further names of the same files, or copies (link)");
     add_common_options(a, w.common);

@@ -2,6 +2,7 @@
 #include "domelight/io/file/atomic_file.h"
 
 #include "cli/batch/batch_words.h"
+#include "cli/batch/shell_word.h"
 #include "cli/console/field_options.h"
 #include "cli/console/output_endings.h"
 #include "cli/console/print.h"
@@ -28,17 +29,6 @@ Result<BatchPlanOptions> plan_options(const BatchWords& w) {
         options.options.emplace_back(setting.substr(0, equals), setting.substr(equals + 1));
     }
     return options;
-}
-
-/// A word as a POSIX shell reads it.
-std::string shell_word(const std::string& word) {
-    const bool plain = !word.empty() && word.find_first_not_of(
-                                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                            "0123456789_./:=@%+,-") == word.npos;
-    if (plain) return word;
-    std::string quoted = "'";
-    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return quoted + "'";
 }
 
 /// commands.txt: a line for each shard, for schedulers that take command lines.

@@ -14,16 +14,16 @@
 namespace domelight::cli {
 namespace {
 
-/// Where schedulers say which member of an array this process is, and how they count.
+/// Where schedulers say which member of an array this process is.
 struct ArrayVariable {
     const char* index;
-    const char* first;  ///< the variable that holds the first index, or null: it is 0
+    int first;          ///< the index of the first member
     const char* count;  ///< the variable that holds how many there are, or null
 };
 constexpr ArrayVariable k_arrays[] = {
-    {"SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_MIN", nullptr},  // its count is less where a part is run again
-    {"AWS_BATCH_JOB_ARRAY_INDEX", nullptr, "AWS_BATCH_JOB_ARRAY_SIZE"},
-    {"JOB_COMPLETION_INDEX", nullptr, nullptr},
+    {"SLURM_ARRAY_TASK_ID", 1, nullptr},  // Slurm's count is less where a part is run again
+    {"AWS_BATCH_JOB_ARRAY_INDEX", 0, "AWS_BATCH_JOB_ARRAY_SIZE"},
+    {"JOB_COMPLETION_INDEX", 0, nullptr},
 };
 
 std::optional<int> number_in(const char* variable) {
@@ -33,7 +33,7 @@ std::optional<int> number_in(const char* variable) {
     return number ? std::optional(*number) : std::nullopt;
 }
 
-/// The shard by the scheduler's variables. Slurm's arrays count as the script has them, from 1 or from 0.
+/// The shard by the scheduler's variables.
 Result<BatchShard> shard_of_scheduler(const std::optional<int>& shards) {
     for (const ArrayVariable& array : k_arrays) {
         const auto index = number_in(array.index);
@@ -42,8 +42,11 @@ Result<BatchShard> shard_of_scheduler(const std::optional<int>& shards) {
         if (!count)
             return Error{fmt::format("{} is {}, but of how many shards is not known", array.index, *index), "--shards",
                          "Say it: --shards N, or --shard I/N."};
-        const bool from_one = array.first && number_in(array.first).value_or(0) != 0;
-        return BatchShard{*index + (from_one ? 0 : 1), *count};
+        if (*index < array.first || *index - array.first >= *count)
+            return Error{
+                fmt::format("{} is {}, which is not one of {} shards", array.index, *index, *count), "--shards",
+                fmt::format("The array must have the indices {} to {}.", array.first, *count - 1 + array.first)};
+        return BatchShard{*index - array.first + 1, *count};
     }
     if (!shards) return BatchShard{};
     return Error{"says how many shards there are, but not which one this is", "--shards",

@@ -20,8 +20,9 @@ struct BatchWords {
     std::string output, kind = "bake";
     std::vector<std::string> engines, settings;
     std::string shard, memory;
-    std::optional<int> shards, workers, attempts;
-    bool check = false;
+    std::optional<int> shards, workers, attempts, cpus;
+    std::vector<std::string> sbatch;
+    bool check = false, no_submit = false;
     BatchPlacing placing = BatchPlacing::link;
 
     const std::string& action() const { return words.front(); }
@@ -35,5 +36,6 @@ int batch_run(const BatchWords& words);
 int batch_merge(const BatchWords& words);
 int batch_verify(const BatchWords& words);
 int batch_report(const BatchWords& words);
+int batch_slurm(const BatchWords& words);
 
 }  // namespace domelight::cli

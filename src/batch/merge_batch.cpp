@@ -148,6 +148,23 @@ std::string index_line(const BatchJob& job, const ResultRecord& record) {
 
 }  // namespace
 
+std::vector<BatchShardState> batch_shard_states(const BatchPlan& plan, const fs::path& folder, int count) {
+    const ResultStore store(folder);
+    std::vector<BatchShardState> states;
+    for (const auto& shard : plan_shards(plan, count)) {
+        BatchShardState& state = states.emplace_back();
+        state.jobs = shard.size();
+        for (const std::size_t index : shard) {
+            const BatchJob& job = plan.jobs[index];
+            if (store.find(job.id)) continue;
+            ++state.left;
+            state.seconds_left += job.seconds;
+            state.memory = std::max(state.memory, job.memory);
+        }
+    }
+    return states;
+}
+
 Result<BatchMerge> merge_batch(const BatchPlan& plan, const fs::path& folder, BatchPlacing placing,
                                const Progress& progress) {
     std::error_code failure;

@@ -261,8 +261,7 @@ def test_shards_share_the_jobs(folder):
         seen += statuses(folder, "--shard", f"{index}/3")[0]
     assert sorted(seen) == NAMES and results_of(batch) == whole
     # The shard by a scheduler's variables.
-    for variables, words in [({"SLURM_ARRAY_TASK_ID": "2", "SLURM_ARRAY_TASK_MIN": "1", "SLURM_ARRAY_TASK_COUNT": "1"}, ["--shards", "3"]),
-                             ({"SLURM_ARRAY_TASK_ID": "1", "SLURM_ARRAY_TASK_MIN": "0"}, ["--shards", "3"]),
+    for variables, words in [({"SLURM_ARRAY_TASK_ID": "2", "SLURM_ARRAY_TASK_COUNT": "1"}, ["--shards", "3"]),
                              ({"AWS_BATCH_JOB_ARRAY_INDEX": "1", "AWS_BATCH_JOB_ARRAY_SIZE": "3"}, []),
                              ({"JOB_COMPLETION_INDEX": "1"}, ["--shards", "3"])]:
         assert statuses(folder, *words, env=variables)[1]["shard"] == "2/3", variables
@@ -270,7 +269,8 @@ def test_shards_share_the_jobs(folder):
                                    (["--shards", "3"], {}, "not which one this is"), ([], {"JOB_COMPLETION_INDEX": "1"}, "of how many shards"),
                                    (["--memory", "lots"], {}, "number of bytes"), (["--workers", "0"], {}, "--workers")]:
         assert says in run("batch", "run", "batch", *words, folder=folder, code=2, env=variables).stderr, words
-    assert "is not a shard" in run("batch", "run", "batch", "--shards", "3", folder=folder, code=2, env={"JOB_COMPLETION_INDEX": "3"}).stderr
+    for variables in [{"JOB_COMPLETION_INDEX": "3"}, {"SLURM_ARRAY_TASK_ID": "0"}, {"SLURM_ARRAY_TASK_ID": "4"}]:
+        assert "not one of 3 shards" in run("batch", "run", "batch", "--shards", "3", folder=folder, code=2, env=variables).stderr
 
 
 def test_same_bytes_for_any_number_of_workers_and_any_memory(folder):

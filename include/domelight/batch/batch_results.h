@@ -52,6 +52,16 @@ struct BatchMerge {
 Result<BatchMerge> merge_batch(const BatchPlan& plan, const std::filesystem::path& folder,
                                BatchPlacing placing = BatchPlacing::link, const Progress& progress = {});
 
+/// What a shard has still to do.
+struct BatchShardState {
+    std::size_t jobs = 0, left = 0;  ///< of the shard; without a result
+    double seconds_left = 0;         ///< estimated CPU time of those without
+    std::int64_t memory = 0;         ///< estimated bytes of the largest of them
+};
+
+/// The state of each of `count` shards, for schedulers that are asked for time and memory.
+std::vector<BatchShardState> batch_shard_states(const BatchPlan& plan, const std::filesystem::path& folder, int count);
+
 struct BatchVerification {
     std::size_t jobs = 0, files = 0;
     std::int64_t bytes = 0;
