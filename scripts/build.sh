@@ -136,5 +136,5 @@ build_app() {
     need_commands nodejs npm || die "could not install Node.js and npm"
     need_packages wasm "${wasm_packages[@]}"
     build_preset wasm
-    DOMELIGHT_WASM=$root/build/wasm/domelight.wasm "$root/web/build.sh" || build_failed "$root/build/web.log" "building the browser app"
+    DOMELIGHT_WASM=$root/build/wasm/domelight-files.wasm "$root/web/build.sh" || build_failed "$root/build/web.log" "building the browser app"
 }

@@ -2,6 +2,7 @@
 
 import fs from 'node:fs';
 import path from 'node:path';
+import {execFileSync} from 'node:child_process';
 import {openFile, setState} from './frames.mjs';
 
 const state = (page, key) => page.evaluate(key => domelight.store.state[key], key);
@@ -89,6 +90,45 @@ async function testBadFiles({open, claim, work}) {
     await page.close();
 }
 
+/// Compressed models, by decoders that the content security policy lets run.
+async function testModels({open, claim, server}) {
+    const page = await open('#panel=false', {viewport: {width: 320, height: 320}});
+    const colour = async (x, y) => {
+        await page.waitForFunction(() => domelight.ready, undefined, {timeout: 30_000});
+        return page.evaluate(([x, y]) => {
+            const {stage} = domelight, {width, height} = stage.panes[0], values = new Float32Array(4);
+            stage.renderer.readRenderTargetPixels(stage.panes[0].target, Math.round(x * width), Math.round(y * height), 1, 1, values);
+            return [...values];
+        }, [x, y]);
+    };
+    for (const [name, x, y, brightest] of [['draco.glb', 0.5, 0.5, 0], ['ktx2.glb', 0.35, 0.65, 0], ['ktx2.glb', 0.65, 0.65, 1], ['ktx2.glb', 0.5, 0.35, 2]]) {
+        await openFile(page, `${server.url}/models/${name}`, name);
+        const rgb = (await colour(x, y)).slice(0, 3), shown = await page.evaluate(() => domelight.app.model.name);
+        claim(`models: ${name} has its colour at ${x}, ${y}`, shown === name && rgb.every((v, k) => k === brightest || v < 0.8 * rgb[brightest]) ? [] : [`${shown}: ${rgb}`]);
+    }
+    claim('models: the console is silent', page.complaints);
+    await page.close();
+}
+
+/// One light in several projections has one mean.
+async function testProjections({open, claim, work, program}) {
+    const page = await open('#panel=false', {viewport: {width: 160, height: 120}}), run = (...args) => execFileSync(program, args.map(String), {stdio: ['ignore', 'pipe', 'pipe']});
+    const mean = () => page.evaluate(() => domelight.app.bake.sh[1]);
+    run('sky', '-o', path.join(work, 'projected.hdr'), '--height', 128, '--no-sun-disc', '--quiet');
+    await openFile(page, '/work/projected.hdr', 'projected.hdr');
+    const expected = await mean();
+    for (const [projection, word, ...more] of [['cube', 'auto', '--layout', 'cross'], ['angular', 'angular'], ['octahedral', 'octahedral']]) {
+        const name = `${projection}.hdr`;
+        run('convert', path.join(work, 'projected.hdr'), '-o', path.join(work, name), '--to', projection, '--size', projection === 'cube' ? 64 : 256, ...more, '--quiet');
+        await setState(page, {projection: word});
+        await openFile(page, `/work/${name}`, name);
+        const found = await mean(), shown = await page.evaluate(() => domelight.app.environmentName);
+        claim(`projections: ${projection} lights as the lat-long map does`, shown === name && Math.abs(found / expected - 1) < 0.02 ? [] : [`${shown}: ${found} for ${expected}`], `${(100 * (found / expected - 1)).toFixed(2)} %`);
+    }
+    claim('projections: the console is silent', page.complaints);
+    await page.close();
+}
+
 async function testLostContext({open, claim}) {
     const page = await open('#fullResolution=true', {viewport: {width: 400, height: 240}});
     const middle = () => page.evaluate(async () => {
@@ -163,7 +203,7 @@ async function testTab({open, claim}) {
 }
 
 export async function testInterface(app) {
-    for (const test of [testKeys, testAddress, testBadFiles, testLostContext, testPhone, testAccessibility, testTab]) {
+    for (const test of [testKeys, testAddress, testBadFiles, testModels, testProjections, testLostContext, testPhone, testAccessibility, testTab]) {
         const start = performance.now();
         try {
             await test(app);

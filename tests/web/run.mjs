@@ -22,11 +22,11 @@ const claims = new Claims(), {claim, skip} = claims;
 
 // What `domelight view` sends too: nothing but the app's own files may be loaded or run.
 const policy = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' blob: data:; " +
-               "connect-src 'self' blob:; worker-src 'self'; base-uri 'none'; form-action 'none'";
+               "connect-src 'self' blob:; worker-src 'self' blob:; base-uri 'none'; form-action 'none'";
 // A server without files on its command line: the page asks for its session.
 fs.mkdirSync(path.join(work, 'api'), {recursive: true});
 fs.writeFileSync(path.join(work, 'api/session'), JSON.stringify({scene: null, environment: [], truth: false}));
-const server = await serve({'/app/api/': path.join(work, 'api'), '/app/': path.join(root, 'build/web'), '/work/': work, '/data/': process.env.DOMELIGHT_DATA ?? work},
+const server = await serve({'/app/api/': path.join(work, 'api'), '/app/': path.join(root, 'build/web'), '/work/': work, '/models/': path.join(root, 'tests/web/models'), '/data/': process.env.DOMELIGHT_DATA ?? work},
                            {'Content-Security-Policy': policy});
 const browser = await launch(path.join(root, 'web/node_modules'), chromium);
 
@@ -35,7 +35,7 @@ function watch(page) {
     page.complaints = [];
     const complain = text => page.complaints.length < 5 && !page.complaints.includes(text) && page.complaints.push(text.slice(0, 2000));
     page.on('console', message => ['error', 'warning'].includes(message.type()) && complain(message.text()));
-    page.on('pageerror', error => complain(String(error)));
+    page.on('pageerror', error => complain(error.stack ?? String(error)));
     return page;
 }
 

@@ -17,7 +17,7 @@ skip() {
 
 need_commands "${web_packages[@]}" || skip "no ${web_packages[*]} to be had"
 
-export DOMELIGHT_WASM=${DOMELIGHT_WASM:-$root/build/wasm/domelight.wasm}
+export DOMELIGHT_WASM=${DOMELIGHT_WASM:-$root/build/wasm/domelight-files.wasm}
 [ -f "$DOMELIGHT_WASM" ] || skip "the WebAssembly module has not been built ($DOMELIGHT_WASM)"
 "$root/web/build.sh" || skip "it cannot be built ($(tail -n 1 "$root/build/web.log"))"
 [ "${DOMELIGHT_BROWSER_ENGINES:-}" != all ] || set -- --all "$@"

@@ -1,7 +1,9 @@
 // What the page does: opens files, has them filtered, and draws until the picture is done.
 
-import {Baker} from './bake/baker';
+import type {Baker} from './bake/baker';
+import {brdfTable} from './bake/brdf_table';
 import type {Bake, BrdfTable} from './bake/types';
+import {endsIn, modelEndings} from './endings';
 import {Jobs, type JobEvents} from './jobs';
 import {builtIn, fromFile, fromServed, type LightSource} from './light_source';
 import {readPane} from './render/read_back';
@@ -13,13 +15,9 @@ import {loadModel} from './scene/load_model';
 import {fetchFile, type Session} from './served';
 import {Store, type Mode, type State} from './state';
 
-const isModel = (name: string) => /\.(glb|gltf)$/i.test(name);
-const isGltf = (name: string) => /\.gltf$/i.test(name);
-const isEnvironment = (name: string) => /\.(hdr|exr|env|dds|ktx2?|jpe?g)$/i.test(name);
 /// Frames that are averaged until nothing would be seen to change.
 const k_frames = 64;
 const k_noisy_frames = 4096;
-const k_brdf_size = 128;
 /// Until it is asked again whether the graphics card has done its work.
 const k_pause_ms = 4;
 
@@ -29,7 +27,6 @@ export interface Events extends JobEvents {
 }
 
 export class App {
-    readonly baker = new Baker();
     readonly stage: Stage;
     model!: Model;
     environmentName = '';
@@ -44,6 +41,7 @@ export class App {
     private source: LightSource;
     private light = 0;
     private readonly resolution = new Resolution();
+    private drawnScale = 1;
     private screen = {width: 1, height: 1, inset: {right: 0, bottom: 0}};
     private scheduled = false;
     private readonly openedListeners: (() => void)[] = [];
@@ -54,6 +52,7 @@ export class App {
         canvas: HTMLCanvasElement,
         readonly store: Store,
         readonly events: Events,
+        readonly baker: Baker,
         /// What `domelight view` serves; null on a static host.
         readonly served: Session | null = null,
     ) {
@@ -106,22 +105,22 @@ export class App {
 
     async start(): Promise<void> {
         this.showModel((builtInModels[this.state.model] ?? builtInModels.spheres!)(), this.state.eye.some(v => v !== 0));
-        const {served} = this, table = this.work('computing the BRDF table', async () => this.stage.setBrdf((this.brdf = await this.baker.brdf(k_brdf_size))));
+        const {served} = this, table = this.work('fetching the BRDF table', async () => this.stage.setBrdf((this.brdf = await brdfTable())));
         if (served?.environment[0]) this.source = fromServed(served.environment[0]);
         if (!(await this.relight()) && served?.environment[0]) {
             this.source = builtIn(this.state.environment);
             await this.relight();
         }
         const {scene} = served ?? {};
-        if (scene) await this.work(`reading ${scene.name}`, async () => this.showModel(await loadModel(scene.name, await (await fetchFile(scene)).arrayBuffer(), new Map(), scene.url.replace(/[^/]*$/, ''))));
+        if (scene) await this.work(`reading ${scene.name}`, async () => this.showModel(await loadModel(this.stage.renderer, scene.name, await (await fetchFile(scene)).arrayBuffer(), new Map(), scene.url.replace(/[^/]*$/, ''))));
         await table;
     }
 
     /// Opens whatever was dropped or chosen: models, environments, or both. With a .gltf, pictures are its textures.
     async openFiles(files: Iterable<File>): Promise<void> {
-        const all = [...files], siblings = new Map(all.map(file => [file.name, file])), withGltf = all.some(file => isGltf(file.name));
-        const environments = all.filter(({name}) => !isModel(name) && (withGltf ? /\.(hdr|exr)$/i.test(name) : true));
-        for (const file of all.filter(({name}) => isModel(name))) await this.work(`reading ${file.name}`, async () => this.showModel(await loadModel(file.name, await file.arrayBuffer(), siblings)));
+        const all = [...files], siblings = new Map(all.map(file => [file.name, file])), withGltf = all.some(file => endsIn(file.name, ['.gltf'])), isModel = (name: string) => endsIn(name, modelEndings);
+        const environments = all.filter(({name}) => !isModel(name) && (!withGltf || endsIn(name, ['.hdr', '.exr'])));
+        for (const file of all.filter(({name}) => isModel(name))) await this.work(`reading ${file.name}`, async () => this.showModel(await loadModel(this.stage.renderer, file.name, await file.arrayBuffer(), siblings)));
         for (const file of environments) await this.openEnvironment(file);
     }
     private async openEnvironment(file: File): Promise<void> {
@@ -129,7 +128,6 @@ export class App {
         this.source = fromFile(file);
         if (await this.relight(`reading ${file.name}`)) this.store.set({furnace: false});
         else this.source = before;
-        if (!isEnvironment(file.name) && this.source !== before) this.opened();
     }
     /// A picture of the truth, to compare with.
     openPicture(file: File): Promise<boolean> {
@@ -160,9 +158,15 @@ export class App {
     /// width, height: of the screen, in its own pixels. inset: what of them the panel covers.
     resize(width: number, height: number, inset: {right: number; bottom: number}): void {
         this.screen = {width, height, inset};
-        const scale = this.reduced, scaled = (v: number) => Math.max(1, Math.round(v * scale));
+        const scale = (this.drawnScale = this.reduced), scaled = (v: number) => Math.max(1, Math.round(v * scale));
         this.stage.resize(scaled(width), scaled(height), {right: inset.right * scale, bottom: inset.bottom * scale});
         this.redraw();
+    }
+    /// Draws as many pixels as are right now. Whether that has changed.
+    private follow(): boolean {
+        const {width, height, inset} = this.screen, changed = this.drawnScale !== this.reduced;
+        if (changed) this.resize(width, height, inset);
+        return changed;
     }
     redraw(): void {
         if (!this.scheduled) requestAnimationFrame(() => this.frame());
@@ -172,7 +176,8 @@ export class App {
     /// Reads and filters the environment that is chosen now. Whether that went well.
     private relight(what = 'filtering the environment'): Promise<boolean> {
         return this.work(what, async () => {
-            const info = await (this.state.furnace ? builtIn('furnace') : this.source)(this.baker);
+            const info = await (this.state.furnace ? builtIn('furnace') : this.source)(this.baker, this.state.projection);
+            for (const warning of info.warnings) this.events.failed(`${info.name}: ${warning}`);
             const [bake, map] = await Promise.all([this.baker.bake(this.state.size), this.stage.upload(info)]);
             ++this.light;
             this.needed = {phong: false, rows: 0};
@@ -210,14 +215,16 @@ export class App {
 
     private react(changed: Set<keyof State>): void {
         const {state} = this, make = builtInModels[state.model];
-        if (changed.has('fullResolution')) this.resize(this.screen.width, this.screen.height, this.screen.inset);
         if (changed.has('model') && make && state.model !== this.model.name) this.showModel(make());
         if (changed.has('environment') && state.environment !== this.environmentName) this.source = builtIn(state.environment);
-        if (changed.has('environment') || changed.has('furnace') || changed.has('size')) void this.relight();
+        if (changed.has('environment') || changed.has('furnace') || changed.has('size') || changed.has('projection')) void this.relight();
         else if (this.bake && this.lacking) void this.work('filtering the environment', () => this.provide());
         const onlyShown = new Set<keyof State>(['exposure', 'tonemap', 'divider', 'panel', 'view', 'other']);
-        if ([...changed].some(key => !onlyShown.has(key))) this.stage.restart();
-        else if (changed.has('other')) this.stage.panes[1].count = 0;
+        if ([...changed].some(key => !onlyShown.has(key))) {
+            this.stage.restart();
+            this.resolution.move(performance.now());
+            this.follow();
+        } else if (changed.has('other')) this.stage.panes[1].count = 0;
         this.redraw();
     }
 
@@ -250,8 +257,8 @@ export class App {
         this.events.drawn();
         stage.show(state);
         this.waiting = this.waiting.filter(({frames, index, resolve}) => stage.panes[index]!.count !== frames || void resolve(readPane(stage, index)));
-        if (!unfinished) return this.resolution.pause();
-        if (this.resolution.frame(performance.now(), state.fullResolution)) this.resize(this.screen.width, this.screen.height, this.screen.inset);
-        this.redraw();
+        if (unfinished) this.resolution.frame(performance.now(), this.drawnScale);
+        else this.resolution.pause();
+        if (this.follow() || unfinished) this.redraw();
     }
 }

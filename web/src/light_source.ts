@@ -7,9 +7,9 @@ import {studio, sunset, whiteFurnace} from './scene/environments';
 
 export const builtInEnvironments: Record<string, () => Latlong> = {studio, sunset, furnace: whiteFurnace};
 
-/// Where an environment comes from, so that it can be opened again after the white furnace.
-export type LightSource = (baker: Baker) => Promise<EnvironmentInfo>;
+/// Where an environment comes from, so that it can be opened again after the white furnace. projection: of files that do not say theirs.
+export type LightSource = (baker: Baker, projection: string) => Promise<EnvironmentInfo>;
 
 export const builtIn = (name: string): LightSource => baker => baker.use(name, (builtInEnvironments[name] ?? studio)());
-export const fromFile = (file: File): LightSource => async baker => baker.open(file.name, await file.arrayBuffer());
-export const fromServed = (named: NamedFile): LightSource => async baker => fromFile(await fetchFile(named))(baker);
+export const fromFile = (file: File): LightSource => async (baker, projection) => baker.open(file.name, await file.arrayBuffer(), projection === 'auto' ? '' : projection);
+export const fromServed = (named: NamedFile): LightSource => async (baker, projection) => fromFile(await fetchFile(named))(baker, projection);

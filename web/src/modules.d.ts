@@ -1,4 +1,13 @@
+// Files that vite.config.ts names.
 declare module 'domelight.wasm?url' {
+    const url: string;
+    export default url;
+}
+declare module 'brdf_table.bin?url' {
+    const url: string;
+    export default url;
+}
+declare module 'basis_transcoder.js?url' {
     const url: string;
     export default url;
 }

@@ -7,6 +7,8 @@ export const others = [...modes, 'picture', 'truth'] as const;
 export type Other = (typeof others)[number];
 export const tonemaps = ['none', 'reinhard', 'aces', 'agx', 'neutral'] as const;
 export const lookups = ['environment', 'cube', 'latlong', 'sphere-map', 'dual-paraboloid'] as const;
+/// What an environment file is, where it does not say it: words of the library.
+export const projections = ['auto', 'latlong', 'cube', 'cube-cross', 'cube-strip', 'sphere-map', 'mirror-ball', 'angular', 'dual-paraboloid', 'octahedral', 'equal-area-octahedral'] as const;
 export const backgrounds = ['environment', 'blurred', 'colour'] as const;
 export const views = ['one', 'split', 'difference', 'flip'] as const;
 export const strategies = ['mis', 'env', 'brdf'] as const;
@@ -20,6 +22,7 @@ export interface State {
     divider: number;
     model: string;
     environment: string;
+    projection: (typeof projections)[number];
     exposure: number;
     tonemap: (typeof tonemaps)[number];
     background: (typeof backgrounds)[number];
@@ -63,7 +66,7 @@ export interface State {
 
 export const defaults: State = {
     mode: 'split-sum', other: 'monte-carlo', view: 'one', divider: 0.5,
-    model: 'spheres', environment: 'studio',
+    model: 'spheres', environment: 'studio', projection: 'auto',
     exposure: 0, tonemap: 'agx', background: 'environment', blur: 0.35, turn: 0, size: 256,
     multipleScattering: false, irradiance: 'cube', occlusion: true, bentLookup: false, diffuseWeight: 'energy',
     lookup: 'environment', ior: 1.5, iorOutside: 1, iorOverride: false,
@@ -75,7 +78,7 @@ export const defaults: State = {
 /// Of values that are words, those that there are.
 export type Words<T> = Partial<Record<keyof T, readonly string[]>>;
 const accepted: Words<State> = {
-    mode: modes, other: others, view: views, tonemap: tonemaps, background: backgrounds, lookup: lookups, strategy: strategies,
+    mode: modes, other: others, view: views, tonemap: tonemaps, background: backgrounds, lookup: lookups, strategy: strategies, projection: projections,
     tables, irradiance: ['cube', 'sh'], diffuseWeight: ['energy', 'fresnel'],
 };
 

@@ -1,6 +1,7 @@
 // What all pages that teach have in common: the frame of the page, the environment, the values of the sliders, and when the figures are drawn.
 
 import {builtIn, fromFile, type LightSource} from '../../src/light_source';
+import {environmentEndings} from '../../src/endings';
 import {readHash, Values, writeHash, type Words} from '../../src/state';
 import {button, element, SelectControl} from '../../src/ui/controls';
 import {bindDrops, chooser} from '../../src/ui/files';
@@ -132,7 +133,7 @@ export class Lesson<T extends Choices> {
         const main = document.querySelector('main')!;
         const pages = element('nav', {ariaLabel: 'Pages that teach'}, element('a', {href: '../../index.html'}, 'Domelight'), element('a', {href: '../index.html'}, 'All pages'));
         document.body.prepend(element('header', {}, pages));
-        const choose = chooser('Your environment', '.hdr,.exr', ([file]) => file && void this.openFile(file));
+        const choose = chooser('Your environment', environmentEndings, ([file]) => file && void this.openFile(file));
         this.select = new SelectControl(this.values as never, 'environment', 'Environment', computed) as never;
         const open = button('Open a file…', choose, 'A lat-long map, .hdr or .exr. It stays on this machine.');
         main.querySelector('.lead')!.after(element('section', {id: 'light', ariaLabel: 'Environment'}, this.select, open, this.note));

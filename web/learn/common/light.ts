@@ -28,7 +28,7 @@ export class Light {
 
     /// Opens an environment. The worker keeps the map of at most k_rows rows too, so that its integrals are those of what the shaders read.
     async open(source: LightSource): Promise<void> {
-        const info = await source(this.baker), tables = await this.baker.tables(k_rows);
+        const info = await source(this.baker, 'auto'), tables = await this.baker.tables(k_rows);
         if (info.height > k_rows) await this.baker.use(info.name, rgbOf(tables));
         this.name = info.name;
         this.readHeight = info.height;

@@ -2,6 +2,7 @@
 
 import * as THREE from 'three';
 import generic from '../../../docs/shaders/generic.glsl?raw';
+import {brdfTable} from '../../src/bake/brdf_table';
 import {brdfTexture, chainTexture, cubeTexture} from '../../src/render/maps';
 import {Pane} from '../../src/render/pane';
 import {floatTarget, Pass} from '../../src/render/passes';
@@ -19,7 +20,7 @@ import table from './table.glsl?raw';
 
 const usual = {environment: 'studio', roughness: 0.4, NdotV: 0.2, around: 75, count: 64};
 const lesson = new Lesson('split-sum', usual), {light, painter, values, numbers} = lesson;
-const k_size = 220, k_table = 64, k_frames = 32, k_samples = 8;
+const k_size = 220, k_table = 128, k_frames = 32, k_samples = 8;
 
 const shared = ballUniforms(), show = showPass(light), bySplit = floatTarget(k_size, k_size), pane = new Pane(painter.renderer);
 const split = ballPass(light, {
@@ -57,7 +58,7 @@ lesson.onLight(async () => {
     u.u_irradiance!.value = cubeTexture([bake.irradiance]);
     u.u_last_level!.value = bake.specular.levels.length - 1;
     if (exactTable) return;
-    const brdf = await light.baker.brdf(k_table);
+    const brdf = await brdfTable();
     u.u_brdf!.value = brdfTexture(brdf);
     exactTable = Float32Array.from(brdf.texels, THREE.DataUtils.fromHalfFloat);
 });

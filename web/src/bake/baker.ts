@@ -1,6 +1,6 @@
 // The page's side of the worker: promises in place of messages.
 
-import type {Bake, BrdfTable, Chain, EnvironmentInfo, Latlong, Lobe, Replies, Request, Survey, Tables} from './types';
+import type {Bake, Chain, EnvironmentInfo, Latlong, Lobe, Replies, Request, Survey, Tables} from './types';
 
 type Waiting = {resolve: (reply: never) => void; reject: (error: Error) => void};
 
@@ -14,8 +14,9 @@ export class Baker {
     }
 
     /// Reads the bytes of a file, which are handed over. Rejects with a sentence that says what is wrong with them.
-    open(name: string, bytes: ArrayBuffer): Promise<EnvironmentInfo> {
-        return this.ask({kind: 'open', name, bytes}, [bytes]);
+    /// projection: what the file is, where it does not say it; empty: what it says or shows.
+    open(name: string, bytes: ArrayBuffer, projection = ''): Promise<EnvironmentInfo> {
+        return this.ask({kind: 'open', name, bytes, projection}, [bytes]);
     }
     /// Takes an environment that the page has computed.
     use(name: string, latlong: Latlong): Promise<EnvironmentInfo> {
@@ -27,9 +28,6 @@ export class Baker {
     }
     phong(size: number): Promise<Chain> {
         return this.ask({kind: 'phong', size});
-    }
-    brdf(size: number): Promise<BrdfTable> {
-        return this.ask({kind: 'brdf', size});
     }
 
     /// What shaders draw light directions with. rows: at most, of the map.

@@ -1,7 +1,7 @@
 // The WebAssembly module by its C interface (include/domelight/domelight_c.h): the few calls that the app makes. Structs are written
 // as a 32-bit machine lays them out.
 
-import type {BrdfTable, Chain, CubeLevel, Latlong, Lobe} from './types';
+import type {Chain, CubeLevel, Latlong, Lobe} from './types';
 
 type Call = (...args: number[]) => number;
 
@@ -19,13 +19,16 @@ export class ModuleError extends Error {}
 const k_pixels_bytes = 32;
 const k_level_bytes = 32;
 const k_options_bytes = 64;
+const k_info_bytes = 104;
+const k_environment_options_bytes = 72;
 
 export class Module {
     private constructor(private readonly exports: Exports) {}
 
     static async load(source: Response | Promise<Response>): Promise<Module> {
+        // The module has no files: 8 is WASI's "bad descriptor".
         const imports = {
-            wasi_snapshot_preview1: new Proxy({}, {get: (_, name) => (name === 'proc_exit' ? exit : () => 0)}),
+            wasi_snapshot_preview1: new Proxy({}, {get: (_, name) => (name === 'proc_exit' ? exit : () => 8)}),
         };
         const {instance} = await WebAssembly.instantiateStreaming(source, imports);
         const exports = instance.exports as unknown as Exports;
@@ -41,9 +44,17 @@ export class Module {
             return new Environment(this, this.words(handle)[0]!);
         });
     }
-    /// The same pixels as RGBA half floats.
-    halfFloats(latlong: Latlong): Uint16Array {
-        return this.withPixels(latlong, pixels => this.encode(pixels).texels);
+    /// The environment of a file of any format and projection that the library reads. projection: empty where the file says it. `close` it.
+    open(name: string, bytes: ArrayBuffer, projection: string): Environment {
+        return this.scope(scope => {
+            const data = scope.bytes(bytes.byteLength), handle = scope.bytes(4), options = scope.bytes(k_environment_options_bytes);
+            new Uint8Array(this.exports.memory.buffer, data, bytes.byteLength).set(new Uint8Array(bytes));
+            const called = scope.string(name), word = scope.string(projection || 'auto');
+            this.call('domelight_environment_options_init_sized', options, k_environment_options_bytes);
+            this.words(options)[1] = word;
+            this.check(this.call('domelight_environment_open_memory', data, bytes.byteLength, called, options, handle));
+            return new Environment(this, this.words(handle)[0]!);
+        });
     }
     private withPixels<T>(latlong: Latlong, work: (pixels: number, scope: Scope) => T): T {
         return this.scope(scope => {
@@ -53,19 +64,6 @@ export class Module {
             this.floats(data, latlong.pixels.length).set(latlong.pixels);
             this.words(pixels).set([data, latlong.width, latlong.height], 1);
             return work(pixels, scope);
-        });
-    }
-
-    brdfTable(size: number): BrdfTable {
-        return this.scope(scope => {
-            const image = scope.bytes(4);
-            this.check(this.call('domelight_brdf_table', size, 0, 1, image));
-            const pixels = scope.bytes(k_pixels_bytes);
-            this.call('domelight_pixels_init_sized', pixels, k_pixels_bytes);
-            this.check(this.call('domelight_image_pixels', this.words(image)[0]!, pixels));
-            const {texels} = this.encode(pixels);
-            this.call('domelight_image_free', this.words(image)[0]!);
-            return {size, texels};
         });
     }
 
@@ -116,7 +114,7 @@ export class Module {
         if (error === 0) return;
         const text = this.text(this.call('domelight_error_text', error));
         this.call('domelight_error_free', error);
-        throw new ModuleError(text);
+        throw new ModuleError(/[.!?]$/.test(text) ? text : `${text}.`);
     }
     text(pointer: number): string {
         const bytes = new Uint8Array(this.exports.memory.buffer, pointer);
@@ -160,6 +158,14 @@ class Scope {
     }
 }
 
+export interface EnvironmentFacts {
+    format: string;
+    projection: string;
+    /// Of the lat-long map that holds as much.
+    latlongHeight: number;
+    /// 3 x 3 by rows: the light from direction d of the world is where the map has the direction worldToSource d.
+    worldToSource: number[];
+}
 export interface Filtered {
     chain: Chain;
     /// The cosine integral E.
@@ -179,8 +185,42 @@ export class Environment {
         this.module.call('domelight_environment_free', this.handle);
     }
 
-    /// A chain of cubes, in texels that are made to be interpolated; with irradianceSize also the irradiance and nine harmonics.
-    prefilter(lobe: Chain['lobe'], sizes: number[], parameters: number[], irradianceSize: number): Filtered {
+    get info(): EnvironmentFacts {
+        const m = this.module;
+        return m.scope(scope => {
+            const info = scope.bytes(k_info_bytes);
+            m.words(info)[0] = k_info_bytes;
+            m.check(m.call('domelight_environment_get_info', this.handle, info));
+            const [, format, projection, , , , , latlongHeight] = m.words(info);
+            return {format: m.text(format!), projection: m.text(projection!), latlongHeight: latlongHeight!, worldToSource: [...m.doubles(info + 32, 9)]};
+        });
+    }
+    /// What was repaired, and what the file leaves open.
+    get warnings(): string[] {
+        const m = this.module, count = m.call('domelight_environment_warning_count', this.handle);
+        return Array.from({length: count}, (_, k) => m.text(m.call('domelight_environment_warning', this.handle, k)));
+    }
+    /// The lat-long map in its own frame.
+    latlong(): Latlong {
+        const m = this.module;
+        return m.scope(scope => {
+            const image = scope.bytes(4), pixels = scope.bytes(k_pixels_bytes);
+            m.check(m.call('domelight_environment_latlong', this.handle, image));
+            m.call('domelight_pixels_init_sized', pixels, k_pixels_bytes);
+            const made = m.words(image)[0]!;
+            m.check(m.call('domelight_image_pixels', made, pixels));
+            const [, data, width, height] = m.words(pixels), copy = m.floats(data!, 3 * width! * height!).slice();
+            m.call('domelight_image_free', made);
+            return {width: width!, height: height!, pixels: copy};
+        });
+    }
+    /// The light itself as a cube, six faces of half floats.
+    cube(size: number): CubeLevel {
+        return this.prefilter('ggx', [size], [0], 0, 'centre').chain.levels[0]!;
+    }
+
+    /// A chain of cubes; with irradianceSize also the irradiance and nine harmonics. texels: made to be interpolated, or the light at their centres.
+    prefilter(lobe: Chain['lobe'], sizes: number[], parameters: number[], irradianceSize: number, texels: 'read' | 'centre' = 'read'): Filtered {
         const m = this.module;
         return m.scope(scope => {
             const levels = scope.bytes(k_level_bytes * sizes.length);
@@ -194,7 +234,7 @@ export class Environment {
             });
             const options = scope.bytes(k_options_bytes);
             m.call('domelight_prefilter_options_init_sized', options, 52);
-            const read = scope.string('read');  // first: memory that grows leaves earlier views behind
+            const read = scope.string(texels);  // first: memory that grows leaves earlier views behind
             m.words(options)[2] = read;
             m.words(options).set([levels, sizes.length], 3);
             m.words(options).set([irradianceSize, irradianceSize > 0 ? 3 : 0, 1], 8);

@@ -82,11 +82,10 @@ export const k_bins_per_ev = 3;
 
 /// A request to the worker. Each has a number that its reply carries.
 export type Request =
-    | {kind: 'open'; name: string; bytes: ArrayBuffer}
+    | {kind: 'open'; name: string; bytes: ArrayBuffer; projection: string}
     | {kind: 'use'; name: string; latlong: Latlong}
     | {kind: 'bake'; size: number}
     | {kind: 'phong'; size: number}
-    | {kind: 'brdf'; size: number}
     | {kind: 'tables'; rows: number}
     | {kind: 'survey'; rows: number}
     | {kind: 'samples'; count: number}
@@ -98,7 +97,6 @@ export interface Replies {
     use: EnvironmentInfo;
     bake: Bake;
     phong: Chain;
-    brdf: BrdfTable;
     tables: Tables;
     survey: Survey;
     /// Pairs u, v.

@@ -2,7 +2,8 @@
 
 import {levelExponent, levelRoughness, sizesDownTo} from './chain';
 import {Module, type Environment} from './module';
-import {readLatlong, readPicture} from './read_environment';
+import {asLatlong, halfFloats} from './latlong';
+import {readPicture} from './read_picture';
 import {drawSamples, makeTables, reduce, survey} from './tables';
 import type {Bake, EnvironmentInfo, Latlong, Replies, Request} from './types';
 import moduleUrl from 'domelight.wasm?url';
@@ -14,13 +15,21 @@ let pixels: Latlong | undefined;
 /// Larger textures are refused by many graphics cards.
 const k_most_width = 8192;
 
-function use(name: string, format: string, latlong: Latlong, loaded: Module, start: number): EnvironmentInfo {
-    const made = loaded.environment(latlong);
+function keep(name: string, format: string, made: Environment, latlong: Latlong, start: number): EnvironmentInfo {
     environment?.close();
     environment = made;
     pixels = latlong;
     const shown = latlong.width > k_most_width ? reduce(latlong, k_most_width / 2) : latlong;
-    return {name, format, width: shown.width, height: shown.height, texels: loaded.halfFloats(shown), warnings: [], milliseconds: performance.now() - start};
+    return {name, format, width: shown.width, height: shown.height, texels: halfFloats(shown), warnings: made.warnings, milliseconds: performance.now() - start};
+}
+function open(name: string, bytes: ArrayBuffer, projection: string, loaded: Module, start: number): EnvironmentInfo {
+    const made = loaded.open(name, bytes, projection);
+    try {
+        return keep(name, made.info.format, made, asLatlong(made), start);
+    } catch (error) {
+        if (made !== environment) made.close();
+        throw error;
+    }
 }
 
 function opened(): Environment {
@@ -50,20 +59,16 @@ async function answer(request: Request): Promise<Replies[Request['kind']]> {
     const start = performance.now();
     const loaded = await module;
     switch (request.kind) {
-        case 'open': {
-            const {format, latlong} = readLatlong(request.name, request.bytes);
-            return use(request.name, format, latlong, loaded, start);
-        }
+        case 'open':
+            return open(request.name, request.bytes, request.projection, loaded, start);
         case 'use':
-            return use(request.name, 'computed in the page', request.latlong, loaded, start);
+            return keep(request.name, 'computed in the page', loaded.environment(request.latlong), request.latlong, start);
         case 'bake':
             return bake(request.size);
         case 'phong': {
             const sizes = sizesDownTo(request.size, 8);
             return opened().prefilter('phong', sizes, sizes.map((_, l) => levelExponent(l)), 0).chain;
         }
-        case 'brdf':
-            return loaded.brdfTable(request.size);
         case 'tables':
             return makeTables(source(), request.rows);
         case 'survey':
@@ -73,7 +78,7 @@ async function answer(request: Request): Promise<Replies[Request['kind']]> {
         case 'filtered':
             return opened().inDirections(request.lobe, request.parameter, request.directions);
         case 'picture':
-            return readPicture(request.name, request.bytes).latlong;
+            return readPicture(request.name, request.bytes);
     }
 }
 

@@ -98,7 +98,7 @@ function surfaceOf(mesh: THREE.Mesh, source: THREE.MeshStandardMaterial): Surfac
     if (has('uv1')) defines.HAS_UV1 = '';
     if (has('tangent')) defines.HAS_TANGENT = '';
     if (has('color') && source.vertexColors) defines.HAS_COLOR = '';
-    if (!has('normal')) mesh.geometry.computeVertexNormals();
+    if (!has('normal')) flatten(mesh);
     const map = (name: string, texture: THREE.Texture | null | undefined) => {
         if (!texture || !has(texture.channel === 1 ? 'uv1' : 'uv')) return;
         texture.updateMatrix();
@@ -112,6 +112,12 @@ function surfaceOf(mesh: THREE.Mesh, source: THREE.MeshStandardMaterial): Surfac
     map('occlusion_map', source.aoMap);
     map('emission_map', source.emissiveMap);
     return {uniforms, defines};
+}
+
+/// glTF 2.0, 3.7.2.1: without normals, each triangle has its own.
+function flatten(mesh: THREE.Mesh): void {
+    if (mesh.geometry.index) mesh.geometry = mesh.geometry.toNonIndexed();
+    mesh.geometry.computeVertexNormals();
 }
 
 function emissionOf(source: THREE.MeshStandardMaterial): THREE.Vector3 {

@@ -1,12 +1,14 @@
 // Models from .glb and .gltf files, by three.js's loader.
 
 import * as THREE from 'three';
+import type {DRACOLoader} from 'three/addons/loaders/DRACOLoader.js';
 import type {GLTF} from 'three/addons/loaders/GLTFLoader.js';
+import type {KTX2Loader} from 'three/addons/loaders/KTX2Loader.js';
 import type {Model} from './built_in';
 
 /// Reads a model. `siblings`: files that were dropped with it, by name, which a .gltf refers to.
-/// base: the address of its folder, where it was not dropped. Throws an Error with a sentence.
-export async function loadModel(name: string, bytes: ArrayBuffer, siblings: Map<string, File> = new Map(), base = ''): Promise<Model> {
+/// base: the address of its folder, where it was not dropped. renderer: compressed textures become what it can show. Throws an Error with a sentence.
+export async function loadModel(renderer: THREE.WebGLRenderer, name: string, bytes: ArrayBuffer, siblings: Map<string, File> = new Map(), base = ''): Promise<Model> {
     const {GLTFLoader} = await import('three/addons/loaders/GLTFLoader.js');
     const {MeshoptDecoder} = await import('three/addons/libs/meshopt_decoder.module.js');
     const manager = new THREE.LoadingManager();
@@ -17,7 +19,9 @@ export async function loadModel(name: string, bytes: ArrayBuffer, siblings: Map<
         urls.push(URL.createObjectURL(file));
         return urls.at(-1)!;
     });
-    const loader = new GLTFLoader(manager).setMeshoptDecoder(MeshoptDecoder);
+    const loader = new GLTFLoader(manager).setMeshoptDecoder(MeshoptDecoder), decoders = await decodersFor(bytes, manager, renderer);
+    if (decoders.draco) loader.setDRACOLoader(decoders.draco);
+    if (decoders.ktx2) loader.setKTX2Loader(decoders.ktx2);
     let gltf: GLTF;
     try {
         gltf = await loader.parseAsync(bytes, base);
@@ -25,11 +29,34 @@ export async function loadModel(name: string, bytes: ArrayBuffer, siblings: Map<
         throw new Error(`${name}: the model cannot be read (${sentence(error)}).`);
     } finally {
         urls.forEach(URL.revokeObjectURL);
+        decoders.draco?.dispose();
+        decoders.ktx2?.dispose();
     }
     if (!gltf.scene || !hasSurface(gltf.scene)) throw new Error(`${name}: the model has no surface to be lit.`);
     freeze(gltf.scene);
     gltf.scene.traverse(object => (object.userData.sourceMaterial = (object as THREE.Mesh).material));
     return {name, root: gltf.scene, variants: variantsOf(gltf), useVariant: index => useVariant(gltf, index)};
+}
+
+interface Decoders {
+    draco?: DRACOLoader;
+    ktx2?: KTX2Loader;
+}
+
+/// Draco's and Basis Universal's decoders are large, and fetched for the models that need them.
+async function decodersFor(bytes: ArrayBuffer, manager: THREE.LoadingManager, renderer: THREE.WebGLRenderer): Promise<Decoders> {
+    const glb = new DataView(bytes), isGlb = bytes.byteLength >= 20 && glb.getUint32(0, true) === 0x46546c67;
+    const text = new TextDecoder().decode(isGlb ? new Uint8Array(bytes, 20, Math.min(glb.getUint32(12, true), bytes.byteLength - 20)) : bytes), made: Decoders = {};
+    if (text.includes('KHR_draco_mesh_compression')) {
+        const [{DRACOLoader}, {default: js}, {default: wasm}] = await Promise.all([import('three/addons/loaders/DRACOLoader.js'),
+            import('three/examples/jsm/libs/draco/gltf/draco_wasm_wrapper.js?url'), import('three/examples/jsm/libs/draco/gltf/draco_decoder.wasm?url')]);
+        made.draco = new DRACOLoader(manager).setDecoderPath({js, wasm} as never).setWorkerLimit(2);
+    }
+    if (text.includes('KHR_texture_basisu')) {
+        const {KTX2Loader} = await import('three/addons/loaders/KTX2Loader.js');
+        made.ktx2 = new KTX2Loader(manager).setWorkerLimit(2).detectSupport(renderer);
+    }
+    return made;
 }
 
 const sentence = (error: unknown) => String((error as Error).message ?? error).replace(/^THREE\.\w+: /, '').replace(/\.$/, '');

@@ -41,9 +41,9 @@ export class CompareSection {
         const count = this.app.least, key = `${Math.floor(Math.log2(Math.max(1, count)) / 2)} ${state.view} ${stage.pictures}`;
         if (count < 1 || key === this.done) return;
         this.done = key;
-        const {width, height} = stage.panes[0];
-        this.size = [width, height];
         void this.comparer.ask(async () => {
+            const {width, height} = stage.panes[0];
+            this.size = [width, height];
             const [test, reference, objects] = await Promise.all([this.inspector.displayed(state, 0), this.inspector.displayed(state, 1), this.inspector.objects()]);
             return {width, height, test, reference, objects, map: state.view === 'difference' ? 'difference' : 'flip'};
         });

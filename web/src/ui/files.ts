@@ -3,8 +3,8 @@
 import {element} from './controls';
 
 /// A hidden input of files; the function that opens its dialog.
-export function chooser(label: string, accept: string, chosen: (files: File[]) => void): () => void {
-    const input = element('input', {type: 'file', multiple: true, accept, hidden: true, ariaLabel: label});
+export function chooser(label: string, endings: string[], chosen: (files: File[]) => void): () => void {
+    const input = element('input', {type: 'file', multiple: true, accept: endings.join(), hidden: true, ariaLabel: label});
     input.addEventListener('change', () => {
         chosen([...(input.files ?? [])]);
         input.value = '';

@@ -97,7 +97,7 @@ export function helpDialog(keys: ReturnType<typeof keyTable>): HTMLDialogElement
     for (const {shown, what} of keys)
         if (what) line(shown.flatMap(key => (key === '…' ? [' … '] : [element('kbd', {}, key), ' '])), what);
     const dialog = element('dialog', {ariaLabel: 'Help'}, element('h2', {}, 'Domelight'),
-        element('p', {}, 'See a model lit by a photograph, by every method of image-based lighting, and the error of each. Drop an environment (.hdr, .exr) and a model ' +
+        element('p', {}, 'See a model lit by a photograph, by every method of image-based lighting, and the error of each. Drop an environment and a model ' +
                          '(.glb, .gltf with its files) anywhere. Everything is computed in this page: nothing is uploaded.'),
         element('p', {}, 'How it works: ', element('a', {href: 'learn/index.html'}, 'short interactive pages'), ', each with its equation and its code.'),
         list, element('form', {method: 'dialog'}, element('button', {autofocus: true}, 'Close')));

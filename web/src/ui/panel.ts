@@ -1,7 +1,7 @@
 // The panel's sections: what is shown, how it is lit, and how that is computed.
 
 import type {App} from '../app';
-import {defaults, tonemaps, type Mode, type State} from '../state';
+import {defaults, projections, tonemaps, type Mode, type State} from '../state';
 import {CheckControl, ChoiceControl, ColourControl, element, onlyWhere, RangeControl, SelectControl} from './controls';
 import {environmentNames, fixed, modeNotes, signed, tonemapNames} from './labels';
 
@@ -29,7 +29,8 @@ export function sceneSection(app: App): HTMLElement {
         variants.hidden = app.model.variants.length === 0;
         variant.replaceChildren(element('option', {value: ''}, 'as in the file'), ...app.model.variants.map((name, k) => element('option', {value: `${k}`}, name)));
     });
-    return section('Scene', true, model, variants, environment, new CheckControl(store, 'furnace', 'White furnace', 'Light of radiance 1 from everywhere (W)'));
+    const projection = new SelectControl(store, 'projection', 'Files without a stated projection are', projections.map(name => [name, name === 'auto' ? 'recognised by their shape' : name] as const));
+    return section('Scene', true, model, variants, environment, projection, new CheckControl(store, 'furnace', 'White furnace', 'Light of radiance 1 from everywhere (W)'));
 }
 
 export function pictureSection({store}: App): HTMLElement {
@@ -39,7 +40,7 @@ export function pictureSection({store}: App): HTMLElement {
         new SelectControl(store, 'tonemap', 'Tone map', tonemaps.map(name => [name, tonemapNames[name]] as const)),
         new ChoiceControl(store, 'background', 'Background', [['environment', 'Sharp'], ['blurred', 'Blurred'], ['colour', 'White']]),
         onlyWhere(store, new RangeControl(store, 'blur', 'Blur', {min: 0.05, max: 1, step: 0.01, text: fixed(2)}), s => s.background === 'blurred'),
-        new CheckControl(store, 'fullResolution', 'Full resolution always', 'Otherwise fewer pixels are drawn where frames take longer than a fifth of a second'));
+        new CheckControl(store, 'fullResolution', 'Full resolution always', 'Otherwise fewer pixels are drawn while something moves, where frames take longer than a tenth of a second'));
 }
 
 /// Controls that belong to some of the methods.

@@ -19,7 +19,7 @@ export class Status {
         const {state, stage} = this.app, {count} = stage.panes[0];
         const noisy = state.mode === 'monte-carlo';
         const n = noisy ? count * state.samples : count;
-        this.left.replaceChildren(element('b', {}, `${n}`), noisy ? ' samples a pixel' : count < 64 ? ' frames averaged' : ' frames averaged: done', this.app.reduced < 1 ? `, at ${this.app.reduced} of the resolution` : '');
+        this.left.replaceChildren(element('b', {}, `${n}`), noisy ? ' samples a pixel' : count < 64 ? ' frames averaged' : ' frames averaged: done', this.app.reduced < 1 ? `, at ${this.app.reduced} of the resolution while it moves` : '');
     }
 
     /// The radiance of a pixel, in device pixels from the upper left corner.

@@ -1,37 +1,24 @@
-// Files of environments, read in the worker.
+// Pictures of any shape, read in the worker: what a frame is compared with.
 
 import {FloatType} from 'three';
-import {EXRLoader} from 'three/addons/loaders/EXRLoader.js';
 import {readHdr} from './read_hdr';
 import type {Latlong} from './types';
 
-interface Picture {
-    format: string;
-    latlong: Latlong;
-}
-
-/// The pixels of a lat-long file, as they are stored. Throws an Error with a sentence.
-export function readLatlong(name: string, bytes: ArrayBuffer): Picture {
-    const read = readPicture(name, bytes), {width, height} = read.latlong;
-    if (width !== 2 * height)
-        throw new Error(`${name}: the image is ${width} x ${height}, but a lat-long map must be twice as wide as high.`);
-    return read;
-}
-
-/// The pixels of a picture of any shape.
-export function readPicture(name: string, bytes: ArrayBuffer): Picture {
+/// RGB floats, as they are stored. Throws an Error with a sentence.
+export async function readPicture(name: string, bytes: ArrayBuffer): Promise<Latlong> {
     const start = new Uint8Array(bytes);
     try {
-        if (start[0] === 0x23 && start[1] === 0x3f) return {format: 'Radiance HDR', latlong: cleaned(readHdr(start))};
-        if (start[0] === 0x76 && start[1] === 0x2f && start[2] === 0x31) return {format: 'OpenEXR', latlong: readExr(bytes)};
+        if (start[0] === 0x23 && start[1] === 0x3f) return cleaned(readHdr(start));
+        if (start[0] === 0x76 && start[1] === 0x2f && start[2] === 0x31) return await readExr(bytes);
     } catch (error) {
         throw new Error(`${name}: the file is damaged (${String((error as Error).message ?? error).replace(/^THREE\.\w+: /, '').replace(/\.$/, '')}).`);
     }
-    throw new Error(`${name}: this is neither an environment (.hdr, .exr) nor a model (.glb, .gltf).`);
+    throw new Error(`${name}: this is neither a Radiance .hdr nor an OpenEXR picture.`);
 }
 
-function readExr(bytes: ArrayBuffer): Latlong {
+async function readExr(bytes: ArrayBuffer): Promise<Latlong> {
     checkExrHeader(new DataView(bytes));
+    const {EXRLoader} = await import('three/addons/loaders/EXRLoader.js');
     const {width, height, data} = new EXRLoader().setDataType(FloatType).parse(bytes) as {width: number; height: number; data: Float32Array};
     const channels = data.length / (width * height), pixels = new Float32Array(3 * width * height);
     // The loader's first row is the bottom one.

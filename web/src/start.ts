@@ -1,0 +1,97 @@
+// Builds the page and starts the app.
+
+import {App} from './app';
+import {Baker} from './bake/baker';
+import {phongLevel, sizesDownTo} from './bake/chain';
+import {environmentEndings, modelEndings, partEndings, pictureEndings} from './endings';
+import {readSession, type Session} from './served';
+import {Store, writeHash} from './state';
+import {CompareSection} from './ui/compare_section';
+import {button, element} from './ui/controls';
+import {exportSection, save} from './ui/export_section';
+import {bindKeys, keyTable} from './ui/keys';
+import {modeNames, otherNames} from './ui/labels';
+import {helpDialog, layOut} from './ui/layout';
+import {levelsSection} from './ui/levels_section';
+import {MapSection} from './ui/map_section';
+import {NoiseSection} from './ui/noise_section';
+import {materialSection, methodSection, pictureSection, sceneSection} from './ui/panel';
+import {bindPointer} from './ui/pointer';
+import {Hover} from './ui/hover';
+import {Status} from './ui/status';
+import {whatIsMissing} from './ui/missing';
+import {bindDrops, chooser} from './ui/files';
+import {TruthSection} from './ui/truth_section';
+
+const baker = new Baker();  // first: the module is compiled while the page is built
+const store = new Store(location.hash);
+if (innerWidth < 700 && !location.hash.includes('panel')) store.state.panel = false;
+const layout = layOut(store);
+
+function start(served: Session | null): void {
+    const app = new App(layout.canvas, store, {working: layout.work, failed: layout.complain, drawn: () => drawn()}, baker, served);
+    const choose = chooser('Environments and models', [...environmentEndings, ...modelEndings, ...partEndings], files => void app.openFiles(files));
+    const choosePicture = chooser('A picture to compare with', pictureEndings, ([file]) => file && void app.openPicture(file));
+    const screenshot = () => {
+        app.stage.show(app.state);
+        layout.canvas.toBlob(blob => blob && save(`domelight-${app.state.mode}.png`, blob, 'image/png'));
+    };
+    const keys = keyTable(store, {open: choose, help: () => help.showModal(), screenshot, resetView: () => app.resetView()});
+    const help = helpDialog(keys);
+    bindKeys(keys);
+
+    const map = new MapSection(app), compare = new CompareSection(app, choosePicture), noise = new NoiseSection(app), truth = new TruthSection(app);
+    if (served) truth.use(served);
+    const levelOf = (exponent: number) => phongLevel(exponent, sizesDownTo(store.state.size, 8).length).toFixed(1);
+    layout.tools.append(button('Open…', choose, 'Open files (O)'), button('Fit', () => app.resetView(), 'Show the whole model (R)'), button('Save', screenshot, 'Save a screenshot (P)'),
+                        button('Help', () => help.showModal(), '?'), button('Fold', () => store.set({panel: false}), 'Fold the panel away (H)'));
+    layout.panel.append(sceneSection(app), pictureSection(app), methodSection(app), noise.root, materialSection(app, levelOf), truth.root, compare.root, map.root, levelsSection(app), exportSection(app));
+
+    const status = new Status(app, layout.status), hover = new Hover(app, status, map);
+    bindPointer(layout.canvas, store, (x, y) => hover.at(x, y));
+    bindDrops(layout.drop, files => void app.openFiles(files));
+    const drawn = () => {
+        status.update();
+        noise.update();
+        compare.update();
+        hover.refresh();
+    };
+
+    const resize = () => {
+        const scale = Math.min(2, devicePixelRatio), narrow = innerWidth <= 700, {panel} = store.state;
+        app.resize(innerWidth * scale, innerHeight * scale, {right: panel && !narrow ? 328 * scale : 0, bottom: panel && narrow ? 0.52 * innerHeight * scale : 0});
+    };
+    resize();
+    addEventListener('resize', resize);
+    store.listen(changed => changed.has('panel') && resize());
+    app.onOpened(() => {
+        layout.caption.textContent = `${app.model.name} · ${app.environmentName}`;
+        document.title = `${app.model.name} under ${app.environmentName} – Domelight`;
+    });
+    let timer = 0;
+    store.listen(() => {
+        const {view, mode, other} = store.state, [left, right] = layout.tags;
+        left.hidden = right.hidden = view !== 'split';
+        left.textContent = modeNames[mode];
+        right.textContent = otherNames[other];
+        left.style.right = `${100 - 100 * store.state.divider}%`;
+        right.style.left = `${100 * store.state.divider}%`;
+        clearTimeout(timer);
+        timer = setTimeout(() => history.replaceState(null, '', writeHash(store.state) || location.pathname), 300);
+    });
+    addEventListener('hashchange', () => location.reload());
+    Object.assign(window, {
+        domelight: {
+            get ready() { return app.ready; },
+            app, stage: app.stage, store, openFiles: (files: File[]) => app.openFiles(files),
+            paneAt: (frames: number, index: number) => app.paneAt(frames, index),
+        },
+    });
+    store.touch('panel');
+    void app.start();
+}
+
+const session = readSession();
+const lack = whatIsMissing(layout.canvas);
+if (lack) document.body.append(element('p', {className: 'surface', id: 'unable', role: 'alert'}, lack));
+else start(await session);
