@@ -31,6 +31,12 @@ using Key = std::array<int, 3>;
 struct Corner {
     Probe probe;
     std::array<Vec3f, 6> irradiance{};  ///< E / pi on surfaces that face along +X -X +Y -Y +Z -Z, mapped by c / (1 + c)
+    std::vector<float> distances;       ///< of what the texels of the small capture show, rising
+    /// The share of the directions in which there is a surface within `metres`.
+    double surfaces_within(float metres) const {
+        const auto end = std::ranges::upper_bound(distances, metres);
+        return double(end - distances.begin()) / (6.0 * k_capture_size * k_capture_size);
+    }
 };
 
 struct Cell {
@@ -186,7 +192,12 @@ class AutoPlacer {
         options.seed = derive_key(options_.seed, 0x706c616365ull);
         options.threads = options_.threads;
         return capture(scene_, light_, positions, numbers, options, [&](int i, CapturedCube cube) -> Result<void> {
-            captured[std::size_t(i)]->irradiance = seen_irradiance(cube.radiance);
+            Corner& corner = *captured[std::size_t(i)];
+            corner.irradiance = seen_irradiance(cube.radiance);
+            const auto depth = cube.depth.pixels(), coverage = cube.coverage.pixels();
+            for (std::size_t t = 0; t < depth.size(); ++t)
+                if (coverage[t] > 0.5f) corner.distances.push_back(depth[t]);
+            std::ranges::sort(corner.distances);
             return {};
         });
     }
@@ -198,7 +209,8 @@ class AutoPlacer {
     }
 
     /// The largest difference of the light between two corners in the open, times the side of the cell: what an
-    /// interpolation can be wrong by, summed over the distance for which it is.
+    /// interpolation can be wrong by, summed over the distance for which it is. Of cells that no surface is near, which
+    /// could show it, a tenth counts.
     double change_within(const Cell& cell) const {
         std::vector<const Corner*> open;
         for (const Key& key : corners_of(cell))
@@ -210,7 +222,9 @@ class AutoPlacer {
                     const Vec3f d = open[i]->irradiance[f] - open[j]->irradiance[f];
                     most = std::max({most, std::abs(double(d.x)), std::abs(double(d.y)), std::abs(double(d.z))});
                 }
-        return most * cell.side;
+        double surfaces = 0;
+        for (const Corner* corner : open) surfaces += corner->surfaces_within(metres(cell.side)) / double(open.size());
+        return most * cell.side * (0.1 + 0.9 * surfaces);
     }
 
     Result<std::vector<Probe>> result() const {
