@@ -129,6 +129,31 @@ async function testProjections({open, claim, work, program}) {
     await page.close();
 }
 
+/// Gold balls that stand above red ones become redder below when they see them, and move.
+async function testLive({open, claim}) {
+    const page = await open('#panel=false&fullResolution=true', {viewport: {width: 240, height: 120}});
+    const below = () => page.evaluate(async () => {
+        await domelight.paneAt(2, 0);
+        const {stage} = domelight, {width, height} = stage.panes[0], values = new Float32Array(4), unit = width / 7.3;
+        stage.renderer.readRenderTargetPixels(stage.panes[0].target, Math.round(width / 2), Math.round(height / 2 + 0.18 * unit), 1, 1, values);
+        return values[0] / values[2];
+    });
+    const alone = await below();
+    await page.evaluate(() => domelight.store.set({live: true}));
+    await page.waitForFunction(() => domelight.store.state.live && domelight.app.liveCubes.done && domelight.stage.objects.every(object => object.live), undefined, {timeout: 60_000});
+    const among = await below();
+    claim('live cubes: a ball sees the one below', among > 1.3 * alone ? [] : [`red over blue was ${alone} and is ${among}`], `red over blue ${alone.toFixed(2)}, then ${among.toFixed(2)}`);
+    await setState(page, {live: false});
+    claim('live cubes: switched off, it sees the environment alone', Math.abs((await below()) / alone - 1) < 1e-3 ? [] : ['the colour stays']);
+    const place = () => page.evaluate(() => domelight.app.model.root.children[0].position.z);
+    await page.evaluate(() => domelight.store.set({motion: true}));
+    await page.waitForFunction(() => domelight.app.model.root.children[0].position.z !== 0, undefined, {timeout: 30_000});
+    await setState(page, {motion: false});
+    claim('motion: the model moves, and returns', (await place()) === 0 ? [] : [`it is at ${await place()}`]);
+    claim('live cubes: the console is silent', page.complaints);
+    await page.close();
+}
+
 async function testLostContext({open, claim}) {
     const page = await open('#fullResolution=true', {viewport: {width: 400, height: 240}});
     const middle = () => page.evaluate(async () => {
@@ -203,7 +228,7 @@ async function testTab({open, claim}) {
 }
 
 export async function testInterface(app) {
-    for (const test of [testKeys, testAddress, testBadFiles, testModels, testProjections, testLostContext, testPhone, testAccessibility, testTab]) {
+    for (const test of [testKeys, testAddress, testBadFiles, testModels, testProjections, testLive, testLostContext, testPhone, testAccessibility, testTab]) {
         const start = performance.now();
         try {
             await test(app);

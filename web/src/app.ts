@@ -6,9 +6,11 @@ import type {Bake, BrdfTable} from './bake/types';
 import {endsIn, modelEndings} from './endings';
 import {Jobs, type JobEvents} from './jobs';
 import {builtIn, fromFile, fromServed, type LightSource} from './light_source';
+import {LiveCubes} from './render/live_cubes';
 import {readPane} from './render/read_back';
 import {Stage} from './render/stage';
 import {builtInModels, type Model} from './scene/built_in';
+import {moveModel} from './scene/motion';
 import {viewOf} from './scene/framing';
 import {Resolution} from './resolution';
 import {loadModel} from './scene/load_model';
@@ -17,6 +19,8 @@ import {Store, type Mode, type State} from './state';
 
 /// Frames that are averaged until nothing would be seen to change.
 const k_frames = 64;
+/// What an object sees of its neighbours depends on these.
+const seenByObjects = new Set<keyof State>(['live', 'turn', 'override', 'color', 'metalness', 'roughness', 'multipleScattering', 'irradiance', 'occlusion', 'diffuseWeight', 'bentLookup']);
 const k_noisy_frames = 4096;
 /// Until it is asked again whether the graphics card has done its work.
 const k_pause_ms = 4;
@@ -36,7 +40,9 @@ export class App {
     phongLevels = 0;
     /// Milliseconds of the last environment.
     readonly timings = {open: 0, bake: 0};
+    readonly liveCubes: LiveCubes;
     private readonly jobs: Jobs;
+    private movingSince: number | null = null;
     private needed = {phong: false, rows: 0};
     private source: LightSource;
     private light = 0;
@@ -58,6 +64,7 @@ export class App {
     ) {
         this.stage = new Stage(canvas);
         this.jobs = new Jobs(events);
+        this.liveCubes = new LiveCubes(this.stage, baker);
         this.source = builtIn(store.state.environment);
         canvas.addEventListener('webglcontextlost', () => events.working('waiting for the graphics card'));
         canvas.addEventListener('webglcontextrestored', () => {
@@ -141,6 +148,7 @@ export class App {
         this.model = model;
         this.stage.setModel(model.root);
         if (!keepView) this.resetView();
+        this.liveCubes.invalidate();
         this.opened();
         this.redraw();
     }
@@ -186,6 +194,7 @@ export class App {
             Object.assign(this.timings, {open: info.milliseconds, bake: bake.milliseconds});
             this.stage.setEnvironment(map);
             this.stage.setBake((this.bake = bake));
+            this.liveCubes.invalidate();
             await this.provide();
             this.opened();
         });
@@ -219,6 +228,8 @@ export class App {
         if (changed.has('environment') && state.environment !== this.environmentName) this.source = builtIn(state.environment);
         if (changed.has('environment') || changed.has('furnace') || changed.has('size') || changed.has('projection')) void this.relight();
         else if (this.bake && this.lacking) void this.work('filtering the environment', () => this.provide());
+        if ([...changed].some(key => seenByObjects.has(key))) this.liveCubes.invalidate();
+        if (changed.has('live') && !state.live) this.liveCubes.clear();
         const onlyShown = new Set<keyof State>(['exposure', 'tonemap', 'divider', 'panel', 'view', 'other']);
         if ([...changed].some(key => !onlyShown.has(key))) {
             this.stage.restart();
@@ -226,6 +237,26 @@ export class App {
             this.follow();
         } else if (changed.has('other')) this.stage.panes[1].count = 0;
         this.redraw();
+    }
+
+    /// Places a model that moves where it is now.
+    private move(): void {
+        const {motion} = this.state;
+        if (!motion && this.movingSince === null) return;
+        const now = performance.now();
+        this.movingSince = motion ? (this.movingSince ?? now) : null;
+        moveModel(this.model, this.movingSince === null ? null : (now - this.movingSince) / 1000);
+        this.stage.placed();
+        this.resolution.move(now);
+        this.liveCubes.invalidate();
+    }
+    private lookAround(): void {
+        if (!this.state.live || !this.shown.some(mode => mode === 'split-sum' || mode === 'stretched')) return;
+        void this.liveCubes.step().then(changed => {
+            if (!changed) return;
+            if (!this.state.motion) this.stage.restart();
+            this.redraw();
+        }, error => this.events.failed((error as Error).message));
     }
 
     /// Runs work that takes a while. Whether it went well.
@@ -248,12 +279,14 @@ export class App {
         const {state, stage} = this;
         if (!stage.ready(this.shown)) return void setTimeout(() => this.redraw(), k_pause_ms);
         stage.apply(state);
-        let unfinished = false;
+        this.move();
+        let unfinished = state.motion;
         this.shown.forEach((mode, k) => {
             const pane = stage.panes[k]!, limit = mode === 'monte-carlo' ? k_noisy_frames : k_frames;
             if (pane.count < limit) stage.advance(pane, mode);
             unfinished ||= pane.count < limit;
         });
+        this.lookAround();
         this.events.drawn();
         stage.show(state);
         this.waiting = this.waiting.filter(({frames, index, resolve}) => stage.panes[index]!.count !== frames || void resolve(readPane(stage, index)));

@@ -46,6 +46,9 @@ export interface State {
     /// Base 2 logarithm of the Phong exponent.
     exponentLog2: number;
     furnace: boolean;
+    /// Objects see their neighbours, and not the environment alone.
+    live: boolean;
+    motion: boolean;
     strategy: (typeof strategies)[number];
     tables: (typeof tables)[number];
     samples: number;
@@ -71,7 +74,7 @@ export const defaults: State = {
     multipleScattering: false, irradiance: 'cube', occlusion: true, bentLookup: false, diffuseWeight: 'energy',
     lookup: 'environment', ior: 1.5, iorOutside: 1, iorOverride: false,
     override: false, color: '#ffffff', metalness: 1, roughness: 0.3, exponentLog2: 6,
-    furnace: false, strategy: 'mis', tables: 'guided', samples: 1, rows: 256, lookupSize: 512, truthSamples: 8, bounces: 0, shadows: false,
+    furnace: false, live: false, motion: false, strategy: 'mis', tables: 'guided', samples: 1, rows: 256, lookupSize: 512, truthSamples: 8, bounces: 0, shadows: false,
     eye: [0, 0, 0], target: [0, 0, 0], fov: 35, panel: true, fullResolution: false,
 };
 

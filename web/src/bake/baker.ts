@@ -46,6 +46,10 @@ export class Baker {
     samples(count: number): Promise<Float32Array> {
         return this.ask({kind: 'samples', count});
     }
+    /// Filters a cube that was drawn in the scene (Stage.drawCube): RGBA floats, of which the environment shows through where alpha is below 1.
+    live(size: number, texels: Float32Array): Promise<Bake> {
+        return this.ask({kind: 'live', size, texels}, [texels.buffer as ArrayBuffer]);
+    }
     /// A picture of any shape, RGB floats.
     picture(name: string, bytes: ArrayBuffer): Promise<Latlong> {
         return this.ask({kind: 'picture', name, bytes}, [bytes]);

@@ -64,6 +64,17 @@ function mix(out: Float32Array, at: number, from: ArrayLike<number>, a: number, 
     }
 }
 
+/// What was drawn in the scene, before the environment: RGB of six faces. drawn: RGBA, in which rows and columns are in reverse order.
+export function overEnvironment(size: number, drawn: Float32Array, {texels}: CubeLevel): Float32Array {
+    const light = new Float16Array(texels.buffer, texels.byteOffset, texels.length), out = new Float32Array(18 * size * size), area = size * size;
+    for (let face = 0, to = 0; face < 6; ++face)
+        for (let k = 0; k < area; ++k, to += 3) {
+            const from = 4 * (face * area + area - 1 - k), behind = 4 * (face * area + k), open = 1 - drawn[from + 3]!;
+            for (let c = 0; c < 3; ++c) out[to + c] = Math.max(0, drawn[from + c]! + open * light[behind + c]!);
+        }
+    return out;
+}
+
 /// RGBA half floats; brighter light than they hold has their largest value.
 export function halfFloats({width, height, pixels}: Latlong): Uint16Array {
     const texels = new Float16Array(4 * width * height);

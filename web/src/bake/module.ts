@@ -44,6 +44,15 @@ export class Module {
             return new Environment(this, this.words(handle)[0]!);
         });
     }
+    /// An environment of a cube: RGB of its faces one after the other. `close` it.
+    cubeEnvironment(size: number, pixels: Float32Array): Environment {
+        return this.withPixels({width: size, height: size, pixels}, (struct, scope) => {
+            this.words(struct)[4] = 6;
+            const handle = scope.bytes(4);
+            this.check(this.call('domelight_environment_from_pixels', struct, 0, handle));
+            return new Environment(this, this.words(handle)[0]!);
+        });
+    }
     /// The environment of a file of any format and projection that the library reads. projection: empty where the file says it. `close` it.
     open(name: string, bytes: ArrayBuffer, projection: string): Environment {
         return this.scope(scope => {

@@ -90,6 +90,7 @@ export type Request =
     | {kind: 'survey'; rows: number}
     | {kind: 'samples'; count: number}
     | {kind: 'filtered'; lobe: Lobe; parameter: number; directions: Float64Array}
+    | {kind: 'live'; size: number; texels: Float32Array}
     | {kind: 'picture'; name: string; bytes: ArrayBuffer};
 
 export interface Replies {
@@ -103,5 +104,6 @@ export interface Replies {
     samples: Float32Array;
     /// RGB of each direction.
     filtered: Float32Array;
+    live: Bake;
     picture: Latlong;
 }

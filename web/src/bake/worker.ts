@@ -2,15 +2,17 @@
 
 import {levelExponent, levelRoughness, sizesDownTo} from './chain';
 import {Module, type Environment} from './module';
-import {asLatlong, halfFloats} from './latlong';
+import {asLatlong, halfFloats, overEnvironment} from './latlong';
 import {readPicture} from './read_picture';
 import {drawSamples, makeTables, reduce, survey} from './tables';
-import type {Bake, EnvironmentInfo, Latlong, Replies, Request} from './types';
+import type {Bake, CubeLevel, EnvironmentInfo, Latlong, Replies, Request} from './types';
 import moduleUrl from 'domelight.wasm?url';
 
 const module = Module.load(fetch(moduleUrl));
 let environment: Environment | undefined;
 let pixels: Latlong | undefined;
+/// The environment as a cube of the size of those that are drawn in the scene.
+let behind: CubeLevel | undefined;
 
 /// Larger textures are refused by many graphics cards.
 const k_most_width = 8192;
@@ -18,6 +20,7 @@ const k_most_width = 8192;
 function keep(name: string, format: string, made: Environment, latlong: Latlong, start: number): EnvironmentInfo {
     environment?.close();
     environment = made;
+    behind = undefined;
     pixels = latlong;
     const shown = latlong.width > k_most_width ? reduce(latlong, k_most_width / 2) : latlong;
     return {name, format, width: shown.width, height: shown.height, texels: halfFloats(shown), warnings: made.warnings, milliseconds: performance.now() - start};
@@ -42,11 +45,22 @@ function source(): Latlong {
     return pixels;
 }
 
-function bake(size: number): Bake {
+function bake(from: Environment, size: number, smallest: number, irradianceSize: number): Bake {
     const start = performance.now();
-    const sizes = sizesDownTo(size, 16);
-    const {chain, irradiance, sh} = opened().prefilter('ggx', sizes, sizes.map((_, l) => levelRoughness(l, sizes.length)), 32);
+    const sizes = sizesDownTo(size, smallest);
+    const {chain, irradiance, sh} = from.prefilter('ggx', sizes, sizes.map((_, l) => levelRoughness(l, sizes.length)), irradianceSize);
     return {specular: chain, irradiance: irradiance!, sh: irradianceHarmonics(sh!), milliseconds: performance.now() - start};
+}
+
+/// Five levels of a cube that was drawn in the scene.
+function live(size: number, texels: Float32Array, loaded: Module): Bake {
+    if (behind?.size !== size) behind = opened().cube(size);
+    const made = loaded.cubeEnvironment(size, overEnvironment(size, texels, behind));
+    try {
+        return bake(made, size, size / 16, 16);
+    } finally {
+        made.close();
+    }
 }
 
 /// Coefficients of the irradiance E from those of the radiance: Ramamoorthi and Hanrahan 2001, eq. 7 to 9.
@@ -64,7 +78,9 @@ async function answer(request: Request): Promise<Replies[Request['kind']]> {
         case 'use':
             return keep(request.name, 'computed in the page', loaded.environment(request.latlong), request.latlong, start);
         case 'bake':
-            return bake(request.size);
+            return bake(opened(), request.size, 16, 32);
+        case 'live':
+            return live(request.size, request.texels, loaded);
         case 'phong': {
             const sizes = sizesDownTo(request.size, 8);
             return opened().prefilter('phong', sizes, sizes.map((_, l) => levelExponent(l)), 0).chain;

@@ -14,6 +14,11 @@ import {backgroundProgram, presentProgram, type Purpose} from './programs';
 import {litMeshes, type LitMesh, type Uniforms} from './surfaces';
 import {uploadInSlices} from './upload';
 
+/// Where the faces +X -X +Y -Y +Z -Z look, and what is up in them.
+const cubeFaces: [THREE.Vector3Tuple, THREE.Vector3Tuple][] = [
+    [[1, 0, 0], [0, 1, 0]], [[-1, 0, 0], [0, 1, 0]], [[0, 1, 0], [0, 0, -1]], [[0, -1, 0], [0, 0, 1]], [[0, 0, 1], [0, 1, 0]], [[0, 0, -1], [0, 1, 0]],
+];
+
 const uniform = <T>(value: T) => ({value});
 
 export class Stage {
@@ -49,6 +54,7 @@ export class Stage {
     /// What the model can be drawn for without waiting.
     private readonly prepared = new Set<Purpose>();
     private preparing = false;
+    private readonly cubeCamera = new THREE.PerspectiveCamera(90, 1);
     private readonly tiny = new THREE.WebGLRenderTarget(1, 1);
     private uploads = 0;
 
@@ -249,6 +255,41 @@ export class Stage {
             this.renderer.clear();
             this.renderer.render(this.scene, this.camera);
         });
+    }
+
+    get objects(): readonly LitMesh[] {
+        return this.meshes;
+    }
+    /// The model has been moved.
+    placed(): void {
+        this.model?.updateMatrixWorld(true);
+        for (const mesh of this.meshes) mesh.place();
+        this.restart();
+    }
+    /// Draws what is seen of the other objects from the middle of one, by split-sum, over zeros: six faces one above the other, as they lie in the frame of the
+    /// environment. In each the rows and the columns are in reverse order.
+    drawCube(target: THREE.WebGLRenderTarget, size: number, object: LitMesh): void {
+        const {renderer, scene, cubeCamera} = this, centre = object.centre, toWorld = new THREE.Matrix4().setFromMatrix3((this.uniforms.u_turn!.value as THREE.Matrix3).clone().transpose());
+        for (const mesh of this.meshes) mesh.use('split-sum');
+        this.sky.visible = object.mesh.visible = false;
+        (this.uniforms.u_eye!.value as THREE.Vector3).copy(centre);
+        cubeCamera.near = Math.max(1e-6, 0.05 * object.radius);
+        cubeCamera.far = 1e5 * cubeCamera.near;
+        cubeCamera.updateProjectionMatrix();
+        cubeCamera.position.copy(centre);
+        renderer.setClearColor(0, 0);
+        target.scissorTest = true;
+        cubeFaces.forEach(([forward, up], face) => {
+            cubeCamera.up.fromArray(up).applyMatrix4(toWorld);
+            cubeCamera.lookAt(new THREE.Vector3().fromArray(forward).applyMatrix4(toWorld).add(centre));
+            cubeCamera.updateMatrixWorld();
+            target.viewport.set(0, face * size, size, size);
+            target.scissor.copy(target.viewport);
+            renderer.setRenderTarget(target);
+            renderer.clear();
+            renderer.render(scene, cubeCamera);
+        });
+        this.sky.visible = object.mesh.visible = true;
     }
 
     /// What stands on the right: the second pane, or a picture from a file.

@@ -10,11 +10,22 @@ interface Surface {
     defines: Record<string, string>;
 }
 
+/// What an object reads in place of the environment.
+export interface LiveMaps {
+    u_specular: THREE.Texture;
+    u_irradiance: THREE.Texture;
+    u_last_level: number;
+    u_sh: THREE.Vector3[];
+}
+const liveNames = ['u_specular', 'u_irradiance', 'u_last_level', 'u_sh'] as const;
+
 /// One mesh with its own uniforms, and a material for each purpose, made when it is first drawn.
 export class LitMesh {
     private readonly surface: Surface;
     private readonly materials = new Map<Purpose, THREE.RawShaderMaterial>();
     private readonly transparent: boolean;
+    private live: LiveMaps | null = null;
+    private readonly own: Uniforms = Object.fromEntries(liveNames.map(name => [name, {value: null}]));
     private readonly side: THREE.Side;
 
     constructor(
@@ -37,11 +48,33 @@ export class LitMesh {
         let material = this.materials.get(purpose);
         if (!material) this.materials.set(purpose, (material = this.make(purpose)));
         this.mesh.material = material;
+        const live = purpose === 'split-sum' || purpose === 'stretched' ? this.live : null;
+        for (const name of liveNames) this.own[name]!.value = live ? live[name] : this.shared[name]!.value;
+    }
+
+    /// null: the environment alone. The maps are disposed of with the mesh.
+    setLive(maps: LiveMaps | null): void {
+        this.live?.u_specular.dispose();
+        this.live?.u_irradiance.dispose();
+        this.live = maps;
+    }
+    /// The mesh has been moved.
+    place(): void {
+        (this.surface.uniforms.u_normal_matrix!.value as THREE.Matrix3).getNormalMatrix(this.mesh.matrixWorld);
+    }
+    get centre(): THREE.Vector3 {
+        const {geometry, matrixWorld} = this.mesh;
+        if (!geometry.boundingSphere) geometry.computeBoundingSphere();
+        return geometry.boundingSphere!.center.clone().applyMatrix4(matrixWorld);
+    }
+    get radius(): number {
+        return (this.mesh.geometry.boundingSphere?.radius ?? 0) * this.mesh.matrixWorld.getMaxScaleOnAxis();
     }
 
     /// whole: also what another set of materials of the same model would still need.
     dispose(whole: boolean): void {
         for (const material of this.materials.values()) material.dispose();
+        this.setLive(null);
         if (!whole) return;
         this.mesh.geometry.dispose();
         for (const texture of this.textures) texture.dispose();
@@ -52,7 +85,7 @@ export class LitMesh {
         return new THREE.RawShaderMaterial({
             ...modelProgram(purpose),
             glslVersion: THREE.GLSL3,
-            uniforms: {...this.shared, ...this.surface.uniforms},
+            uniforms: {...this.shared, ...this.surface.uniforms, ...this.own},
             defines: this.surface.defines,
             side: this.side,
             transparent: blended,

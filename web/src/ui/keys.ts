@@ -39,6 +39,8 @@ export function keyTable(store: Store, actions: Actions): Key[] {
         {keys: ['-'], shown: [], what: '', act: () => zoom(store, 1 / 0.9)},
         {keys: ['r'], shown: ['R'], what: 'show the whole model', act: actions.resetView},
         {keys: ['w'], shown: ['W'], what: 'white furnace: light of 1 from everywhere', act: () => store.set({furnace: !store.state.furnace})},
+        {keys: ['l'], shown: ['L'], what: 'objects see their neighbours, by live cubes', act: () => store.set({live: !store.state.live})},
+        {keys: ['m'], shown: ['M'], what: 'let the model move', act: () => store.set({motion: !store.state.motion})},
         {keys: ['o'], shown: ['O'], what: 'open files', act: actions.open},
         {keys: ['p'], shown: ['P'], what: 'save a screenshot', act: actions.screenshot},
         {keys: ['h'], shown: ['H'], what: 'fold the panel away', act: () => store.set({panel: !store.state.panel})},

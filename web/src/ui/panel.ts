@@ -30,7 +30,8 @@ export function sceneSection(app: App): HTMLElement {
         variant.replaceChildren(element('option', {value: ''}, 'as in the file'), ...app.model.variants.map((name, k) => element('option', {value: `${k}`}, name)));
     });
     const projection = new SelectControl(store, 'projection', 'Files without a stated projection are', projections.map(name => [name, name === 'auto' ? 'recognised by their shape' : name] as const));
-    return section('Scene', true, model, variants, environment, projection, new CheckControl(store, 'furnace', 'White furnace', 'Light of radiance 1 from everywhere (W)'));
+    return section('Scene', true, model, variants, environment, projection, new CheckControl(store, 'furnace', 'White furnace', 'Light of radiance 1 from everywhere (W)'),
+        new CheckControl(store, 'motion', 'Let it move', 'Balls to and fro, models about the vertical axis (M)'));
 }
 
 export function pictureSection({store}: App): HTMLElement {
@@ -58,6 +59,7 @@ export function methodSection({store}: App): HTMLElement {
         ...where(of('split-sum', 'stretched'),
             new CheckControl(store, 'multipleScattering', 'Multiple scattering', 'Fdez-Aguera 2019: rough metals do not darken'),
             new ChoiceControl(store, 'diffuseWeight', 'Diffuse weight', [['energy', 'Energy'], ['fresnel', '1 − F(NdotV)']])),
+        ...where(of('split-sum', 'stretched'), new CheckControl(store, 'live', 'Objects see their neighbours', 'A cube is drawn from the middle of each and filtered whenever something changes (L)')),
         ...where(of('split-sum'), new CheckControl(store, 'bentLookup', 'Bent lookup', 'Towards the normal on rough surfaces')),
         ...where(of('mirror', 'refract'),
             new SelectControl(store, 'lookup', 'Environment read as', [['environment', 'the map itself'], ['cube', 'cube'], ['latlong', 'lat-long'],
