@@ -1,6 +1,6 @@
 #include "domelight/base/version.h"
 #include "domelight/capture/probe_bake.h"
-#include "domelight/capture/probe_rooms.h"
+#include "domelight/capture/probe_plan.h"
 #include "domelight/probe/probe_check.h"
 #include "domelight/probe/scene_hash.h"
 
@@ -81,87 +81,23 @@ void declare(Arguments& a, ProbesWords& w) {
     add_common_options(a, w.common);
 }
 
-ProbeBox region_of(const ProbesWords& w, const Scene& scene) {
-    const Scene::Box bounds = scene.bounds();
-    if (w.region.empty()) return {bounds.low, bounds.high};
-    return {Vec3f(Vec3d{w.region[0], w.region[1], w.region[2]}), Vec3f(Vec3d{w.region[3], w.region[4], w.region[5]})};
-}
-
-/// Probes where they were asked for.
-struct Placed {
-    std::vector<Probe> probes;
-    std::optional<ProbeGrid> grid;
-    std::string how;
-};
-
-Result<std::optional<ProbeGrid>> grid_for(const ProbesWords& w, const Scene& scene) {
-    if (!w.places.empty()) return std::optional<ProbeGrid>();
-    const ProbeBox region = region_of(w, scene);
-    const auto grid = w.grid.empty() ? grid_over(region, {.density = w.density})
-                                     : grid_over(region, int(w.grid[0]), int(w.grid[1]), int(w.grid[2]));
-    if (!grid) return grid.error();
-    return std::optional(*grid);
-}
-
-/// The least distance between neighbours in a grid; 0 where there are none.
-float least_spacing(const std::optional<ProbeGrid>& grid) {
-    float least = std::numeric_limits<float>::infinity();
-    if (grid && grid->nx > 1) least = std::min(least, grid->spacing.x);
-    if (grid && grid->ny > 1) least = std::min(least, grid->spacing.y);
-    if (grid && grid->nz > 1) least = std::min(least, grid->spacing.z);
-    return std::isinf(least) ? 0 : least;
-}
-
-RelocationOptions relocation(const ProbesWords& w, float spacing) {
-    RelocationOptions r;
-    r.nearest = w.nearest > 0 ? float(w.nearest) : spacing > 0 ? 0.05f * spacing : 0.1f;
-    r.farthest = w.farthest >= 0 ? float(w.farthest) : spacing > 0 ? 0.45f * spacing : 0.5f;
-    r.threads = w.threads();
-    return r;
-}
-
-Result<Placed> place_automatically(const ProbesWords& w, const RayScene& scene, const EnvironmentSampler& light,
-                                   Progress progress) {
-    AutoPlacementOptions options;
-    options.count = *w.auto_count;
-    options.region = region_of(w, scene.scene());
-    options.bounces = std::min(2, w.bounces.value_or(2));
-    options.seed = std::uint64_t(w.seed.value_or(0));
-    options.threads = w.threads();
-    options.progress = std::move(progress);
-    auto probes = auto_places(scene, light, options);
-    if (!probes) return probes.error();
-    return Placed{*std::move(probes), std::nullopt, fmt::format("auto {}", *w.auto_count)};
-}
-
-Result<Placed> place(const ProbesWords& w, const RayScene& scene, const EnvironmentSampler& light, Progress progress) {
-    if (w.auto_count) return place_automatically(w, scene, light, std::move(progress));
-    const auto grid = grid_for(w, scene.scene());
-    if (!grid) return grid.error();
-    RelocationOptions options = relocation(w, least_spacing(*grid));
-    options.light = &light;
-    auto probes = place_probes(scene, *grid ? places_of(**grid) : w.places, options);
-    if (!probes) return probes.error();
-    if (auto ok = fill_invalid(scene, *probes, w.threads()); !ok) return ok.error();
-    return Placed{*std::move(probes), *grid,
-                  !*grid           ? "at"
-                  : w.grid.empty() ? fmt::format("density {:g}", w.density)
-                                   : "grid"};
-}
-
-/// The part of a box of influence over which it fades, of its shortest side.
-constexpr float k_fade = 0.1f;
-
-void set_boxes(const ProbesWords& w, const RayScene& scene, std::vector<Probe>& probes) {
-    if (w.proxy == "room") set_proxies(scene, probes, w.threads());
-    for (Probe& probe : probes) {
-        if (w.box) probe.proxy = w.box;
-        ProbeInfluence& influence = probe.influence;
-        if (w.shape == ProbeInfluence::Shape::sphere) influence = {w.shape, {}, w.radius, k_fade * w.radius};
-        if (w.shape != ProbeInfluence::Shape::box || !probe.proxy) continue;
-        const Vec3f size = probe.proxy->high - probe.proxy->low;
-        influence = {w.shape, *probe.proxy, 0, k_fade * std::min({size.x, size.y, size.z})};
-    }
+ProbePlanOptions plan_options(const ProbesWords& w) {
+    ProbePlanOptions o;
+    o.at = w.places;
+    for (std::size_t i = 0; i < w.grid.size(); ++i) o.grid[i] = int(w.grid[i]);
+    o.density = w.density;
+    o.auto_count = w.auto_count.value_or(0);
+    if (!w.region.empty())
+        o.region = {Vec3f(Vec3d{w.region[0], w.region[1], w.region[2]}),
+                    Vec3f(Vec3d{w.region[3], w.region[4], w.region[5]})};
+    o.nearest = float(w.nearest), o.farthest = float(w.farthest);
+    o.walls = w.proxy == "room";
+    o.proxy = w.box;
+    o.influence = w.shape, o.radius = w.radius;
+    o.bounces = std::min(2, w.bounces.value_or(2));
+    o.seed = std::uint64_t(w.seed.value_or(0));
+    o.threads = w.threads();
+    return o;
 }
 
 std::vector<std::string> sentences(const std::vector<Probe>& probes) {
@@ -236,26 +172,27 @@ int run_capture(const ProbesWords& w, Scene scene, const Environment& environmen
     auto sampler = EnvironmentSampler::build(environment, reference_sampler_options(LightStrategy::mis, w.threads()));
     if (!sampler) return print_error(sampler.error());
     print_warnings(environment.report().lines(), w.common, join(w.environment_files, " "));
-    Result<Placed> placed = Error{};
+    Result<ProbePlan> plan = Error{};
     Result<ProbeBakeReport> report = Error{};
     {
         ProgressBar bar(w.output, w.common);
-        placed = place(w, *traced, *sampler, bar.callback());
-        if (!placed) return print_error(with_options(placed.error()));
-        set_boxes(w, *traced, placed->probes);
-        options.placement = placed->how;
+        ProbePlanOptions wanted = plan_options(w);
+        wanted.progress = bar.callback();
+        plan = plan_probes(*traced, *sampler, wanted);
+        if (!plan) return print_error(with_options(plan.error()));
+        options.placement = plan->how;
         if (w.budget > 0) {
             const auto size = size_for_budget(options.filter, options.encoding, std::uint64_t(w.budget * 1e6),
-                                              int(placed->probes.size()));
+                                              int(plan->probes.size()));
             if (!size) return print_error(with_options(size.error()));
             options.capture.size = *size;
         }
         options.capture.progress = bar.callback();
-        report = bake_probes(*traced, *sampler, placed->probes, placed->grid, options, w.output);
+        report = bake_probes(*traced, *sampler, plan->probes, plan->grid, options, w.output);
     }
     if (!report) return print_error(with_options(report.error()));
     print_warnings(with_options(warnings_of(*report)), w.common, w.output);
-    print_result(w, placed->probes, *report);
+    print_result(w, plan->probes, *report);
     return w.engines.empty() ? exit_done : write_for_engines(w, w.output, w.output);
 }
 

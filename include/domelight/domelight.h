@@ -59,6 +59,7 @@
 #include "domelight/capture/placement.h"
 #include "domelight/capture/probe_bake.h"
 #include "domelight/capture/probe_baker.h"
+#include "domelight/capture/probe_plan.h"
 #include "domelight/capture/probe_rooms.h"
 #include "domelight/compare/bake_audit.h"
 #include "domelight/compare/compare_sheet.h"

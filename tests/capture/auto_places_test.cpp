@@ -1,4 +1,5 @@
 #include "domelight/capture/placement.h"
+#include "domelight/capture/probe_plan.h"
 #include "domelight/capture/probe_rooms.h"
 
 #include "capture/rooms.h"
@@ -123,6 +124,44 @@ TEST_CASE("set_proxies: a probe that was filled has the walls of the probe that 
     REQUIRE(probes[0].proxy);
     REQUIRE(probes[1].proxy);
     CHECK(probes[1].proxy->high == probes[0].proxy->high);
+}
+
+TEST_CASE("plan_probes: each way of placing, with boxes and influence") {
+    const RayScene scene = lit_room();
+    ProbePlanOptions options;
+    options.region = {{0, 0, 0}, {8, 3, 4}};
+    CHECK(plan_probes(scene, darkness(), options).error().where == "`at`");
+    options.grid = {4, 1, 2};
+    const auto grid = plan_probes(scene, darkness(), options);
+    REQUIRE(grid);
+    REQUIRE(grid->grid);
+    CHECK(grid->grid->count() == 8);
+    CHECK(grid->how == "grid");
+    CHECK(grid->probes[0].proxy->high.y == doctest::Approx(3));
+    CHECK(grid->probes[0].influence.shape == ProbeInfluence::Shape::everywhere);
+    options.density = 1;
+    CHECK(plan_probes(scene, darkness(), options).error().where == "`at`");
+    options.grid = {0, 0, 0};
+    options.proxy = ProbeBox{{0, 0, 0}, {8, 3, 4}};
+    options.influence = ProbeInfluence::Shape::box;
+    const auto dense = plan_probes(scene, darkness(), options);
+    REQUIRE(dense);
+    CHECK(dense->probes.size() == 8 * 3 * 4);
+    CHECK(dense->probes[5].influence.fade == doctest::Approx(0.3));
+    options.density = 0, options.auto_count = 10, options.proxy = std::nullopt, options.walls = false;
+    options.influence = ProbeInfluence::Shape::sphere;
+    CHECK(plan_probes(scene, darkness(), options).error().where == "`radius`");
+    options.radius = 2;
+    const auto automatic = plan_probes(scene, darkness(), options);
+    REQUIRE(automatic);
+    CHECK(automatic->how == "auto 10");
+    CHECK_FALSE(automatic->probes[0].proxy);
+    CHECK(automatic->probes[0].influence.fade == doctest::Approx(0.2));
+    options.auto_count = 0, options.at = {{1, 1, 1}, {2, 1, 1}};
+    const auto places = plan_probes(scene, darkness(), options);
+    REQUIRE(places);
+    CHECK(places->probes.size() == 2);
+    CHECK_FALSE(places->grid);
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #pragma once
 // A set of probes from a scene: captured, filtered and written.
 //
-//     auto places = grid_over({box.low, box.high}, {.density = 1});
-//     auto probes = place_probes(*scene, places_of(*places));
-//     fill_invalid(*scene, *probes);
-//     auto report = bake_probes(*scene, *sampler, *probes, *places, {}, "probes");
+//     ProbePlanOptions wanted;
+//     wanted.density = 1;
+//     auto plan = plan_probes(*scene, *sampler, wanted);
+//     auto report = bake_probes(*scene, *sampler, plan->probes, plan->grid, {}, "probes");
 
 #include "domelight/capture/capture.h"
 #include "domelight/capture/placement.h"
