@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What `domelight batch` costs: scaling, overhead, reruns, kills, large plans, and how even a thousand shards are.
 
-    bench/batch.py [scaling] [rerun] [kills] [plan] [simulate] [--jobs N] [--json FILE]
+    bench/batch.py [scaling] [rerun] [kills] [plan] [simulate] [--jobs N] [--from BATCH] [--json FILE]
 
 Without words all of it, which takes some minutes. DOMELIGHT_DATA names the folder of real environments, DOMELIGHT_PROGRAM the program
 (build/dev/cli/domelight). As root, the measured processes get a high priority, so that others on the machine matter less.
@@ -152,8 +152,8 @@ def shards_of(estimates, count):
     return shard_of
 
 
-def simulate(folder, jobs=100000, shards=1000):
-    """Real environments from 512 to 4096 wide are baked for each engine, once; then `jobs` jobs are drawn from their estimated and measured CPU times."""
+def measured_pairs(folder):
+    """(estimated, measured CPU seconds, engine) of real environments from 512 to 4096 wide, baked for each engine."""
     env = folder / "env"
     env.mkdir(parents=True)
     for pattern in ["env_latlong/*.hdr", "env_latlong_blender/*.exr", "env_latlong_exr_dwab/*.exr", "env_highres/*.hdr", "env_highres/*.exr"]:
@@ -162,22 +162,62 @@ def simulate(folder, jobs=100000, shards=1000):
     listed = [{"environment": f"env/{file.name}", "output": f"{engine}/{file.name}", "options": {"for": [engine]}} for file in sorted(env.iterdir()) for engine in ENGINES]
     batch = plan(folder, listed)
     run("batch", "run", "batch", "--quiet", cwd=folder)
+    return pairs_of(batch)
+
+
+def pairs_of(batch):
     measured = {}
     for log in batch.glob("log/*.jsonl"):
         for line in map(json.loads, log.read_text().splitlines()):
             measured[line["job"]] = line["cpu_seconds"]
-    pairs = [(job["cost"]["seconds"], measured[job["job"]], job["output"].split("/")[0]) for job in map(json.loads, (batch / "plan.jsonl").read_text().splitlines()[1:])]
-    draw = random.Random(1)
-    drawn = [draw.choice(pairs) for _ in range(jobs)]
+    jobs = map(json.loads, (batch / "plan.jsonl").read_text().splitlines()[1:])
+    return [(job["cost"]["seconds"], measured[job["job"]], job["output"].split("/")[0]) for job in jobs if job["job"] in measured]
+
+
+def ends_of(drawn, shard_of, shards, helping):
+    """When each shard ends if all begin at once, one job at a time, the longest by estimate first; `helping` then does what others have not begun, the
+    shortest first, for as long again at most."""
+    lists = [[] for _ in range(shards)]
+    for job in sorted(range(len(drawn)), key=lambda j: -drawn[j][0]):
+        lists[shard_of[job]].append(drawn[job][1])
+    loads = [sum(jobs) for jobs in lists]
+    if not helping:
+        return loads
+    next_of, clock = [0] * shards, [(0.0, shard) for shard in range(shards)]
+    heapq.heapify(clock)
+    ends, own_end = [0.0] * shards, [None] * shards
+    while clock:
+        now, shard = heapq.heappop(clock)
+        if next_of[shard] < len(lists[shard]):
+            seconds = lists[shard][next_of[shard]]
+            next_of[shard] += 1
+        else:
+            own_end[shard] = now if own_end[shard] is None else own_end[shard]
+            others = ((shard + s) % shards for s in range(1, shards))
+            victim = next((other for other in others if next_of[other] < len(lists[other])), None) if now < 2 * own_end[shard] else None
+            if victim is None:
+                ends[shard] = now
+                continue
+            seconds = lists[victim].pop()
+        heapq.heappush(clock, (now + seconds, shard))
+    return ends
+
+
+def simulate(folder, jobs=100000, shards=1000, batch=None):
+    """Draws `jobs` jobs from the estimated and measured CPU times of real bakes."""
+    pairs = pairs_of(Path(batch)) if batch else measured_pairs(folder)
+    engines = sorted({name for _, _, name in pairs})
     told = {"jobs_measured": len(pairs), "cpu_seconds_median": round(statistics.median(p[1] for p in pairs), 3), "cpu_seconds_largest": round(max(p[1] for p in pairs), 2),
-            "measured_over_estimated_by_engine": {e: round(statistics.median(m / s for s, m, name in pairs if name == e), 2) for e in ENGINES}}
-    by_count = [i % shards for i in range(jobs)]
-    for name, shard_of in [("by_cost", shards_of([p[0] for p in drawn], shards)), ("by_number", by_count)]:
-        loads = [0.0] * shards
-        for (_, cost, _), shard in zip(drawn, shard_of):
-            loads[shard] += cost
-        told[f"imbalance_{name}"] = round(max(loads) / statistics.mean(loads) - 1, 4)
-    told.update(jobs=jobs, shards=shards)
+            "measured_over_estimated_by_engine": {e: round(sum(m for _, m, name in pairs if name == e) / sum(s for s, _, name in pairs if name == e), 2) for e in engines},
+            "jobs": jobs, "shards": shards}
+    light = [pair for pair in pairs if pair[2] not in ("khronos", "unreal")]
+    for kind, sample in [("every engine", pairs), ("without khronos and unreal, whose time depends on the light most", light)]:
+        draw = random.Random(1)
+        drawn = [draw.choice(sample) for _ in range(jobs)]
+        by_cost, by_number = shards_of([p[0] for p in drawn], shards), [i % shards for i in range(jobs)]
+        mean = sum(p[1] for p in drawn) / shards
+        told[kind] = {name: round(max(ends_of(drawn, shard_of, shards, helping)) / mean - 1, 4)
+                      for name, shard_of, helping in [("by number", by_number, False), ("by cost", by_cost, False), ("by cost, helping others", by_cost, True)]}
     return told
 
 
@@ -185,9 +225,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", nargs="*", choices=["scaling", "rerun", "kills", "plan", "simulate", []])
     parser.add_argument("--jobs", type=int, default=100, help="environments for scaling")
+    parser.add_argument("--from", dest="batch", help="simulate: a batch that has run, instead of bakes for each engine")
     parser.add_argument("--json", help="file for the figures")
     words = parser.parse_args()
-    parts = {"scaling": lambda f: scaling(f, words.jobs), "rerun": rerun, "kills": kills, "plan": large_plan, "simulate": simulate}
+    parts = {"scaling": lambda f: scaling(f, words.jobs), "rerun": rerun, "kills": kills, "plan": large_plan, "simulate": lambda f: simulate(f, batch=words.batch)}
     figures = {"machine": platform.node(), "processors": os.cpu_count(), "version": subprocess.run([PROGRAM, "--version"], capture_output=True, text=True).stdout.strip()}
     for name in words.what or parts:
         with tempfile.TemporaryDirectory(prefix="domelight-bench-") as folder:

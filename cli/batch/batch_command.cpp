@@ -31,7 +31,7 @@ const std::vector<Action>& actions() {
          "PLAN",
          "does the jobs that are not done yet, or those of a shard",
          batch_run,
-         {"--shard", "--shards", "--workers", "--memory", "--attempts", "--check"}},
+         {"--shard", "--shards", "--workers", "--memory", "--attempts", "--check", "--help-others"}},
         {"merge",
          "PLAN",
          "puts the results under the names of the outputs, in PLAN/out; fails if any is missing",
@@ -90,6 +90,8 @@ void declare(Arguments& a, BatchWords& w) {
     a.integer(
         "--shards", "N", w.shards,
         "plan: lines of commands.txt (16); run: the N of --shard; slurm: members of the array (16); 1 to 1000000");
+    a.flag("--help-others", w.help_others,
+           "run: after the jobs of the shard, do jobs of other shards that nobody does yet, for as long again");
     a.group("Running");
     a.integer("--workers", "N", w.workers,
               "run: processes that do jobs side by side, 1 to 1024; --threads is for all of them together (as many as "

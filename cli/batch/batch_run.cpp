@@ -95,6 +95,7 @@ Result<BatchRunOptions> run_options(const BatchWords& w) {
     options.attempts = w.attempts.value_or(options.attempts);
     options.memory = *memory;
     options.check = w.check;
+    options.help_others = w.help_others;
     return options;
 }
 
@@ -116,6 +117,7 @@ void print_json(const BatchPlan& plan, const BatchRunReport& report, const Batch
                         {"shard", fmt::format("{}/{}", shard.index, shard.count)},
                         {"complete", report.complete()},
                         {"stopped_by", report.stopped_by.empty() ? Json() : Json(report.stopped_by)},
+                        {"helped", report.helped},
                         {"seconds", report.seconds},
                         {"counts", counts},
                         {"jobs", jobs}});
@@ -132,6 +134,7 @@ void print_text(const BatchPlan& plan, const BatchRunReport& report) {
                                         {BatchStatus::changed, "with changed sources"},
                                         {BatchStatus::left, "not tried"}})
         if (const std::size_t n = report.count(status)) print(", {} {}", n, words);
+    if (report.helped) print(", and {} of other shards", report.helped);
     print("; {:.2f} s\n", report.seconds);
 }
 

@@ -106,9 +106,9 @@ std::string array_script(const BatchWords& w, const fs::path& place, const Reque
     const std::string more =
         fmt::format("#SBATCH --cpus-per-task={}\n#SBATCH --time={}\n#SBATCH --mem={}M\n#SBATCH --requeue\n", r.cpus,
                     r.minutes, r.megabytes);
-    return header(w, place, "shard-%a.log", more) + fmt::format("exec {} batch run {} --shards {} --threads {}\n",
-                                                                shell_word(own_program().string()),
-                                                                shell_word(place.string()), r.shards, r.cpus);
+    return header(w, place, "shard-%a.log", more) +
+           fmt::format("exec {} batch run {} --shards {} --threads {} --help-others\n",
+                       shell_word(own_program().string()), shell_word(place.string()), r.shards, r.cpus);
 }
 
 std::string merge_script(const BatchWords& w, const fs::path& place) {

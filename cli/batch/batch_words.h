@@ -22,7 +22,7 @@ struct BatchWords {
     std::string shard, memory;
     std::optional<int> shards, workers, attempts, cpus;
     std::vector<std::string> sbatch;
-    bool check = false, no_submit = false;
+    bool check = false, help_others = false, no_submit = false;
     BatchPlacing placing = BatchPlacing::link;
 
     const std::string& action() const { return words.front(); }

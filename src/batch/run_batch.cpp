@@ -85,7 +85,6 @@ class BatchRun {
           memory_(options.memory > 0 ? options.memory : available_memory() / 4 * 3) {}
 
     BatchRunReport run() {
-        const auto start = std::chrono::steady_clock::now();
         list_jobs();
         while (!is_finished() && !interrupted()) {
             start_jobs();
@@ -95,7 +94,10 @@ class BatchRun {
                 look_elsewhere();
         }
         stop();
-        report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        for (std::size_t i = own_; i < report_.outcomes.size(); ++i)
+            report_.helped += report_.outcomes[i].status == BatchStatus::done;
+        report_.outcomes.resize(own_);
+        report_.seconds = seconds();
         return std::move(report_);
     }
 
@@ -106,11 +108,14 @@ class BatchRun {
         int threads;
     };
 
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
     const BatchJob& job(std::size_t outcome) const { return plan_.jobs[report_.outcomes[outcome].job]; }
 
     // Sorts the shard's jobs into those that are done and those to do. The longest come first.
     void list_jobs() {
-        const auto shard = plan_shards(plan_, options_.shard.count)[std::size_t(options_.shard.index - 1)];
+        const auto shards = plan_shards(plan_, options_.shard.count);
+        const auto& shard = shards[std::size_t(options_.shard.index - 1)];
+        if (options_.help_others) list_others(shards);
         std::vector<std::size_t> in_order = shard;
         std::sort(in_order.begin(), in_order.end());
         std::unordered_map<std::size_t, std::size_t> outcome_of;
@@ -118,10 +123,37 @@ class BatchRun {
             outcome_of[index] = report_.outcomes.size();
             report_.outcomes.emplace_back().job = index;
         }
+        own_ = report_.outcomes.size();
         for (const std::size_t index : shard) {
             const std::size_t outcome = outcome_of[index];
             if (!take_kept(outcome)) pending_.push_back(outcome);
         }
+    }
+
+    // The jobs of the other shards, from the ends of their lists: each shard begins with its longest. The next shard
+    // comes first, so that several helpers do not all look at the same one.
+    void list_others(const std::vector<std::vector<std::size_t>>& shards) {
+        std::size_t longest = 0;
+        for (const auto& shard : shards) longest = std::max(longest, shard.size());
+        for (std::size_t from_end = 1; from_end <= longest; ++from_end)
+            for (std::size_t s = 1; s < shards.size(); ++s) {
+                const auto& other = shards[(std::size_t(options_.shard.index) - 1 + s) % shards.size()];
+                if (from_end <= other.size()) others_.push_back(other[other.size() - from_end]);
+            }
+    }
+
+    // The next job of another shard that nobody has done or is doing.
+    std::optional<std::size_t> next_of_others() {
+        if (own_seconds_ < 0) own_seconds_ = seconds();
+        for (; next_other_ < others_.size() && seconds() < 2 * own_seconds_; ++next_other_) {
+            const BatchJob& other = plan_.jobs[others_[next_other_]];
+            if (other.memory > memory_ - memory_in_use() && !running_.empty()) return std::nullopt;
+            if (store_.find(other.id) || !claims_.take(other.id)) continue;
+            claims_.release(other.id);  // start() takes it
+            report_.outcomes.emplace_back().job = others_[next_other_++];
+            return report_.outcomes.size() - 1;
+        }
+        return std::nullopt;
     }
 
     // A result that is there: counted as kept, or as changed where its source has changed since.
@@ -138,6 +170,7 @@ class BatchRun {
         BatchOutcome& o = report_.outcomes[outcome];
         o.status = status;
         o.reason = std::move(reason);
+        if (outcome >= own_ && own_ > 0) return;  // of another shard
         ++finished_;
         if (options_.progress) options_.progress(o, finished_, report_.outcomes.size());
     }
@@ -168,6 +201,12 @@ class BatchRun {
     void start_jobs() {
         while (report_.stopped_by.empty() && int(running_.size()) < most_workers_ && !alone_) {
             const auto next = next_job();
+            if (!next) break;
+            start(*next);
+        }
+        while (report_.stopped_by.empty() && int(running_.size()) < most_workers_ && !alone_ && pending_.empty() &&
+               suspects_.empty()) {
+            const auto next = next_of_others();
             if (!next) break;
             start(*next);
         }
@@ -206,7 +245,7 @@ class BatchRun {
         const BatchJob& it = job(outcome);
         if (!claims_.take(it.id)) {
             alone_ = false;
-            elsewhere_.push_back(outcome);
+            if (outcome < own_) elsewhere_.push_back(outcome);
             return;
         }
         // Another run may have finished it between our look and our claim.
@@ -267,6 +306,7 @@ class BatchRun {
             report_.stopped_by = "the disk is full";
             return end(r.outcome, BatchStatus::failed, answer.reason);
         }
+        if (r.outcome >= own_) return end(r.outcome, BatchStatus::failed, answer.reason);  // its own shard tries again
         if (o.attempts >= options_.attempts) return end(r.outcome, BatchStatus::failed, answer.reason);
         (answer.ended ? suspects_ : pending_).push_back(r.outcome);
     }
@@ -305,8 +345,14 @@ class BatchRun {
     int threads_, most_workers_;
     std::int64_t memory_;
 
-    BatchRunReport report_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+
+    BatchRunReport report_;  ///< while running, with outcomes of other shards' jobs behind the own ones
+    std::size_t own_ = 0;    ///< outcomes of this shard
     std::size_t finished_ = 0;
+    std::vector<std::size_t> others_;  ///< jobs of other shards to help with; indices of the plan
+    std::size_t next_other_ = 0;
+    double own_seconds_ = -1;            ///< how long the own jobs took; -1: they are not done yet
     std::deque<std::size_t> pending_;    ///< to do, the longest first; indices of outcomes, as below
     std::deque<std::size_t> suspects_;   ///< at which a worker ended
     std::deque<std::size_t> elsewhere_;  ///< another run is doing them

@@ -273,6 +273,17 @@ def test_shards_share_the_jobs(folder):
         assert "not one of 3 shards" in run("batch", "run", "batch", "--shards", "3", folder=folder, code=2, env=variables).stderr
 
 
+def test_a_shard_that_is_done_helps_the_others(folder):
+    batch = plan(folder)
+    told, document = statuses(folder, "--shard", "1/3", "--help-others", "--threads", "1")
+    assert len(told) == 2 and set(told.values()) == {"done"} and 1 <= document["helped"] <= 4, document["helped"]
+    assert len(list(batch.glob("results/*/*/done.json"))) == 2 + document["helped"]
+    told, document = statuses(folder, "--shard", "2/3", "--threads", "1")
+    assert document["helped"] == 0 and len(told) == 2
+    assert len(statuses(folder)[0]) == 6
+    assert "all intact" in run("batch", "verify", "batch", folder=folder).stdout
+
+
 def test_same_bytes_for_any_number_of_workers_and_any_memory(folder):
     batch = plan(folder)
     whole = None

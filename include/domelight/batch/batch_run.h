@@ -52,6 +52,9 @@ struct BatchRunOptions {
     /// needs more by itself runs alone.
     std::int64_t memory = 0;
     int attempts = 2;  ///< of each job, >= 1
+    /// After the jobs of its shard, does jobs of other shards that nobody does yet, the shortest first, for as long as its
+    /// own took: shards whose cost was estimated too high then help those whose cost was estimated too low.
+    bool help_others = false;
     /// Hashes what is there before it counts as done, and does again what is not as it was written: after a power cut.
     /// Otherwise the sizes of the files are looked at.
     bool check = false;
@@ -63,6 +66,7 @@ struct BatchRunOptions {
 
 struct BatchRunReport {
     std::vector<BatchOutcome> outcomes;  ///< of each job of the shard, in the order of the plan
+    std::size_t helped = 0;              ///< jobs of other shards that were done
     double seconds = 0;
     bool cancelled = false;
     std::string stopped_by;  ///< why no further jobs were started ("the disk is full"); empty: all were tried
