@@ -173,6 +173,17 @@ export interface Texture {
 /** What an engine loads: the levels that it reads, encoded. */
 export function bake(environment: Environment, options?: BakeOptions): Promise<Texture & Extras & {engine: Engine; specs: LevelSpec[]}>;
 
+/** Bakes many cubes of one size, such as the probes of a scene that moves: what depends on the size alone is computed once. */
+export class ProbeFilter {
+    private constructor();
+    /** Options of bake(), and cubeSize: the width of the cubes' faces, 16 to 256; default: that of level 0. */
+    static make(options?: Omit<BakeOptions, 'progress' | 'signal'> & {cubeSize?: number; signal?: AbortSignal}): Promise<ProbeFilter>;
+    /** What bake() gives of a cube's pixels, six faces of floats or half floats; they are copied. */
+    bake(cube: Pixels, options?: {signal?: AbortSignal}): Promise<Texture & Extras & {engine: Engine; specs: LevelSpec[]}>;
+    /** Frees its memory. */
+    close(): void;
+}
+
 /** Irradiance E divided by π. size: width of a face, or height; default 32. */
 export function irradiance(environment: Environment, options?: {size?: number; layout?: 'cube' | 'latlong'} & Work): Promise<Image>;
 

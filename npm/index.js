@@ -316,6 +316,23 @@ export const lights = about('lights');
 export const brdfTable = ({signal, ...options} = {}) => host.call('brdfTable', () => ({options}), {signal});
 export const encode = (levels, {signal, ...options} = {}) => host.call('encode', () => ({levels, options}), {signal});
 
+/// Bakes many cubes of one size, such as the probes of a scene that moves: what depends on the size alone is computed once.
+export class ProbeFilter extends Remote {
+    static async make({signal, ...options} = {}) {
+        let first;
+        const make = async worker => worker.send('probeFilter', {options});
+        await host.call('memory', async worker => {
+            first = await make(worker);
+            return {};
+        }, {signal});
+        return new ProbeFilter(make, first);
+    }
+    /// What bake() gives of a cube's pixels: {data, width, height, faces: 6, channels}.
+    bake(pixels, {signal} = {}) {
+        return host.call('bakeProbe', async worker => ({id: await this.in(worker), pixels}), {signal});
+    }
+}
+
 /// Draws light directions in proportion to the radiance.
 export class Sampler extends Remote {
     static async build(environment, {signal, ...options} = {}) {

@@ -18,6 +18,12 @@ export class LibraryEnvironment {
     close(): void;
 }
 
+export class LibraryProbeFilter {
+    private constructor();
+    bake(cube: Pixels): Texture & Pick<Filtered, 'irradianceOverPi' | 'sh' | 'mean'> & {engine: Engine; specs: LevelSpec[]};
+    close(): void;
+}
+
 export class LibrarySampler {
     private constructor();
     sample(points: Sequence | Uint32Array): Samples;
@@ -37,6 +43,7 @@ export class Library {
     prefilter(environment: LibraryEnvironment, options?: PrefilterOptions): Filtered;
     bake(environment: LibraryEnvironment, options?: BakeOptions):
         Texture & Pick<Filtered, 'irradianceOverPi' | 'sh' | 'mean'> & {engine: Engine; specs: LevelSpec[]};
+    probeFilter(options?: Omit<BakeOptions, 'progress' | 'signal'> & {cubeSize?: number}): LibraryProbeFilter;
     irradiance(environment: LibraryEnvironment, options?: {size?: number; layout?: 'cube' | 'latlong'}): Image;
     sphericalHarmonics(environment: LibraryEnvironment, options?: {bands?: number; quantity?: string; window?: string}): Float64Array;
     brdfTable(options?: {size?: number; masking?: string}): Image;

@@ -106,8 +106,7 @@ export class Library {
             options, 'engine', 'size', 'levels', 'lobe', 'roughness', 'layout', 'texels', 'mirror', 'encoding', 'quality', 'irradianceSize', 'shBands', 'progress',
             'signal');
         const plan = bakePlan(asked);
-        return this.#filtered(environment, plan, progress, signal, handle =>
-            ({engine: plan.engine, ...this.#encoded({handle}, {encoding: plan.encoding, quality}), ...this.#results(handle, plan), specs: plan.levels}));
+        return this.#filtered(environment, plan, progress, signal, handle => this.#baked(handle, plan, quality));
     }
 
     /// Irradiance, harmonics and the mean of a filtered environment.
@@ -124,22 +123,9 @@ export class Library {
         return result;
     }
 
-    #filtered(environment, {layout, texels, levels, worldToSource, irradianceSize, shBands}, progress, signal, use) {
-        const instance = this.#instance;
-        return instance.scope(scope => {
-            const specs = scope.bytes(levelStruct.size * Math.max(levels.length, 1));
-            levels.forEach(({size, roughness, exponent, lobe}, l) => {
-                const at = specs + l * levelStruct.size;
-                instance.call('domelight_level_init_sized', at, levelStruct.size);
-                const word = lobe === undefined ? undefined : scope.word(lobe, 'lobe');
-                levelStruct.write(instance.view(), at, {size: integer(size, 'size'), roughness: number(roughness, 'roughness'), exponent: number(exponent, 'exponent'), lobe: word});
-            });
-            const turn = worldToSource ? scope.copy(matrix(worldToSource)) : 0;
-            const told = this.#progress(progress, signal);
-            const given = scope.options('prefilter_options', prefilterOptionsStruct, {
-                layout: scope.word(layout, 'layout'), texels: scope.word(texels, 'texels'), levels: specs, levelCount: levels.length, worldToSource: turn,
-                irradianceSize: integer(irradianceSize, 'irradianceSize'), shBands: integer(shBands, 'shBands'), progress: told?.address,
-            });
+    #filtered(environment, options, progress, signal, use) {
+        return this.#instance.scope(scope => {
+            const told = this.#progress(progress, signal), given = this.#filterOptions(scope, options, told?.address);
             let handle;
             try {
                 handle = scope.handle('domelight_prefilter', handleOf(environment, LibraryEnvironment), given);
@@ -147,12 +133,45 @@ export class Library {
                 if (told?.thrown) throw told.thrown;
                 throw error.cancelled ? aborted(signal) : error;
             }
-            try {
-                return use(handle);
-            } finally {
-                if (!instance.broken) instance.call('domelight_filtered_free', handle);
-            }
+            return this.#useFiltered(handle, use);
         });
+    }
+
+    #filterOptions(scope, {layout, texels, levels, worldToSource, irradianceSize, shBands}, progress) {
+        const instance = this.#instance, specs = scope.bytes(levelStruct.size * Math.max(levels.length, 1));
+        levels.forEach(({size, roughness, exponent, lobe}, l) => {
+            const at = specs + l * levelStruct.size;
+            instance.call('domelight_level_init_sized', at, levelStruct.size);
+            const word = lobe === undefined ? undefined : scope.word(lobe, 'lobe');
+            levelStruct.write(instance.view(), at, {size: integer(size, 'size'), roughness: number(roughness, 'roughness'), exponent: number(exponent, 'exponent'), lobe: word});
+        });
+        return scope.options('prefilter_options', prefilterOptionsStruct, {
+            layout: scope.word(layout, 'layout'), texels: scope.word(texels, 'texels'), levels: specs, levelCount: levels.length,
+            worldToSource: worldToSource ? scope.copy(matrix(worldToSource)) : 0,
+            irradianceSize: integer(irradianceSize, 'irradianceSize'), shBands: integer(shBands, 'shBands'), progress,
+        });
+    }
+
+    #useFiltered(handle, use) {
+        try {
+            return use(handle);
+        } finally {
+            if (!this.#instance.broken) this.#instance.call('domelight_filtered_free', handle);
+        }
+    }
+
+    /// What bakes many cubes of one size, as bake() does one environment: what depends on the size alone is computed here, once.
+    probeFilter(options) {
+        const {quality, cubeSize, ...asked} = check(
+            options, 'engine', 'size', 'cubeSize', 'levels', 'lobe', 'roughness', 'layout', 'texels', 'mirror', 'encoding', 'quality', 'irradianceSize', 'shBands');
+        const plan = bakePlan({size: cubeSize, ...asked}), instance = this.#instance;
+        const handle = instance.scope(scope => scope.handle('domelight_probe_filter_make', integer(cubeSize ?? plan.levels[0].size, 'cubeSize'), this.#filterOptions(scope, plan)));
+        return new LibraryProbeFilter(instance, handle, pixels => instance.scope(scope => this.#useFiltered(
+            scope.handle('domelight_probe_filter_filter', handle, this.#pixels(scope, pixels)), filtered => this.#baked(filtered, plan, quality))));
+    }
+
+    #baked(handle, plan, quality) {
+        return {engine: plan.engine, ...this.#encoded({handle}, {encoding: plan.encoding, quality}), ...this.#results(handle, plan), specs: plan.levels};
     }
 
     /// The progress callback as the library calls it. What it throws stops the work, and is thrown again after that.
@@ -356,6 +375,18 @@ export class LibraryEnvironment extends Handle {
                 this.instance.call('domelight_image_free', image);
             }
         });
+    }
+}
+
+export class LibraryProbeFilter extends Handle {
+    #bake;
+    constructor(instance, address, bake) {
+        super(instance, address, 'domelight_probe_filter_free');
+        this.#bake = bake;
+    }
+    /// The levels of a cube's pixels: {data, width, height, faces: 6, channels}.
+    bake(pixels) {
+        return this.address && this.#bake(pixels);
     }
 }
 

@@ -219,6 +219,19 @@ DOMELIGHT_API const double* domelight_filtered_sh(const domelight_filtered* filt
 DOMELIGHT_API void domelight_filtered_mean(const domelight_filtered* filtered, double rgb[3]);
 DOMELIGHT_API void domelight_filtered_free(domelight_filtered* filtered);
 
+/* Filters many cubes of one size, such as the light probes of a scene that moves: what depends on the size alone is computed
+ * once, here. `options` as above, without its progress.
+ *
+ * size      of a face: 16 to 256 */
+typedef struct domelight_probe_filter domelight_probe_filter;
+DOMELIGHT_API domelight_error* domelight_probe_filter_make(int32_t size, const domelight_prefilter_options* options,
+                                                           domelight_probe_filter** filter);
+/* cube      six faces of that size, finite values of 0 and more; they are not kept */
+DOMELIGHT_API domelight_error* domelight_probe_filter_filter(const domelight_probe_filter* filter,
+                                                             const domelight_pixels* cube,
+                                                             domelight_filtered** filtered);
+DOMELIGHT_API void domelight_probe_filter_free(domelight_probe_filter* filter);
+
 /* The irradiance E alone: the cosine integral, which is pi for a constant radiance of 1.
  *
  * layout    cube or latlong; NULL: cube

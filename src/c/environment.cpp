@@ -2,20 +2,10 @@
 #include "c/environment.h"
 
 #include "c/pixels.h"
-#include "sampling/radiance_check.h"
 
 using namespace domelight;
 
 namespace {
-
-/// An error unless all radiance is finite and not negative. The texel is named, and the face of a cube.
-Result<void> check_faces(const ImageF& image, int faces) {
-    const int height = image.height() / faces;
-    for (int f = 0; f < faces; ++f)
-        if (auto ok = check_radiance(image.view().rows(f * height, height), 0); !ok)
-            return ok.error().at(faces == 1 ? "" : text("face ", f));
-    return {};
-}
 
 domelight_environment_info info_of(const Environment& environment) {
     domelight_environment_info info{};
@@ -49,7 +39,7 @@ domelight_error* domelight_environment_from_pixels(const domelight_pixels* pixel
         if (!turn) return turn.error();
         auto image = c::copy_pixels(*given, 3);
         if (!image) return image.error();
-        if (auto ok = check_faces(*image, given->faces); !ok) return ok;
+        if (auto ok = c::check_faces(*image, given->faces); !ok) return ok;
         return c::hand_out(environment, given->faces == 6 ? Environment::from_cube(Cubemap(*std::move(image)), *turn)
                                                           : Environment::from_latlong(*std::move(image), *turn));
     });

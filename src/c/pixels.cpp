@@ -2,6 +2,7 @@
 
 #include "domelight/base/parallel.h"
 
+#include "sampling/radiance_check.h"
 #include "texture/texel/half.h"
 
 #include <cstdint>
@@ -74,6 +75,14 @@ Result<ImageF> copy_pixels(const domelight_pixels& pixels, int channels) {
                           : copy_rows<float>(pixels, image, begin, end);
     });
     return image;
+}
+
+Result<void> check_faces(const ImageF& image, int faces) {
+    const int height = image.height() / faces;
+    for (int f = 0; f < faces; ++f)
+        if (auto ok = check_radiance(image.view().rows(f * height, height), 0); !ok)
+            return ok.error().at(faces == 1 ? "" : text("face ", f));
+    return {};
 }
 
 }  // namespace domelight::c

@@ -22,4 +22,7 @@ domelight_pixels pixels_of(const ImageF& image, int faces);
 /// `name`: of the argument, for errors. Errors: no pixels, or a shape or kind of them that does not exist.
 Result<ImageF> copy_pixels(const domelight_pixels& pixels, int channels);
 
+/// An error unless all radiance is finite and not negative. The texel is named, and the face of a cube.
+Result<void> check_faces(const ImageF& image, int faces);
+
 }  // namespace domelight::c

@@ -1,6 +1,7 @@
 #include "domelight/filtering/prefilter.h"
 
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
+#include "domelight/filtering/probe_filter.h"
 #include "domelight/filtering/quantity.h"
 
 #include "c/environment.h"
@@ -104,6 +105,40 @@ domelight_error* domelight_prefilter(const domelight_environment* environment,
         if (!result) return result.error();
         return c::hand_out(filtered, *std::move(result));
     });
+}
+
+domelight_error* domelight_probe_filter_make(int32_t size, const domelight_prefilter_options* options,
+                                             domelight_probe_filter** filter) {
+    return c::guarded([&]() -> Result<void> {
+        if (auto ok = c::check_given({{options, "options"}, {filter, "filter"}}); !ok) return ok;
+        const auto given = c::read_struct(options, k_options);
+        if (!given) return given.error();
+        const auto wanted = read_options(*given);
+        if (!wanted) return wanted.error();
+        auto made = ProbeFilter::make(size, *wanted);
+        if (!made) return made.error();
+        return c::hand_out(filter, *std::move(made));
+    });
+}
+
+domelight_error* domelight_probe_filter_filter(const domelight_probe_filter* filter, const domelight_pixels* cube,
+                                               domelight_filtered** filtered) {
+    return c::guarded([&]() -> Result<void> {
+        if (auto ok = c::check_given({{filter, "filter"}, {cube, "cube"}, {filtered, "filtered"}}); !ok) return ok;
+        const auto given = c::read_struct(cube, {});
+        if (!given) return given.error();
+        if (given->faces != 6) return Error{text(given->faces, " faces, expected 6"), field_place("cube"), ""};
+        auto image = c::copy_pixels(*given, 3);
+        if (!image) return image.error();
+        if (auto ok = c::check_faces(*image, 6); !ok) return ok;
+        auto result = filter->filter.filter(Cubemap(*std::move(image)));
+        if (!result) return result.error();
+        return c::hand_out(filtered, *std::move(result));
+    });
+}
+
+void domelight_probe_filter_free(domelight_probe_filter* filter) {
+    delete filter;
 }
 
 size_t domelight_filtered_level_count(const domelight_filtered* filtered) {

@@ -4,6 +4,7 @@
 #include "domelight/filtering/brdf/brdf_table.h"
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
 #include "domelight/filtering/prefilter.h"
+#include "domelight/filtering/probe_filter.h"
 #include "domelight/sampling/environment_sampler.h"
 #include "domelight/sampling/light_extraction.h"
 #include "domelight/sampling/sequences.h"
@@ -327,6 +328,41 @@ TEST_SUITE("c") {
         OwnedLights none;
         CHECK(said(domelight_extract_lights(environment, &options, none.place())) ==
               "`merge_deg`: 31 is not from 0 to 30");
+    }
+
+    TEST_CASE("c: a probe filter gives the levels of C++, and refuses other cubes") {
+        std::vector<float> values(6 * 32 * 32 * 3);
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = float(i * 7919 % 1000) / 500;
+        domelight_pixels cube;
+        domelight_pixels_init(&cube);
+        cube.data = values.data(), cube.width = cube.height = 32, cube.faces = 6, cube.channels = 3;
+        const auto levels = chain(32, 3);
+        domelight_prefilter_options options;
+        domelight_prefilter_options_init(&options);
+        options.levels = levels.data(), options.level_count = levels.size();
+        OwnedProbeFilter filter;
+        CHECK_DONE(domelight_probe_filter_make(32, &options, filter.place()));
+        FilterOptions same;
+        same.specular = {{32, true, {}}, {16, false, ZonalKernel::ggx(0.5)}, {8, false, ZonalKernel::ggx(1)}};
+        same.sh_bands = 0;
+        Cubemap copy(32);
+        std::copy(values.begin(), values.end(), copy.pixels().begin());
+        const auto expected = ProbeFilter::make(32, same)->filter(copy);
+        OwnedFiltered filtered;
+        CHECK_DONE(domelight_probe_filter_filter(filter, &cube, filtered.place()));
+        for (std::size_t l = 0; l < 3; ++l) {
+            domelight_pixels level;
+            domelight_pixels_init(&level);
+            CHECK_DONE(domelight_filtered_level(filtered, l, &level));
+            CHECK(same_bits(floats_of(level), expected->specular[l].pixels()));
+        }
+        OwnedFiltered none;
+        cube.faces = 1;
+        CHECK(said(domelight_probe_filter_filter(filter, &cube, none.place())) == "`cube`: 1 faces, expected 6");
+        values[5] = std::numeric_limits<float>::quiet_NaN(), cube.faces = 6;
+        CHECK(!said(domelight_probe_filter_filter(filter, &cube, none.place())).empty());
+        OwnedProbeFilter small;
+        CHECK(said(domelight_probe_filter_make(8, &options, small.place())) == "`size`: 8 is not in 16 to 256");
     }
 
     TEST_CASE("c: encoded texels are those of C++") {

@@ -56,6 +56,7 @@ struct Owned {
 };
 using OwnedEnvironment = Owned<domelight_environment, domelight_environment_free>;
 using OwnedFiltered = Owned<domelight_filtered, domelight_filtered_free>;
+using OwnedProbeFilter = Owned<domelight_probe_filter, domelight_probe_filter_free>;
 using OwnedImage = Owned<domelight_image, domelight_image_free>;
 using OwnedSampler = Owned<domelight_sampler, domelight_sampler_free>;
 using OwnedLights = Owned<domelight_lights, domelight_lights_free>;

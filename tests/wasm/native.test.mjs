@@ -44,19 +44,22 @@ test('levels, relative to those of the program, within 1e-6 RMS', {skip: without
     fs.rmSync(work, {recursive: true});
 });
 
-test('a live probe, six faces of 64², is baked in 5 levels', async context => {
+test('live probes: cubes of half floats, five levels each', async context => {
     const dl = await load();
     for (const size of [64, 32]) {
-        const data = Uint16Array.from({length: 6 * size * size * 4}, (_, k) => 0x3000 + (k * 2654435761 % 4096));
-        const bake = () => {
-            const environment = dl.fromPixels({data, width: size, height: size, faces: 6, channels: 4});
-            const baked = dl.bake(environment, {engine: 'khronos', size, levels: 5, texels: 'centre'});
-            environment.close();
-            return baked;
-        };
-        for (let k = 0; k < 5; ++k) bake();
-        const times = Array.from({length: 15}, () => cpu(bake).ms).sort((a, b) => a - b);
-        context.diagnostic(`${size}²: median ${times[7].toFixed(1)} ms of CPU, worst ${times[14].toFixed(1)}`);
-        assert.equal(bake().levels.length, 5);
+        const probes = dl.probeFilter({engine: 'khronos', size, levels: 5, texels: 'centre'});
+        const cube = k => ({data: Uint16Array.from({length: 6 * size * size * 4}, (_, i) => 0x3000 + ((i + k) * 2654435761 % 4096)), width: size, height: size, faces: 6, channels: 4});
+        const cubes = Array.from({length: 30}, (_, k) => cube(k)), first = probes.bake(cubes[0]);
+        const times = cubes.map(one => cpu(() => probes.bake(one)).ms).slice(5).sort((a, b) => a - b);
+        context.diagnostic(`${size}²: median ${times[12].toFixed(1)} ms of CPU, worst ${times[24].toFixed(1)}`);
+        assert.deepEqual(probes.bake(cubes[0]), first, 'a probe depends on those before it');
+
+        const environment = dl.fromPixels(cubes[0]), once = dl.prefilter(environment, {size, levels: 5, shBands: 3});
+        const levels = dl.probeFilter({engine: 'khronos', size, levels: 5, texels: 'centre', encoding: 'rgba32f'}).bake(cubes[0]).levels;
+        levels.forEach(({data}, l) => assert.ok(relativeRms(new Float32Array(data.buffer).filter((_, k) => k % 4 !== 3), once.levels[l].data) <= 4e-4, `level ${l}`));
+        environment.close();
+        probes.close();
+        assert.throws(() => probes.bake(cubes[0]), /has been closed/);
     }
+    assert.throws(() => dl.probeFilter({size: 8}), /8 is not in 16 to 256/);
 });

@@ -17,7 +17,10 @@ namespace {
 constexpr int k_least_size = 16, k_most_size = 256;
 
 /// Fewer degrees than for large cubes: docs/math/prefilter.md, "Probes".
-constexpr DegreeLimits k_probe_degrees{64, 13};
+/// The texels of the smallest cubes have next to no light in the highest of them.
+DegreeLimits probe_degrees(int size) {
+    return size <= 32 ? DegreeLimits{48, 12} : DegreeLimits{64, 13};
+}
 /// A light of this part of the total power has a truncation error of 1e-5 of the level's RMS value.
 constexpr double k_probe_least_share = 1e-3;
 /// Of more such lights than this the strongest are taken. They are then the windows of a dark room, or a capture's
@@ -35,13 +38,29 @@ FilterOptions without_progress(FilterOptions options) {
     return options;
 }
 
+std::vector<std::size_t> copied_levels(int size, const FilterOptions& options) {
+    std::vector<std::size_t> copied;
+    if (options.layout != Layout::cube || options.world_to_source != Mat3{}) return copied;
+    for (std::size_t l = 0; l < options.specular.size(); ++l)
+        if (options.specular[l].mirror && options.specular[l].size == size) copied.push_back(l);
+    return copied;
+}
+
+/// The same, where these levels are not to be filled.
+FilterOptions without_levels(FilterOptions options, const std::vector<std::size_t>& levels) {
+    for (const std::size_t level : levels) options.specular[level].mirror = false;
+    return options;
+}
+
 }  // namespace
 
 struct ProbeFilter::Prepared {
     Prepared(int size_, const FilterOptions& options_)
         : size(size_),
           options(without_progress(options_)),
-          plan(make_filter_plan(options, false, k_probe_degrees)),
+          copies(copied_levels(size, options)),
+          others(without_levels(options, copies)),
+          plan(make_filter_plan(options, false, probe_degrees(size))),
           levels(plan, options),
           analysis(levels.transform(plan.band_limit)),
           table(lookup_table(double(plan.band_limit) / analysis->grid.rings)),
@@ -49,6 +68,9 @@ struct ProbeFilter::Prepared {
 
     int size;
     FilterOptions options;
+    /// Levels that are the cube itself, texel by texel, and the options without those.
+    std::vector<std::size_t> copies;
+    FilterOptions others;
     FilterPlan plan;
     PreparedLevels levels;
     std::shared_ptr<const RingTransform> analysis;
@@ -82,7 +104,8 @@ Result<FilterResult> ProbeFilter::filter(const Cubemap& source) const {
     const LargeMemoryReuse reuse;
     FilterResult result;
     result.specular.resize(p.options.specular.size());
-    fill_mirror_levels(source, p.options, result);
+    fill_mirror_levels(source, p.others, result);
+    for (const std::size_t level : p.copies) result.specular[level] = source;
     const BorderedCube cube(source);
     ScatterAnalysis analysis(p.analysis);
     std::vector<SphereGrid> grids;
