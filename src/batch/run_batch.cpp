@@ -142,10 +142,13 @@ class BatchRun {
             }
     }
 
+    // Whether there may be something to do for other shards, and time for it.
+    bool helps() const { return next_other_ < others_.size() && (own_seconds_ < 0 || seconds() < 2 * own_seconds_); }
+
     // The next job of another shard that nobody has done or is doing.
     std::optional<std::size_t> next_of_others() {
         if (own_seconds_ < 0) own_seconds_ = seconds();
-        for (; next_other_ < others_.size() && seconds() < 2 * own_seconds_; ++next_other_) {
+        for (; helps(); ++next_other_) {
             const BatchJob& other = plan_.jobs[others_[next_other_]];
             if (other.memory > memory_ - memory_in_use() && !running_.empty()) return std::nullopt;
             if (store_.find(other.id) || !claims_.take(other.id)) continue;
@@ -176,7 +179,7 @@ class BatchRun {
     }
 
     bool is_finished() const {
-        const bool nothing_left = pending_.empty() && suspects_.empty() && elsewhere_.empty();
+        const bool nothing_left = pending_.empty() && suspects_.empty() && elsewhere_.empty() && !helps();
         return running_.empty() && (nothing_left || !report_.stopped_by.empty());
     }
 
