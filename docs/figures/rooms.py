@@ -69,7 +69,7 @@ class Room:
         for i in range(rings):
             for j in range(2 * rings):
                 a, b, c, d = point(i, j), point(i, j + 1), point(i + 1, j + 1), point(i + 1, j)
-                for n in (a, b, c, a, c, d):
+                for n in ((a, c, d) if i == 0 else (a, b, c) if i == rings - 1 else (a, b, c, a, c, d)):
                     self.normals[material].append(n)
                     self.positions[material].append(tuple(centre[k] + radius * n[k] for k in range(3)))
 
@@ -106,13 +106,11 @@ def two_rooms():
     room.wall(PLASTER, (0, 0, 4), (9, 2.8, 4.2), 0, [(1, 2.2, 0.9, 2.1), (3, 4.2, 0.9, 2.1), (6.6, 7.4, 1.2, 2)])
     room.wall(PLASTER, (5, 0, 0), (5.2, 2.8, 4), 2, [(1, 1.9, 0, 2.1)])
     room.box(PAINT, (2.2, 0, 0.3), (3.6, 0.75, 1.1))
-    room.sphere(BRASS_BALL[0], *BRASS_BALL[1:])
+    room.sphere(METAL, (2.9, 1.05, 0.7), 0.3)
     room.box(PLASTER, (7.2, 0, 1.6), (7.9, 0.9, 2.3))
     room.sphere(PLASTER, (7.55, 1.2, 1.95), 0.3)
     return room.glb()
 
-
-BRASS_BALL = (METAL, (2.9, 1.05, 0.7), 0.3)
 
 if __name__ == "__main__":
     pathlib.Path(sys.argv[1]).write_bytes(two_rooms())

@@ -385,8 +385,8 @@ Tetrahedra::Weights Tetrahedra::inside(const Cell& cell, const Vec3d& place) con
     return out;
 }
 
-Tetrahedra::Weights Tetrahedra::on_hull(const Vec3d& place) const {
-    Weights out;
+Vec3d Tetrahedra::nearest_on_hull(const Vec3d& place) const {
+    Vec3d found;
     double nearest = std::numeric_limits<double>::infinity();
     for (const int t : hull_) {
         const Cell& cell = tetrahedra_[std::size_t(t)];
@@ -395,21 +395,22 @@ Tetrahedra::Weights Tetrahedra::on_hull(const Vec3d& place) const {
         const auto close = closest_on_triangle(place, corner[0], corner[1], corner[2]);
         if (close.squared_distance >= nearest) continue;
         nearest = close.squared_distance;
-        const std::array<int, 3> face = face_of(cell, ghost);
-        for (std::size_t i = 0; i < 3; ++i) {
-            out.point[i] = point_[std::size_t(face[i])];
-            out.weight[i] = float(close.weight[i]);
-        }
-        out.point[3] = out.point[0];
+        found = corner[0] * close.weight[0] + corner[1] * close.weight[1] + corner[2] * close.weight[2];
     }
-    return out;
+    return found;
 }
 
 Tetrahedra::Weights Tetrahedra::at(const Vec3f& place) const {
     if (frame_.rank == 0) return {{0, 0, 0, 0}, {1, 0, 0, 0}};
-    const Vec3d p = to_frame(place);
-    const Cell& cell = tetrahedra_[std::size_t(walk(p, shortcut(p)))];
-    return ghost_of(cell) >= 0 ? on_hull(p) : inside(cell, p);
+    Vec3d p = to_frame(place);
+    if (ghost_of(tetrahedra_[std::size_t(walk(p, shortcut(p)))]) >= 0) p = nearest_on_hull(p);
+    // Flat faces of the hull have tetrahedra behind them that are as thin as the points were moved. A place that is
+    // shrunk towards the middle by more than that lies below them, on both sides of the hull alike.
+    p *= 1 - 2e-5;
+    const Cell* cell = &tetrahedra_[std::size_t(walk(p, shortcut(p)))];
+    if (const int ghost = ghost_of(*cell); ghost >= 0)
+        cell = &tetrahedra_[std::size_t(cell->neighbour[std::size_t(ghost)])];
+    return inside(*cell, p);
 }
 
 }  // namespace domelight

@@ -150,7 +150,61 @@ TEST_SUITE("probe") {
         CHECK(weight(0.01f) > 0.9f);
         CHECK(weight(0.45f) < weight(0.35f));
         CHECK(weight(0.45f) > 0);
+        CHECK(weight(0.499f) < 0.01f * weight(0.29f));
         CHECK(weight(0.51f) == 0);
+    }
+
+    TEST_CASE("blend: with fewer probes, one enters and leaves with weight 0") {
+        const auto set = TwoRooms().set();
+        const ProbeBlender blender(*set, {.most = 4});
+        std::array<float, 256> last{};
+        double largest = 0;
+        for (int k = 0; k <= 3000; ++k) {
+            const Vec3f p = Vec3f{-3.4f, 0.7f, -2.2f} + Vec3f{2.7f, 0, 0} * (float(k) / 3000);
+            std::array<float, 256> now{};
+            for (const auto& part : blender.at(p, {0, 1, 0}).all()) now[std::size_t(part.probe)] = part.weight;
+            for (std::size_t i = 0; i < now.size(); ++i)
+                if (k) largest = std::max(largest, std::abs(double(now[i]) - double(last[i])));
+            last = now;
+        }
+        // Steps of a millimetre; a probe that left with its whole weight would leave a step of a tenth or more.
+        CHECK(largest < 0.02);
+    }
+
+    TEST_CASE("blend: a probe behind the surface has the weight of its cosine") {
+        // Without distances there is no visibility. The point is in the middle between two probes.
+        TwoRooms rooms;
+        std::vector<ProbeMaps> maps{rooms.maps({-1, 1, 0}), rooms.maps({-1, 1, 1})};
+        for (ProbeMaps& m : maps) m.distance = {};
+        std::vector<Probe> probes{{.place = {-1, 1, 0}, .position = {-1, 1, 0}},
+                                  {.place = {-1, 1, 1}, .position = {-1, 1, 1}}};
+        const auto set = ProbeSet::from_maps(probes, ProbeGrid{{-1, 1, 0}, {1, 1, 1}, 1, 1, 2}, {0, 1}, maps);
+        REQUIRE(set);
+        const auto behind = [&](const BlendOptions& options, double cosine) {
+            const Vec3f normal{float(std::sqrt(1 - cosine * cosine)), 0, float(cosine)};
+            const ProbeBlend blend = ProbeBlender(*set, options).at({-1, 1, 0.5f}, normal);
+            return double(blend.all()[0].probe == 0 ? blend.all()[0].weight : 1 - blend.all()[0].weight);
+        };
+        for (const double c : {1.0, 0.5, 0.0}) {
+            const double front = (1 + c) / 2 * (1 + c) / 2 + 0.02, back = (1 - c) / 2 * (1 - c) / 2 + 0.02;
+            CHECK(behind({}, c) == doctest::Approx(back / (front + back)).epsilon(1e-5));
+            CHECK(behind({.visibility = false}, c) == doctest::Approx(0.5));
+        }
+    }
+
+    TEST_CASE("blend: the offset moves the point along the normal, by the spacing of each axis") {
+        const auto set = TwoRooms().set();
+        const ProbeBlender moved(*set, {.visibility = false, .normal_offset = 0.5f}),
+            plain(*set, {.visibility = false});
+        const Vec3f point{-2.2f, 1.1f, 0.3f};
+        for (const Vec3f& n : k_normals) {
+            const ProbeBlend a = moved.at(point, n), b = plain.at(point + n * 0.5f, n);
+            REQUIRE(a.count == b.count);
+            for (std::size_t i = 0; i < std::size_t(a.count); ++i) {
+                CHECK(a.parts[i].probe == b.parts[i].probe);
+                CHECK(a.parts[i].weight == doctest::Approx(b.parts[i].weight));
+            }
+        }
     }
 
     TEST_CASE("parallax: the lookup meets the wall where the point sees it") {

@@ -40,9 +40,8 @@ ProbeMaps labelled_maps(int probe) {
         cube_of(8, 3, [&](const Vec3d& d, float* p) { p[0] = p[1] = float(probe + 2 + d.y), p[2] = 1; });
     maps.harmonics[0] = Vec3d{1, 2, 3} * (std::sqrt(4 * k_pi) * (probe + 1));
     maps.harmonics[1] = Vec3d{1, 0, 0};
-    maps.distance = cube_of(8, 2, [&](const Vec3d& d, float* p) {
-        p[0] = float(wall_distance(probe, d)), p[1] = p[0] * p[0] + 0.25f;
-    });
+    maps.distance = cube_of(
+        8, 2, [&](const Vec3d& d, float* p) { p[0] = float(wall_distance(probe, d)), p[1] = p[0] * p[0] + 0.25f; });
     return maps;
 }
 
@@ -95,8 +94,7 @@ TEST_CASE("ProbeSet: each probe has the maps that it was given, to the precision
             // Exact for walls; within the tolerance for the corners between them, which run along the edges of faces.
             CHECK(moments.mean == doctest::Approx(wall_distance(probe, Vec3d(d))).epsilon(0.3 / 8));
             const double off_edge = largest_two_apart(d);
-            if (off_edge > 0.25)
-                CHECK(moments.mean == doctest::Approx(wall_distance(probe, Vec3d(d))).epsilon(1e-5));
+            if (off_edge > 0.25) CHECK(moments.mean == doctest::Approx(wall_distance(probe, Vec3d(d))).epsilon(1e-5));
             const double variance = moments.mean_square - moments.mean * moments.mean;
             CHECK(variance <= 0.2501);
             if (off_edge > 0.25) CHECK(variance > 0.2);

@@ -72,7 +72,7 @@ class Tetrahedra {
     int shortcut(const Vec3d& place) const;
     Vec3d to_frame(const Vec3f& place) const;
     Weights inside(const Cell& cell, const Vec3d& place) const;
-    Weights on_hull(const Vec3d& place) const;
+    Vec3d nearest_on_hull(const Vec3d& place) const;
 
     Frame frame_;
     double extent_ = 0;
