@@ -10,11 +10,13 @@
 #include "cli/console/field_options.h"
 #include "cli/console/output_endings.h"
 #include "cli/console/print.h"
+#include "cli/info/info_probes.h"
 #include "compare/picture_survey.h"
 #include "convert/converted_files.h"
 #include "io/file/json.h"
 #include "io/file/path_inside.h"
 #include "io/file/sha256.h"
+#include "probe/probe_record.h"
 
 #include <fmt/core.h>
 
@@ -339,12 +341,13 @@ int run_info(const std::vector<std::string>& words) {
         "info",
         "Describes an environment (size, projection, range, mean radiance, irradiance by direction, "
         "brightest lights, bad texels), any other picture (layers, range, exposure, opacity, bad pixels), "
-        "a texture (KTX2, KTX, DDS, from any tool), or the folder of a bake.",
+        "a texture (KTX2, KTX, DDS, from any tool), or the folder of a bake or of a set of probes.",
         {"domelight info studio.hdr", "domelight info studio.hdr --json", "domelight info out",
          "domelight info out/specular.ktx2"});
     arguments.positional(
         "ENV|FILE|FOLDER", w.inputs,
-        fmt::format("an environment, any other picture, a texture, or a bake; without one, {}", k_built_in_sky));
+        fmt::format("an environment, any other picture, a texture, a bake, or a set of probes; without one, {}",
+                    k_built_in_sky));
     arguments.group("Pictures");
     arguments.flag(
         "--picture", w.picture,
@@ -358,6 +361,9 @@ int run_info(const std::vector<std::string>& words) {
         std::error_code failure;
         if (fs::exists(input / "manifest.json", failure)) return info_bake(input, w);
         if (input.filename() == "manifest.json" && fs::exists(input, failure)) return info_bake(input.parent_path(), w);
+        if (fs::exists(input / k_probes_json, failure)) return info_probes(input, w.common);
+        if (input.filename() == k_probes_json && fs::exists(input, failure))
+            return info_probes(input.parent_path(), w.common);
         if (has_texture_ending(input.string())) return info_texture(input.string(), w);
         if (is_picture(w, arguments)) return info_picture(w);
     } else if (w.picture) {

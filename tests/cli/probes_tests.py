@@ -12,6 +12,9 @@ def test_probes_are_written_whole_and_described(folder):
     told = run("probes", "spheres", "-o", "set", "--grid", "2,1,1", *PROBES, folder=folder).stdout
     assert told.startswith("set: 2 probes of 8 x 8 texels a face, "), told
     assert sorted(p.name for p in (folder / "set").iterdir()) == ["distance.ktx2", "irradiance.ktx2", "probes.json", "specular.ktx2"]
+    told = run("info", "set", folder=folder).stdout
+    assert told.startswith("set: 2 probes of spheres under the built-in sky, captured by domelight ") and "grid             2 x 1 x 1" in told, told
+    assert json.loads(run("info", "set/probes.json", "--json", folder=folder).stdout)["kind"] == "probes"
     assert run("probes", "spheres", "--check", "set", folder=folder).stdout == "set: whole, and of this scene\n"
     changed = run("probes", "ball", "--check", "set", "--json", folder=folder, code=1)
     assert len(json.loads(changed.stdout)["changes"]) == 1 and "the scene is not the one that was captured: spheres" in changed.stderr, changed.stderr
@@ -27,6 +30,7 @@ def test_probes_are_written_whole_and_described(folder):
     again = run("probes", "spheres", "-o", "at2", "--at", "0,0,4", "--at", "9,0,0", "--quiet", *PROBES, "--threads", "2", folder=folder)
     assert again.stdout == ""
     (folder / "at2/distance.ktx2").write_bytes((folder / "at2/distance.ktx2").read_bytes()[:-1] + b"x")
+    assert "distance.ktx2 is not the file" in run("info", "at2", folder=folder, code=1).stderr
     assert "distance.ktx2 is not the file" in run("probes", "spheres", "--check", "at2", folder=folder, code=1).stderr
     (folder / "at2/distance.ktx2").write_bytes((folder / "at/distance.ktx2").read_bytes())
     for name in ("specular.ktx2", "irradiance.ktx2", "distance.ktx2", "probes.json"):
