@@ -203,6 +203,27 @@ def test_conversions_write_what_convert_writes(folder):
         assert says in run("batch", "plan", "jobs.jsonl", "-o", "bad", folder=folder, code=1).stderr, says
 
 
+def test_audits_find_what_compare_finds(folder):
+    run("bake", "hdris/noon.hdr", "-o", "theirs", "--size", "16", "--no-preview", folder=folder)
+    job = {"kind": "audit", "bake": "theirs/specular.ktx2", "options": {"within": 0.5, "texels": 96}}
+    manifest(folder, {**job, "environment": "hdris/noon.hdr", "output": "right"}, {**job, "environment": "hdris/dawn.hdr", "output": "wrong"})
+    run("batch", "plan", "jobs.jsonl", "-o", "batch", folder=folder)
+    run("batch", "run", "batch", folder=folder)
+    shutil.copy(folder / "theirs/specular.ktx2", folder)
+    for name, env, code in [("right", "noon", 0), ("wrong", "dawn", 1)]:
+        shutil.copy(folder / f"hdris/{env}.hdr", folder)
+        bare = run("compare", "--bake", "specular.ktx2", "--env", f"{env}.hdr", "--within", "0.5", "--texels", "96", "--json", folder=folder, code=code).stdout
+        assert json.loads(bare) == json.loads((folder / f"batch/out/{name}.json").read_text()), name
+    # A bake of another environment is told of in the report; the job itself is done.
+    run("batch", "report", "batch", folder=folder)
+    data = json.loads((folder / "batch/report/index.html").read_text().split('id="data">')[1].split("</script>")[0])
+    right, wrong = data["jobs"]
+    assert right["warnings"] == [] and right["error"] < 0.05 and "not passed" in wrong["warnings"][0]
+    for options, says in [({"within": 2}, "--within"), ({"texels": 1}, "--texels"), ({"for": "quake"}, "--for"), ({"size": 8}, "--size")]:
+        manifest(folder, {**job, "environment": "hdris/noon.hdr", "output": "x", "options": options})
+        assert says in run("batch", "plan", "jobs.jsonl", "-o", "bad", folder=folder, code=1).stderr, says
+
+
 def test_a_second_run_does_nothing_and_a_damaged_result_is_made_again(folder):
     batch = plan(folder)
     statuses(folder)
