@@ -10,6 +10,7 @@ import {testFrames} from './frames.mjs';
 import {testInterface} from './interface.mjs';
 import {testLearn} from './learn.mjs';
 import {testMonteCarlo} from './monte_carlo.mjs';
+import {testProbes} from './probes.mjs';
 import {Claims} from '../engines/browser/claims.mjs';
 
 const [program, chromium, ...options] = process.argv.slice(2);
@@ -47,7 +48,7 @@ async function open(hash = '', options = {}) {
     return page;
 }
 
-const tests = {interface: testInterface, frames: testFrames, 'monte-carlo': testMonteCarlo, learn: testLearn};
+const tests = {interface: testInterface, frames: testFrames, 'monte-carlo': testMonteCarlo, probes: testProbes, learn: testLearn};
 const app = {all, program, root, work, server, browser, open, watch, claim, skip, data: process.env.DOMELIGHT_DATA};
 for (const [name, test] of Object.entries(tests)) {
     if (names.length && !names.some(n => name.includes(n))) continue;

@@ -7,6 +7,7 @@ import {endsIn, modelEndings} from './endings';
 import {Jobs, type JobEvents} from './jobs';
 import {builtIn, fromFile, fromServed, type LightSource} from './light_source';
 import {LiveCubes} from './render/live_cubes';
+import {loadProbes, splitFiles} from './probes/load';
 import {readPane} from './render/read_back';
 import {Stage} from './render/stage';
 import {builtInModels, type Model} from './scene/built_in';
@@ -123,12 +124,17 @@ export class App {
         await table;
     }
 
-    /// Opens whatever was dropped or chosen: models, environments, or both. With a .gltf, pictures are its textures.
+    /// Opens whatever was dropped or chosen: models, environments, sets of probes, or all of them. With a .gltf, pictures are its textures.
     async openFiles(files: Iterable<File>): Promise<void> {
-        const all = [...files], siblings = new Map(all.map(file => [file.name, file])), withGltf = all.some(file => endsIn(file.name, ['.gltf'])), isModel = (name: string) => endsIn(name, modelEndings);
+        const {set, rest: all} = splitFiles([...files]), siblings = new Map(all.map(file => [file.name, file])), withGltf = all.some(file => endsIn(file.name, ['.gltf'])), isModel = (name: string) => endsIn(name, modelEndings);
         const environments = all.filter(({name}) => !isModel(name) && (!withGltf || endsIn(name, ['.hdr', '.exr'])));
         for (const file of all.filter(({name}) => isModel(name))) await this.work(`reading ${file.name}`, async () => this.showModel(await loadModel(this.stage.renderer, file.name, await file.arrayBuffer(), siblings)));
         for (const file of environments) await this.openEnvironment(file);
+        if (set.length > 0) await this.work('reading the probes', () => this.openProbes(set));
+    }
+    private async openProbes(files: File[]): Promise<void> {
+        this.stage.setProbes(await loadProbes(files));
+        this.opened();
     }
     private async openEnvironment(file: File): Promise<void> {
         const before = this.source;
@@ -231,7 +237,8 @@ export class App {
         if ([...changed].some(key => seenByObjects.has(key))) this.liveCubes.invalidate();
         if (changed.has('live') && !state.live) this.liveCubes.clear();
         const onlyShown = new Set<keyof State>(['exposure', 'tonemap', 'divider', 'panel', 'view', 'other']);
-        if ([...changed].some(key => !onlyShown.has(key))) {
+        // The rims of the balls have the brightness of the screen.
+        if ([...changed].some(key => !onlyShown.has(key)) || (changed.has('exposure') && state.probeBalls)) {
             this.stage.restart();
             this.resolution.move(performance.now());
             this.follow();
@@ -251,7 +258,7 @@ export class App {
         this.liveCubes.invalidate();
     }
     private lookAround(): void {
-        if (!this.state.live || !this.shown.some(mode => mode === 'split-sum' || mode === 'stretched')) return;
+        if (!this.state.live || !this.shown.some(mode => (mode === 'split-sum' || mode === 'stretched') && this.stage.probes.purposeOf(mode) === mode)) return;
         void this.liveCubes.step().then(changed => {
             if (!changed) return;
             if (!this.state.motion) this.stage.restart();

@@ -5,6 +5,8 @@ export const modelEndings = ['.glb', '.gltf'];
 export const environmentEndings = ['.hdr', '.exr', '.ktx2', '.ktx', '.dds', '.env', '.png', '.jpg', '.jpeg'];
 /// What a .gltf names, which has to be dropped with it.
 export const partEndings = ['.bin', '.webp'];
+/// A set of probes: probes.json with its .ktx2 files.
+export const probeEndings = ['.json'];
 export const pictureEndings = ['.hdr', '.exr'];
 
 export const endsIn = (name: string, endings: string[]): boolean => endings.some(ending => name.toLowerCase().endsWith(ending));

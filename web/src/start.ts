@@ -3,7 +3,7 @@
 import {App} from './app';
 import {Baker} from './bake/baker';
 import {phongLevel, sizesDownTo} from './bake/chain';
-import {environmentEndings, modelEndings, partEndings, pictureEndings} from './endings';
+import {environmentEndings, modelEndings, partEndings, pictureEndings, probeEndings} from './endings';
 import {readSession, type Session} from './served';
 import {Store, writeHash} from './state';
 import {CompareSection} from './ui/compare_section';
@@ -16,6 +16,7 @@ import {levelsSection} from './ui/levels_section';
 import {MapSection} from './ui/map_section';
 import {NoiseSection} from './ui/noise_section';
 import {materialSection, methodSection, pictureSection, sceneSection} from './ui/panel';
+import {probesSection} from './ui/probes_section';
 import {bindPointer} from './ui/pointer';
 import {Hover} from './ui/hover';
 import {Status} from './ui/status';
@@ -30,13 +31,13 @@ const layout = layOut(store);
 
 function start(served: Session | null): void {
     const app = new App(layout.canvas, store, {working: layout.work, failed: layout.complain, drawn: () => drawn()}, baker, served);
-    const choose = chooser('Environments and models', [...environmentEndings, ...modelEndings, ...partEndings], files => void app.openFiles(files));
+    const choose = chooser('Environments, models and sets of probes', [...environmentEndings, ...modelEndings, ...partEndings, ...probeEndings], files => void app.openFiles(files));
     const choosePicture = chooser('A picture to compare with', pictureEndings, ([file]) => file && void app.openPicture(file));
     const screenshot = () => {
         app.stage.show(app.state);
         layout.canvas.toBlob(blob => blob && save(`domelight-${app.state.mode}.png`, blob, 'image/png'));
     };
-    const keys = keyTable(store, {open: choose, help: () => help.showModal(), screenshot, resetView: () => app.resetView()});
+    const keys = keyTable(store, {open: choose, help: () => help.showModal(), screenshot, resetView: () => app.resetView(), truth: () => truth.compare()});
     const help = helpDialog(keys);
     bindKeys(keys);
 
@@ -45,7 +46,7 @@ function start(served: Session | null): void {
     const levelOf = (exponent: number) => phongLevel(exponent, sizesDownTo(store.state.size, 8).length).toFixed(1);
     layout.tools.append(button('Open…', choose, 'Open files (O)'), button('Fit', () => app.resetView(), 'Show the whole model (R)'), button('Save', screenshot, 'Save a screenshot (P)'),
                         button('Help', () => help.showModal(), '?'), button('Fold', () => store.set({panel: false}), 'Fold the panel away (H)'));
-    layout.panel.append(sceneSection(app), pictureSection(app), methodSection(app), noise.root, materialSection(app, levelOf), truth.root, compare.root, map.root, levelsSection(app), exportSection(app));
+    layout.panel.append(sceneSection(app), pictureSection(app), methodSection(app), probesSection(app), noise.root, materialSection(app, levelOf), truth.root, compare.root, map.root, levelsSection(app), exportSection(app));
 
     const status = new Status(app, layout.status), hover = new Hover(app, status, map);
     bindPointer(layout.canvas, store, (x, y) => hover.at(x, y));

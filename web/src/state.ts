@@ -62,6 +62,13 @@ export interface State {
     eye: [number, number, number];
     target: [number, number, number];
     fov: number;
+    /// Of a set of probes, where there is one: whether it lights the methods that can be lit by it, and how.
+    probes: boolean;
+    probeBlend: number;
+    probeParallax: boolean;
+    probeVisibility: boolean;
+    /// Balls where the probes stand.
+    probeBalls: boolean;
     panel: boolean;
     /// Every pixel of the screen, however slow that is.
     fullResolution: boolean;
@@ -75,6 +82,7 @@ export const defaults: State = {
     lookup: 'environment', ior: 1.5, iorOutside: 1, iorOverride: false,
     override: false, color: '#ffffff', metalness: 1, roughness: 0.3, exponentLog2: 6,
     furnace: false, live: false, motion: false, strategy: 'mis', tables: 'guided', samples: 1, rows: 256, lookupSize: 512, truthSamples: 8, bounces: 0, shadows: false,
+    probes: true, probeBlend: 8, probeParallax: true, probeVisibility: true, probeBalls: false,
     eye: [0, 0, 0], target: [0, 0, 0], fov: 35, panel: true, fullResolution: false,
 };
 

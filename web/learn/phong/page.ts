@@ -10,6 +10,7 @@ import {degrees} from '../../src/scene/framing';
 import diffuse from '../../src/shading/diffuse.glsl?raw';
 import material from '../../src/shading/material.glsl?raw';
 import phong from '../../src/shading/phong.glsl?raw';
+import phongChain from '../../src/shading/phong_chain.glsl?raw';
 import {RangeControl} from '../../src/ui/controls';
 import {showCode} from '../common/code';
 import {directionAt, directionControls, drawMark, latlongPoint, onDrag, vectorOf} from '../common/direction';
@@ -22,7 +23,7 @@ const usual = {environment: 'studio', exponentLog2: 6, azimuth: 30, elevation: 2
 const lesson = new Lesson('phong', usual), {light, painter, values, numbers} = lesson;
 const k_height = 32, k_size = 256;
 
-const pass = new Pass(fullscreen(...mapParts, generic, diffuse, material, phong, filtered), {
+const pass = new Pass(fullscreen(...mapParts, generic, diffuse, material, phongChain, phong, filtered), {
     ...light.uniforms, u_mirror: {value: new THREE.Vector3()}, u_what: {value: 0}, u_exponent: {value: 1}, u_phong: {value: null}, u_irradiance: {value: null},
     u_phong_roughness: {value: new Float32Array(16)}, u_phong_levels: {value: 1}, u_harmonics: {value: false}, u_specular: {value: null}, u_brdf: {value: null},
     u_last_level: {value: 1}, u_sh: {value: Array.from({length: 9}, () => new THREE.Vector3())},
@@ -41,7 +42,7 @@ fill('figure', figure(map, 'The light, and the lobe around the mirror direction.
 fill('controls', new RangeControl(values, 'exponentLog2', 'Exponent', {min: 0, max: 12, step: 0.25, text: v => digits(2 ** v).replace(/\.?0+$/, '')}), ...directionControls(values, 'Mirror direction'));
 fill('facts', facts.root);
 fill('exact', figure(truth, 'The same for this exponent without levels between, by the library'), plot.root);
-showCode('code', 'web/src/shading/phong.glsl', phong, 'matching_roughness', 'phong_light');
+showCode('code', 'web/src/shading/phong.glsl and phong_chain.glsl', phong + phongChain, 'matching_roughness', 'phong_light');
 
 lesson.onLight(async () => {
     const chain = await light.baker.phong(k_size);

@@ -7,7 +7,7 @@ export interface Program {
     fragmentShader: string;
 }
 
-const head = 'precision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp samplerCube;\n';
+const head = 'precision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp samplerCube;\nprecision highp sampler2DArray;\n';
 export const join = (...parts: string[]): string => head + parts.join('\n');
 
 /// A shader that is run for each pixel.

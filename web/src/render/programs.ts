@@ -19,8 +19,16 @@ import modelFragment from '../shading/model_fragment.glsl?raw';
 import modelVertex from '../shading/model_vertex.glsl?raw';
 import monteCarlo from '../shading/monte_carlo.glsl?raw';
 import phong from '../shading/phong.glsl?raw';
+import phongChain from '../shading/phong_chain.glsl?raw';
+import phongProbes from '../shading/phong_probes.glsl?raw';
 import present from '../shading/present.glsl?raw';
 import probe from '../shading/probe.glsl?raw';
+import probeBallFragment from '../shading/probe_ball_fragment.glsl?raw';
+import probeBallVertex from '../shading/probe_ball_vertex.glsl?raw';
+import probeBlend from '../shading/probe_blend.glsl?raw';
+import probeLight from '../shading/probe_light.glsl?raw';
+import probeRecords from '../shading/probe_records.glsl?raw';
+import probeVisibility from '../shading/probe_visibility.glsl?raw';
 import projectEnvironment from '../shading/project_environment.glsl?raw';
 import projections from '../shading/projections.glsl?raw';
 import refract from '../shading/refract.glsl?raw';
@@ -37,23 +45,36 @@ const sharp = [generic, environment, projections, lookup];
 const lighting: Record<Mode, string[]> = {
     'split-sum': [generic, diffuse, metallicRoughness, splitSum],
     stretched: [generic, diffuse, metallicRoughness, stretchedFit(), stretched],
-    phong: [generic, diffuse, phong],
+    phong: [generic, diffuse, phongChain, phong],
     mirror: [...sharp, mirror],
     refract: [...sharp, refract],
     'monte-carlo': [ownFrame(sphericalEnvmap), sampleEnvmap, bilinear, monteCarlo],
 };
 
-/// What a model is drawn with: a method of shading, or what the page wants to know of a pixel.
-export type Purpose = Mode | 'probe' | 'identify';
+/// The methods that can be lit by a set of probes in place of the maps of one environment.
+export const probeModes = ['split-sum', 'stretched', 'phong'] as const;
+type ProbeMode = (typeof probeModes)[number];
+const byProbes = (mode: ProbeMode): string[] => {
+    const own: Record<ProbeMode, string[]> = {'split-sum': [metallicRoughness, splitSum], stretched: [metallicRoughness, stretchedFit(), stretched], phong: [phongProbes, phong]};
+    return ['#define LIGHT_BY_PROBES', probeRecords, probeVisibility, probeBlend, probeLight, diffuse, ...own[mode]];
+};
 
-const fragments = (purpose: Purpose): string[] =>
-    purpose === 'probe' ? [material, surface, probe] : purpose === 'identify' ? [identify] : [material, surface, ...lighting[purpose], modelFragment];
+/// What a model is drawn with: a method of shading, or what the page wants to know of a pixel.
+export type Purpose = Mode | `${ProbeMode} by probes` | 'probe' | 'identify';
+
+function fragments(purpose: Purpose): string[] {
+    if (purpose === 'identify') return [identify];
+    if (purpose === 'probe') return [material, surface, probe];
+    const mode = probeModes.find(name => purpose === `${name} by probes`);
+    return [material, surface, ...(mode ? byProbes(mode) : lighting[purpose as Mode]), modelFragment];
+}
 
 export const modelProgram = (purpose: Purpose): Program => ({vertexShader: join(modelVertex), fragmentShader: join(...fragments(purpose))});
 export const backgroundProgram: Program = {
     vertexShader: join(backgroundVertex),
     fragmentShader: join(environment, generic, backgroundFragment),
 };
+export const probeBallProgram: Program = {vertexShader: join(probeBallVertex), fragmentShader: join(probeRecords, probeBallFragment)};
 export const projectProgram = fullscreen(environment, projections, projectEnvironment);
 export const accumulateProgram = fullscreen(accumulate);
 export const levelProgram = fullscreen(environment, generic, projections, tonemap, level);

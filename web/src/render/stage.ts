@@ -3,6 +3,8 @@
 import * as THREE from 'three';
 import {matchingRoughness} from '../bake/chain';
 import type {Bake, BrdfTable, Chain, EnvironmentInfo, Latlong, Tables} from '../bake/types';
+import type {ProbeSet} from '../probes/load';
+import {StageProbes} from '../probes/stage_probes';
 import {radians} from '../scene/framing';
 import {backgrounds, lookups, strategies, tables, tonemaps, type Mode, type State} from '../state';
 import {Backlog} from './backlog';
@@ -29,7 +31,9 @@ export class Stage {
     /// Pixels of the picture, and those of them that the panel covers: the model stands in the middle of the rest.
     private size = {width: 1, height: 1};
     inset = {right: 0, bottom: 0};
+    readonly probes = new StageProbes();
     readonly uniforms: Uniforms = {
+        ...this.probes.uniforms,
         u_eye: uniform(new THREE.Vector3()), u_turn: uniform(new THREE.Matrix3()), u_environment: uniform(new THREE.Matrix3()),
         u_specular: uniform(null), u_irradiance: uniform(null), u_brdf: uniform(null), u_last_level: uniform(1),
         u_sh: uniform(Array.from({length: 9}, () => new THREE.Vector3())), u_latlong: uniform(null),
@@ -92,13 +96,14 @@ export class Stage {
     /// Whether a frame can be drawn now without waiting for the graphics card: it has done the last one, and has the textures of the model and
     /// the compiled shaders of these modes, which are otherwise begun here.
     ready(modes: Mode[]): boolean {
-        if (!this.preparing && modes.some(mode => !this.prepared.has(mode))) void this.prepare(modes);
+        const purposes = modes.map(mode => this.probes.purposeOf(mode));
+        if (!this.preparing && purposes.some(purpose => !this.prepared.has(purpose))) void this.prepare(purposes);
         // A picture becomes no better while the next environment is on its way.
         if (this.preparing || (this.uploads > 0 && this.panes[0].count > 0) || !this.backlog.done) return false;
         this.fit();
         return true;
     }
-    private async prepare(modes: Mode[]): Promise<void> {
+    private async prepare(purposes: Purpose[]): Promise<void> {
         this.preparing = true;
         const {meshes, renderer, backlog} = this, {add} = this.panes[0];
         for (const texture of new Set(meshes.flatMap(mesh => mesh.textures))) {
@@ -107,22 +112,22 @@ export class Stage {
             backlog.mark();
         }
         await Promise.all([add.compile(renderer), this.present.compile(renderer)]);
-        for (const mode of modes) {
-            for (const mesh of meshes) mesh.use(mode);
+        for (const purpose of purposes) {
+            for (const mesh of meshes) mesh.use(purpose);
             await compile(renderer, this.scene, this.camera);
             await backlog.emptied();
-            if (meshes === this.meshes) this.firstUse(mode);
+            if (meshes === this.meshes) this.firstUse(purpose);
         }
         this.preparing = false;
     }
     /// three.js asks for the uniforms of a shader when it is first drawn with, and waits for all that was given to the card before: little, here.
-    private firstUse(mode: Mode): void {
-        for (const mesh of this.meshes) mesh.use(mode);
+    private firstUse(purpose: Purpose): void {
+        for (const mesh of this.meshes) mesh.use(purpose);
         this.renderer.setRenderTarget(this.tiny);
         this.renderer.render(this.scene, this.camera);
         for (const pass of [this.panes[0].add, this.present]) pass.run(this.renderer, this.tiny);
         this.backlog.mark();
-        this.prepared.add(mode);
+        this.prepared.add(purpose);
     }
 
     setModel(root: THREE.Object3D): void {
@@ -167,6 +172,11 @@ export class Stage {
         this.uniforms.u_total_average!.value = totalAverage;
         this.restart();
     }
+    /// Throws a sentence where the graphics card cannot take the set.
+    setProbes(set: ProbeSet): void {
+        this.probes.use(set, this.renderer, this.scene, this.uniforms);
+        this.restart();
+    }
     setBrdf(table: BrdfTable): void {
         this.replace('u_brdf', brdfTexture(table));
     }
@@ -178,6 +188,7 @@ export class Stage {
     /// What the user has chosen, as uniforms.
     apply(state: State): void {
         const u = this.uniforms;
+        this.probes.apply(state);
         u.u_multiple_scattering!.value = state.multipleScattering;
         u.u_harmonics!.value = state.irradiance === 'sh';
         u.u_bent_lookup!.value = state.bentLookup;
@@ -246,7 +257,7 @@ export class Stage {
     /// One more frame of a pane.
     advance(pane: Pane, mode: Mode): void {
         this.camera.updateMatrixWorld();
-        for (const mesh of this.meshes) mesh.use(mode);
+        for (const mesh of this.meshes) mesh.use(this.probes.purposeOf(mode));
         this.uniforms.u_frame!.value = pane.count;
         (this.uniforms.u_eye!.value as THREE.Vector3).copy(this.camera.position);
         pane.advance((x, y) => this.look(x, y, pane.width, pane.height), mode === 'monte-carlo', () => {
@@ -272,6 +283,7 @@ export class Stage {
         const {renderer, scene, cubeCamera} = this, centre = object.centre, toWorld = new THREE.Matrix4().setFromMatrix3((this.uniforms.u_turn!.value as THREE.Matrix3).clone().transpose());
         for (const mesh of this.meshes) mesh.use('split-sum');
         this.sky.visible = object.mesh.visible = false;
+        this.probes.showBalls(false);
         (this.uniforms.u_eye!.value as THREE.Vector3).copy(centre);
         cubeCamera.near = Math.max(1e-6, 0.05 * object.radius);
         cubeCamera.far = 1e5 * cubeCamera.near;
@@ -316,6 +328,7 @@ export class Stage {
     drawFor(purpose: Purpose, target: THREE.WebGLRenderTarget): void {
         for (const mesh of this.meshes) mesh.use(purpose);
         this.sky.visible = false;
+        this.probes.showBalls(false);
         this.renderer.setRenderTarget(target);
         this.renderer.setClearColor(0, 0);
         this.renderer.clear();

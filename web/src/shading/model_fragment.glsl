@@ -4,6 +4,9 @@ out vec4 out_color;
 
 void main() {
     Surface s = surface_here();
+#ifdef LIGHT_BY_PROBES
+    blend_at(s.position, s.normal);
+#endif
     vec3 light = s.emission;
     if (!s.unlit) light += shade(s, normalize(u_eye - s.position));
     // Beyond this a half float is infinite.

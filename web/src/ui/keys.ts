@@ -16,6 +16,8 @@ export interface Actions {
     help: () => void;
     screenshot: () => void;
     resetView: () => void;
+    /// Puts the path tracer's picture beside the method.
+    truth: () => void;
 }
 
 export function keyTable(store: Store, actions: Actions): Key[] {
@@ -41,6 +43,9 @@ export function keyTable(store: Store, actions: Actions): Key[] {
         {keys: ['w'], shown: ['W'], what: 'white furnace: light of 1 from everywhere', act: () => store.set({furnace: !store.state.furnace})},
         {keys: ['l'], shown: ['L'], what: 'objects see their neighbours, by live cubes', act: () => store.set({live: !store.state.live})},
         {keys: ['m'], shown: ['M'], what: 'let the model move', act: () => store.set({motion: !store.state.motion})},
+        {keys: ['i'], shown: ['I'], what: 'light by the probes, where a set is open, or by the environment', act: () => store.set({probes: !store.state.probes})},
+        {keys: ['g'], shown: ['G'], what: 'show where the probes stand', act: () => store.set({probeBalls: !store.state.probeBalls})},
+        {keys: ['t'], shown: ['T'], what: 'the path-traced truth beside it, where domelight view serves the page', act: actions.truth},
         {keys: ['o'], shown: ['O'], what: 'open files', act: actions.open},
         {keys: ['p'], shown: ['P'], what: 'save a screenshot', act: actions.screenshot},
         {keys: ['h'], shown: ['H'], what: 'fold the panel away', act: () => store.set({panel: !store.state.panel})},

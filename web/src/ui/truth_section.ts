@@ -16,7 +16,7 @@ export class TruthSection {
     constructor(private readonly app: App) {
         const {store} = app;
         this.root = section('Truth', true, this.text,
-            element('div', {className: 'row'}, button('Compare with the truth', () => store.set({other: 'truth', view: store.state.view === 'one' ? 'split' : store.state.view}))),
+            element('div', {className: 'row'}, button('Compare with the truth', () => this.compare(), 'T')),
             new RangeControl(store, 'truthSamples', 'Samples', {min: 4, max: 12, step: 1, text: v => String(2 ** v)}),
             new RangeControl(store, 'bounces', 'Bounces', {min: 0, max: 8, step: 1}),
             new CheckControl(store, 'shadows', 'Shadows', 'Off: as a shader that has none'));
@@ -28,6 +28,15 @@ export class TruthSection {
     use(session: Session): void {
         this.root.hidden = !session.truth;
         this.later();
+    }
+
+    /// Puts the truth beside the method, or takes it away again. Probes have shadows and indirect light: then the picture has them too.
+    compare(): void {
+        const {store, stage} = this.app, {other, view} = store.state, {set} = stage.probes;
+        if (this.root.hidden) return this.app.events.failed('Path-traced pictures need `domelight view SCENE ENV`, which serves this page.');
+        if (other === 'truth' && view !== 'one') return store.set({view: 'one'});
+        const asProbes = set && store.state.probes ? {shadows: true, bounces: Math.min(8, set.record.bounces + 1)} : {};
+        store.set({other: 'truth', view: view === 'one' ? 'split' : view, ...asProbes});
     }
 
     /// Asks anew when nothing has changed for a while.
