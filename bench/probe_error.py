@@ -3,7 +3,7 @@
 
     bench/probe_error.py [--scenes rooms,cornell,zdm2] [--width 96] [--spp 1024] [--probe-spp 16] [--whole] [--folder DIR] [--json FILE]
 
-    rooms     two rooms with windows and a door between them (docs/figures/rooms.py), noon sky
+    rooms     two rooms with windows and a door between them (docs/figures/probes/rooms.py), noon sky
     cornell   CornellBox.glb of $DOMELIGHT_DATA, whose open side lets the environment in, with its lamp
     zdm2      zdm2.glb of $DOMELIGHT_DATA, a hall with four openings. The file states no material; it is given plaster
 
@@ -23,7 +23,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "docs/figures"))
+sys.path.insert(0, str(ROOT / "docs/figures/probes"))
 import rooms  # noqa: E402
 
 PROGRAM = os.environ.get("DOMELIGHT_PROGRAM", str(ROOT / "build/release/cli/domelight"))

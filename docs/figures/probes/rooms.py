@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Two rooms with windows and a door between them, as a glTF file: the scene of docs/probes.md and of bench/probe_error.py.
 
-    docs/figures/rooms.py FILE.glb
+    docs/figures/probes/rooms.py FILE.glb
 
 Metres, +Y up. The rooms lie side by side along x, with the windows in the wall towards +z; their walls are 0.2 m thick.
 """
@@ -95,16 +95,16 @@ class Room:
         return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
 
 
-def two_rooms():
-    """The bytes of the scene: 5 x 2.8 x 4 m with two windows, a door of 0.9 x 2.1 m, and 3.8 x 2.8 x 4 m with one small window."""
+def two_rooms(closed=False):
+    """The bytes of the scene: 5 x 2.8 x 4 m with two windows, a door of 0.9 x 2.1 m, and 3.8 x 2.8 x 4 m with one small window. `closed`: without the door and that window."""
     room = Room()
     room.box({None: PLASTER, (1, 1): WOOD}, (-0.2, -0.2, -0.2), (9.2, 0, 4.2))
     room.box(PLASTER, (-0.2, 2.8, -0.2), (9.2, 3, 4.2))
     room.box({None: PLASTER, (0, 1): RED}, (-0.2, 0, -0.2), (0, 2.8, 4.2))
     room.box({None: PLASTER, (0, 0): GREEN}, (9, 0, -0.2), (9.2, 2.8, 4.2))
     room.box(PLASTER, (0, 0, -0.2), (9, 2.8, 0))
-    room.wall(PLASTER, (0, 0, 4), (9, 2.8, 4.2), 0, [(1, 2.2, 0.9, 2.1), (3, 4.2, 0.9, 2.1), (6.6, 7.4, 1.2, 2)])
-    room.wall(PLASTER, (5, 0, 0), (5.2, 2.8, 4), 2, [(1, 1.9, 0, 2.1)])
+    room.wall(PLASTER, (0, 0, 4), (9, 2.8, 4.2), 0, [(1, 2.2, 0.9, 2.1), (3, 4.2, 0.9, 2.1)] + ([] if closed else [(6.6, 7.4, 1.2, 2)]))
+    room.wall(PLASTER, (5, 0, 0), (5.2, 2.8, 4), 2, [] if closed else [(1, 1.9, 0, 2.1)])
     room.box(PAINT, (2.2, 0, 0.3), (3.6, 0.75, 1.1))
     room.sphere(METAL, (2.9, 1.05, 0.7), 0.3)
     room.box(PLASTER, (7.2, 0, 1.6), (7.9, 0.9, 2.3))
