@@ -96,7 +96,7 @@ async function testProbePage({open, work, root, claim}) {
 
 export async function testProbes(app) {
     const {program, root, work} = app, domelight = (...args) => execFileSync(program, args.map(String), {stdio: ['ignore', 'pipe', 'pipe']});
-    execFileSync('python3', [path.join(root, 'docs/figures/rooms.py'), path.join(work, 'rooms.glb')]);
+    execFileSync('python3', [path.join(root, 'docs/figures/probes/rooms.py'), path.join(work, 'rooms.glb')]);
     domelight('sky', '-o', path.join(work, 'rooms.hdr'), '--quiet');
     domelight('probes', path.join(work, 'rooms.glb'), '--env', path.join(work, 'rooms.hdr'), '-o', path.join(work, 'probes'), '--grid', '6,2,3', '--size', 16, '--spp', 8, '--bounces', 3, '--quiet');
     const more = {...app, domelight};
