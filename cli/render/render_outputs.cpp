@@ -4,9 +4,9 @@
 #include "domelight/io/file/file_extension.h"
 #include "domelight/io/write_image.h"
 
-#include "io/file/printable.h"
 #include "preview/screen_picture.h"
 #include "preview/tonemap.h"
+#include "render/render_layers.h"
 
 #include <fmt/core.h>
 
@@ -49,19 +49,6 @@ Image<std::uint8_t> over_display_colour(const RenderResult& r, const Vec3f& colo
     return pixels;
 }
 
-Result<void> write_layers(const std::string& file, const RenderResult& r, ImageView<const float> radiance,
-                          const Scene& scene) {
-    const ExrLayer layers[] = {{"", radiance, ""},           {"", r.opacity, "A"},         {"direct", r.direct, ""},
-                               {"indirect", r.indirect, ""}, {"diffuse", r.diffuse, ""},   {"specular", r.specular, ""},
-                               {"albedo", r.albedo, ""},     {"normal", r.normal, ""},     {"depth", r.depth, "Z"},
-                               {"object", r.object, "Y"},    {"variance", r.variance, ""}, {"samples", r.samples, "Y"}};
-    // `compare` takes the names in its table of objects from this attribute: one name a line, from object 1 on.
-    ExrWriteOptions options;
-    std::string& names = options.attributes["objects"];
-    for (const Instance& instance : scene.instances) names += escaped(instance.name) + "\n";
-    return write_exr_layers(file, layers, options);
-}
-
 }  // namespace
 
 Image<std::uint8_t> display_picture(const RenderResult& r, const RenderWords& w, double ev) {
@@ -79,7 +66,7 @@ Result<void> write_picture(const std::string& file, const FinishedPicture& pictu
     const ImageF over = colour ? over_colour(r, w.backdrop_colour) : ImageF();
     const ImageView<const float> radiance = colour ? over.view() : r.radiance.view();
     if (lower_case_extension(file) == ".hdr") return write_hdr(file, radiance, w.threads());
-    return write_layers(file, r, radiance, scene);
+    return write_render_layers(file, r, radiance, scene);
 }
 
 Result<void> write_pictures(const std::vector<std::string>& files, const FinishedPicture& picture, const Scene& scene,

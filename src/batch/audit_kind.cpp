@@ -106,15 +106,14 @@ Result<JobReport> run(const JobCall& call) {
 }  // namespace
 
 JobKind audit_kind() {
-    return {
-        .name = "audit",
-        .does = "compares a bake by any tool with the exact filter of its source, as `domelight compare --bake` does",
-        .roles = {"bake", "environment"},
-        .makes_folder = false,
-        .file_name = file_name,
-        .check = check,
-        .estimate = estimate,
-        .run = run};
+    return {.name = "audit",
+            .does = "compares a bake by any tool with the exact filter of its source, as `domelight compare` does",
+            .roles = {"bake", "environment"},
+            .makes_folder = false,
+            .file_name = file_name,
+            .check = check,
+            .estimate = estimate,
+            .run = run};
 }
 
 }  // namespace domelight

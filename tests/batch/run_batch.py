@@ -224,6 +224,31 @@ def test_audits_find_what_compare_finds(folder):
         assert says in run("batch", "plan", "jobs.jsonl", "-o", "bad", folder=folder, code=1).stderr, says
 
 
+def test_renders_are_those_of_render(folder):
+    (folder / "scene.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n")
+    common, words = {"width": 24, "spp": 4}, ["--width", "24", "--spp", "4"]
+    cases = {"truth": ({"scene": "ball", "height": 16, "seed": 3, **common}, ["ball", "--height", "16", "--seed", "3"], "truth.exr"),
+             "eye": ({"scene": "spheres", "format": "png", "tonemap": "neutral", "bounces": 0, **common}, ["spheres", "--tonemap", "neutral", "--bounces", "0"], "eye.png"),
+             "engine": ({"scene": "ball", "format": "png", "shading": "split-sum", "irradiance": "sh", **common},
+                        ["ball", "--shading", "split-sum", "--irradiance", "sh"], "engine.png"),
+             "cut": ({"scene": "ball", "format": "png", "background": "transparent", "ev": 1, **common}, ["ball", "--background", "transparent", "--ev", "1"], "cut.png"),
+             "file": ({"format": "hdr", "camera_position": [2, 2, 2], "fov_deg": 50, **common}, ["scene.obj", "--camera-position", "2,2,2", "--fov-deg", "50"], "file.hdr")}
+    manifest(folder, *[{"kind": "render", "environment": "hdris/noon.hdr", "output": name, "options": options, **({"scene": "scene.obj"} if name == "file" else {})}
+                       for name, (options, _, _) in cases.items()])
+    run("batch", "plan", "jobs.jsonl", "-o", "batch", folder=folder)
+    run("batch", "run", "batch", folder=folder)
+    (folder / "bare").mkdir()
+    for _, more, file in cases.values():
+        run("render", *more, *words, "--env", "hdris/noon.hdr", "-o", f"bare/{file}", "--quiet", folder=folder)
+    assert files_of(folder / "batch/out") == files_of(folder / "bare")
+    run("batch", "report", "batch", folder=folder)
+    assert len(list((folder / "batch/report/thumbs").iterdir())) == 5
+    for options, says in [({"spp": 0}, "--spp"), ({"scene": "teapot"}, "--scene"), ({"shading": "guess"}, "split-sum"), ({"format": "tga"}, "--format"),
+                          ({"camera_position": [1]}, "--camera-position"), ({"background": "colour"}, "--background")]:
+        manifest(folder, {"kind": "render", "environment": "hdris/noon.hdr", "output": "x", "options": {"scene": "ball", **options}})
+        assert says in run("batch", "plan", "jobs.jsonl", "-o", "bad", folder=folder, code=1).stderr, says
+
+
 def test_a_second_run_does_nothing_and_a_damaged_result_is_made_again(folder):
     batch = plan(folder)
     statuses(folder)
