@@ -18,6 +18,7 @@ from ._environment import DomelightWarning, Environment, axes, read, sky
 from ._errors import Cancelled, Error, FileError, WrongType
 from ._filtering import Levels, brdf_table, irradiance, prefilter, spherical_harmonics
 from ._lights import Light, Lights, lights
+from ._probing import ProbeSet, probes
 from ._rendering import Render, render
 from ._sampling import Sampler, Samples, unit_points
 
@@ -37,6 +38,7 @@ __all__ = [
     "Levels",
     "Light",
     "Lights",
+    "ProbeSet",
     "Render",
     "Sampler",
     "Samples",
@@ -53,6 +55,7 @@ __all__ = [
     "irradiance",
     "lights",
     "prefilter",
+    "probes",
     "read",
     "read_levels",
     "render",

@@ -7,7 +7,7 @@ import pathlib
 import pytest
 
 import domelight as dl
-from domelight import _batch, _core, _render
+from domelight import _batch, _core, _probes, _render
 
 FOLDER = pathlib.Path(dl.__file__).parent
 
@@ -29,7 +29,7 @@ def names_of(function):
     return [argument.arg for argument in signature.args.args]
 
 
-@pytest.mark.parametrize("module", [_batch, _core, _render])
+@pytest.mark.parametrize("module", [_batch, _core, _probes, _render])
 def test_the_stub_has_what_the_module_has(module):
     there = {}
     for name, value in vars(module).items():
