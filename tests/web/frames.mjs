@@ -4,6 +4,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import {execFileSync} from 'node:child_process';
 import {readHdr} from '../engines/browser/files.mjs';
+import {texturedModel} from './textured_model.mjs';
 
 const width = 320, height = 160, size = 256, frames = 32;
 const cases = [
@@ -62,15 +63,23 @@ export async function testFrames({all, program, work, open, claim, data}) {
     else domelight('sky', '-o', environment, '--quiet');
     for (const lobe of ['ggx', 'phong'])
         domelight('bake', environment, '-o', path.join(work, lobe), '--size', size, '--lobe', lobe, '--quiet', '--no-preview');
+    fs.writeFileSync(path.join(work, 'textured.glb'), texturedModel());
     const page = await open(`#size=${size}&panel=false&fullResolution=true`, {viewport: {width, height}});
     await openFile(page, '/work/sky.hdr', 'sky.hdr');
-    for (const {name, state, options, lobe = 'ggx'} of all ? cases : cases.filter(({name}) => usual.includes(name))) {
+    const compare = async (scene, {name, state, options, lobe = 'ggx'}, camera = []) => {
         const file = path.join(work, `${name}.hdr`), maps = /mirror|refract/.test(name) ? [] : ['--maps', path.join(work, lobe)];
-        domelight('render', 'spheres', '--env', environment, ...maps, '--width', width, '--height', height, '--spp', 32, '--quiet', '-o', file, ...options);
+        domelight('render', scene, '--env', environment, ...maps, '--width', width, '--height', height, '--spp', 32, '--quiet', '-o', file, ...options, ...camera);
         await setState(page, {irradiance: 'cube', multipleScattering: false, bentLookup: false, ...state});
         const error = displayedError(await readPane(page, frames), readHdr(file).rgb);
         claim(`${name}: the app draws what the renderer draws, within 2/255`, error <= 2 ? [] : [`the RMS error is ${error.toFixed(2)}/255`], `${error.toFixed(2)}/255`);
-    }
+    };
+    const chosen = all ? cases : cases.filter(({name}) => usual.includes(name));
+    for (const one of chosen) await compare('spheres', one);
+    // With textures and lights of its own.
+    await openFile(page, '/work/textured.glb', 'textured.glb');
+    await setState(page, {eye: [1.5, 1, 4], target: [0, 0, 0], fov: 34});
+    for (const one of chosen)
+        await compare(path.join(work, 'textured.glb'), {...one, name: `textured-${one.name}`}, ['--camera-position', '1.5,1,4', '--camera-target', '0,0,0', '--fov-deg', 34]);
     claim('all modes: the console is silent', page.complaints);
     await page.close();
 }

@@ -21,7 +21,7 @@ import {Store, type Mode, type State} from './state';
 /// Frames that are averaged until nothing would be seen to change.
 const k_frames = 64;
 /// What an object sees of its neighbours depends on these.
-const seenByObjects = new Set<keyof State>(['live', 'turn', 'override', 'color', 'metalness', 'roughness', 'multipleScattering', 'irradiance', 'occlusion', 'diffuseWeight', 'bentLookup']);
+const seenByObjects = new Set<keyof State>(['live', 'lights', 'turn', 'override', 'color', 'metalness', 'roughness', 'multipleScattering', 'irradiance', 'occlusion', 'diffuseWeight', 'bentLookup']);
 const k_noisy_frames = 4096;
 /// Until it is asked again whether the graphics card has done its work.
 const k_pause_ms = 4;

@@ -46,6 +46,8 @@ export interface State {
     /// Base 2 logarithm of the Phong exponent.
     exponentLog2: number;
     furnace: boolean;
+    /// Whether lights of the model shine.
+    lights: boolean;
     /// Objects see their neighbours, and not the environment alone.
     live: boolean;
     motion: boolean;
@@ -81,7 +83,7 @@ export const defaults: State = {
     multipleScattering: false, irradiance: 'cube', occlusion: true, bentLookup: false, diffuseWeight: 'energy',
     lookup: 'environment', ior: 1.5, iorOutside: 1, iorOverride: false,
     override: false, color: '#ffffff', metalness: 1, roughness: 0.3, exponentLog2: 6,
-    furnace: false, live: false, motion: false, strategy: 'mis', tables: 'guided', samples: 1, rows: 256, lookupSize: 512, truthSamples: 8, bounces: 0, shadows: false,
+    furnace: false, lights: true, live: false, motion: false, strategy: 'mis', tables: 'guided', samples: 1, rows: 256, lookupSize: 512, truthSamples: 8, bounces: 0, shadows: false,
     probes: true, probeBlend: 8, probeParallax: true, probeVisibility: true, probeBalls: false,
     eye: [0, 0, 0], target: [0, 0, 0], fov: 35, panel: true, fullResolution: false,
 };

@@ -8,6 +8,7 @@ import {fullscreen, ownFrame} from '../../src/render/program';
 import type {Uniforms} from '../../src/render/surfaces';
 import {radians} from '../../src/scene/framing';
 import bilinear from '../../src/shading/bilinear.glsl?raw';
+import brdf from '../../src/shading/brdf.glsl?raw';
 import material from '../../src/shading/material.glsl?raw';
 import monteCarlo from '../../src/shading/monte_carlo.glsl?raw';
 import tonemap from '../../src/shading/tonemap.glsl?raw';
@@ -17,7 +18,7 @@ import {luminance} from './maps';
 import show from './show.glsl?raw';
 
 /// The text in front of what uses the functions of monte_carlo.glsl.
-export const monteCarloParts = [ownFrame(sphericalEnvmap), sampleEnvmap, bilinear, material, monteCarlo];
+export const monteCarloParts = [ownFrame(sphericalEnvmap), sampleEnvmap, bilinear, material, brdf, monteCarlo];
 
 export const ballUniforms = (): Uniforms => ({
     u_normal: {value: new THREE.Vector3()}, u_ball_roughness: {value: 0.3}, u_what: {value: 0}, u_columns_of_table: {value: 1},

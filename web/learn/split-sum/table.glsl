@@ -35,7 +35,7 @@ float true_lobe(vec3 v, vec3 l) {
     s.diffuse = s.dielectric_f0 = s.dielectric_f90 = vec3(0.0);
     s.f0 = s.f90 = vec3(1.0);
     s.roughness = u_lobe_roughness;
-    return brdf_cosine(s, v, l).g;
+    return brdf_cosine(s, v, l, 0.0).g;
 }
 /// The lobe of the map about r, under n = v = r.
 float map_lobe(vec3 r, vec3 l) {

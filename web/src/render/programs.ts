@@ -7,10 +7,12 @@ import accumulate from '../shading/accumulate.glsl?raw';
 import backgroundFragment from '../shading/background_fragment.glsl?raw';
 import backgroundVertex from '../shading/background_vertex.glsl?raw';
 import bilinear from '../shading/bilinear.glsl?raw';
+import brdf from '../shading/brdf.glsl?raw';
 import diffuse from '../shading/diffuse.glsl?raw';
 import environment from '../shading/environment.glsl?raw';
 import identify from '../shading/identify.glsl?raw';
 import level from '../shading/level.glsl?raw';
+import lights from '../shading/lights.glsl?raw';
 import lookup from '../shading/lookup.glsl?raw';
 import material from '../shading/material.glsl?raw';
 import metallicRoughness from '../shading/metallic_roughness.glsl?raw';
@@ -43,20 +45,22 @@ import {stretchedFit} from './stretched_fit';
 const sharp = [generic, environment, projections, lookup];
 /// What computes a surface's light, by mode.
 const lighting: Record<Mode, string[]> = {
-    'split-sum': [generic, diffuse, metallicRoughness, splitSum],
-    stretched: [generic, diffuse, metallicRoughness, stretchedFit(), stretched],
-    phong: [generic, diffuse, phongChain, phong],
-    mirror: [...sharp, mirror],
-    refract: [...sharp, refract],
-    'monte-carlo': [ownFrame(sphericalEnvmap), sampleEnvmap, bilinear, monteCarlo],
+    'split-sum': [generic, diffuse, metallicRoughness, splitSum, brdf],
+    stretched: [generic, diffuse, metallicRoughness, stretchedFit(), stretched, brdf],
+    phong: [generic, diffuse, phongChain, phong, brdf],
+    mirror: [...sharp, mirror, brdf],
+    refract: [...sharp, refract, brdf],
+    'monte-carlo': [ownFrame(sphericalEnvmap), sampleEnvmap, bilinear, brdf, monteCarlo],
 };
+/// How lights.glsl has a surface reflect lights without size.
+const litBy: Record<Mode, number> = {'split-sum': 3, stretched: 3, phong: 1, mirror: 2, refract: 2, 'monte-carlo': 0};
 
 /// The methods that can be lit by a set of probes in place of the maps of one environment.
 export const probeModes = ['split-sum', 'stretched', 'phong'] as const;
 type ProbeMode = (typeof probeModes)[number];
 const byProbes = (mode: ProbeMode): string[] => {
     const own: Record<ProbeMode, string[]> = {'split-sum': [metallicRoughness, splitSum], stretched: [metallicRoughness, stretchedFit(), stretched], phong: [phongProbes, phong]};
-    return ['#define LIGHT_BY_PROBES', probeRecords, probeVisibility, probeBlend, probeLight, diffuse, ...own[mode]];
+    return ['#define LIGHT_BY_PROBES', probeRecords, probeVisibility, probeBlend, probeLight, diffuse, ...own[mode], brdf];
 };
 
 /// What a model is drawn with: a method of shading, or what the page wants to know of a pixel.
@@ -66,7 +70,7 @@ function fragments(purpose: Purpose): string[] {
     if (purpose === 'identify') return [identify];
     if (purpose === 'probe') return [material, surface, probe];
     const mode = probeModes.find(name => purpose === `${name} by probes`);
-    return [material, surface, ...(mode ? byProbes(mode) : lighting[purpose as Mode]), modelFragment];
+    return [material, surface, ...(mode ? byProbes(mode) : lighting[purpose as Mode]), `#define LIT_BY ${litBy[mode ?? (purpose as Mode)]}`, lights, modelFragment];
 }
 
 export const modelProgram = (purpose: Purpose): Program => ({vertexShader: join(modelVertex), fragmentShader: join(...fragments(purpose))});

@@ -6,6 +6,7 @@ import type {Bake, BrdfTable, Chain, EnvironmentInfo, Latlong, Tables} from '../
 import type {ProbeSet} from '../probes/load';
 import {StageProbes} from '../probes/stage_probes';
 import {radians} from '../scene/framing';
+import {k_most_lights, lightVectors} from '../scene/lights';
 import {backgrounds, lookups, strategies, tables, tonemaps, type Mode, type State} from '../state';
 import {Backlog} from './backlog';
 import {LookupMaps} from './lookup_maps';
@@ -44,7 +45,7 @@ export class Stage {
         u_columns: uniform(null), u_rows: uniform(null), u_strategy: uniform(0), u_tables: uniform(0), u_samples: uniform(1), u_frame: uniform(0),
         u_override: uniform(false), u_override_color: uniform(new THREE.Color()), u_override_metalness: uniform(1), u_override_roughness: uniform(0),
         u_background: uniform(0), u_background_color: uniform(new THREE.Color(1, 1, 1)), u_background_roughness: uniform(0.35),
-        u_unproject: uniform(new THREE.Matrix4()),
+        u_unproject: uniform(new THREE.Matrix4()), u_light_count: uniform(0), u_lights: uniform(Array.from({length: 4 * k_most_lights}, () => new THREE.Vector4())),
     };
     private readonly scene = new THREE.Scene();
     readonly present: Pass;
@@ -61,6 +62,8 @@ export class Stage {
     private readonly cubeCamera = new THREE.PerspectiveCamera(90, 1);
     private readonly tiny = new THREE.WebGLRenderTarget(1, 1);
     private uploads = 0;
+    /// Of the model.
+    lights = 0;
 
     constructor(canvas: HTMLCanvasElement) {
         this.renderer = new THREE.WebGLRenderer({canvas, antialias: false, depth: false, stencil: false, alpha: false});
@@ -136,6 +139,7 @@ export class Stage {
         this.model = root;
         this.meshes = litMeshes(root, this.uniforms);
         this.scene.add(root);
+        this.placeLights();
         this.prepared.clear();
         this.restart();
     }
@@ -210,6 +214,7 @@ export class Stage {
         u.u_exponent!.value = state.override ? 2 ** state.exponentLog2 : -1;
         u.u_ior_outside!.value = state.iorOutside;
         u.u_ior_inside!.value = state.iorOverride ? state.ior : -1;
+        u.u_light_count!.value = state.lights ? this.lights : 0;
         u.u_strategy!.value = strategies.indexOf(state.strategy);
         u.u_tables!.value = tables.indexOf(state.tables);
         u.u_samples!.value = state.samples;
@@ -268,6 +273,11 @@ export class Stage {
         });
     }
 
+    private placeLights(): void {
+        const vectors = this.model ? lightVectors(this.model) : [], all = this.uniforms.u_lights!.value as THREE.Vector4[];
+        vectors.forEach((v, k) => all[k]!.copy(v));
+        this.lights = vectors.length / 4;
+    }
     get objects(): readonly LitMesh[] {
         return this.meshes;
     }
@@ -275,6 +285,7 @@ export class Stage {
     placed(): void {
         this.model?.updateMatrixWorld(true);
         for (const mesh of this.meshes) mesh.place();
+        this.placeLights();
         this.restart();
     }
     /// Draws what is seen of the other objects from the middle of one, by split-sum, over zeros: six faces one above the other, as they lie in the frame of the

@@ -34,6 +34,7 @@ export async function loadModel(renderer: THREE.WebGLRenderer, name: string, byt
     }
     if (!gltf.scene || !hasSurface(gltf.scene)) throw new Error(`${name}: the model has no surface to be lit.`);
     freeze(gltf.scene);
+    gltf.scene.userData.luxPerUnit = gltf.asset.extras?.lux_per_unit;
     gltf.scene.traverse(object => (object.userData.sourceMaterial = (object as THREE.Mesh).material));
     return {name, root: gltf.scene, variants: variantsOf(gltf), useVariant: index => useVariant(gltf, index)};
 }

@@ -8,7 +8,8 @@ void main() {
     blend_at(s.position, s.normal);
 #endif
     vec3 light = s.emission;
-    if (!s.unlit) light += shade(s, normalize(u_eye - s.position));
+    vec3 v = normalize(u_eye - s.position);
+    if (!s.unlit) light += shade(s, v) + shade_lights(s, v);
     // Beyond this a half float is infinite.
     out_color = vec4(min(light, vec3(65504.0)), s.opacity);
 }

@@ -1,5 +1,5 @@
 // The reflected light itself, by random samples, which the panes average: the integral of f L cos over the hemisphere, without shadows, as
-// `domelight render --shading reference --bounces 0 --occlusion off` computes it. Behind docs/shaders/spherical_envmap.glsl and
+// `domelight render --shading reference --bounces 0 --occlusion off` computes it. Behind brdf.glsl, docs/shaders/spherical_envmap.glsl and
 // sample_envmap.glsl, whose loops over row averages and along a row draw from the environment, and bilinear.glsl.
 
 uniform int u_strategy;    // 0 both (MIS), 1 the environment, 2 the BRDF
@@ -57,27 +57,6 @@ EnvmapSample look_up(vec3 direction) {
     return light;
 }
 
-// The BRDF: glTF's, a Lambert layer below GGX microfacets. Vectors of the frame whose z is the normal. src/render/surface/bsdf.h.
-
-float ggx_root(float cosine, float a2) {
-    return sqrt(a2 + (1.0 - a2) * cosine * cosine);
-}
-/// D: Walter et al. 2007, eq. 33. h has any length.
-float ggx_d(vec3 h, float a2) {
-    float h2 = dot(h, h), d = h.z * h.z * a2 + (h.x * h.x + h.y * h.y);
-    return a2 * h2 * h2 / (k_pi * d * d);
-}
-/// f times the cosine.
-vec3 brdf_cosine(Surface s, vec3 v, vec3 l) {
-    if (l.z <= 0.0 || v.z <= 0.0) return vec3(0.0);
-    vec3 h = v + l;
-    float VdotH = 0.5 * length(h), schlick = pow(1.0 - min(VdotH, 1.0), 5.0), a2 = pow(s.roughness, 4.0);
-    vec3 under = mix(s.dielectric_f0, s.dielectric_f90, schlick);
-    // glTF 2.0, B.3.4: light that the layer above reflects does not reach the layer below.
-    vec3 diffuse = s.diffuse * (1.0 - max(under.r, max(under.g, under.b))) / k_pi;
-    float visibility = 0.5 / (l.z * ggx_root(v.z, a2) + v.z * ggx_root(l.z, a2));
-    return (diffuse + mix(s.f0, s.f90, schlick) * (ggx_d(h, a2) * visibility)) * l.z;
-}
 /// The part of the samples that is drawn from the specular lobe.
 float specular_share(Surface s, float NdotV) {
     const vec3 weights = vec3(0.2126, 0.7152, 0.0722);
@@ -104,12 +83,6 @@ vec3 sample_brdf(Surface s, float share, vec3 v, vec4 random) {
     return reflect(-v, h);
 }
 
-/// A frame about a normal: Duff et al. 2017.
-mat3 frame_of(vec3 n) {
-    float side = n.z < 0.0 ? -1.0 : 1.0, a = -1.0 / (side + n.z), b = n.x * n.y * a;
-    return mat3(vec3(1.0 + side * n.x * n.x * a, side * b, -side * n.x), vec3(b, side + n.y * n.y * a, -n.y), n);
-}
-
 vec3 shade(Surface s, vec3 view) {
     g_seed = uvec4(uvec2(gl_FragCoord.xy), 0u, uint(u_frame));
     mat3 frame = frame_of(s.normal);
@@ -128,13 +101,13 @@ vec3 shade(Surface s, vec3 view) {
             vec3 l = light.direction * frame;
             // The balance heuristic of one sample each: Veach 1997, eq. 9.8.
             float pdf = light.pdf_solid_angle + (u_strategy == 0 ? brdf_pdf(s, share, v, l) : 0.0);
-            if (light.pdf_solid_angle > 0.0) sum += brdf_cosine(s, v, l) * light.radiance / pdf;
+            if (light.pdf_solid_angle > 0.0) sum += brdf_cosine(s, v, l, 0.0) * light.radiance / pdf;
         }
         if (u_strategy != 1) {
             vec3 l = sample_brdf(s, share, v, random4());
             EnvmapSample light = look_up(frame * l);
             float pdf = brdf_pdf(s, share, v, l) + (u_strategy == 0 ? light.pdf_solid_angle : 0.0);
-            if (l.z > 0.0 && pdf > 0.0) sum += brdf_cosine(s, v, l) * light.radiance / pdf;
+            if (l.z > 0.0 && pdf > 0.0) sum += brdf_cosine(s, v, l, 0.0) * light.radiance / pdf;
         }
     }
     return sum / float(u_samples);

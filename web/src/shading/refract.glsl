@@ -4,6 +4,11 @@
 uniform float u_ior_outside;  // of what surrounds the model: 1 for air
 uniform float u_ior_inside;   // below 0: the material's
 
+float highlight_f0(Surface s) {
+    float inside = u_ior_inside > 0.0 ? u_ior_inside : s.ior, ratio = (inside - 1.0) / (inside + 1.0);
+    return ratio * ratio;
+}
+
 vec3 shade(Surface s, vec3 v) {
     float inside = u_ior_inside > 0.0 ? u_ior_inside : s.ior, outside = u_ior_outside, NdotV = clamp(dot(s.normal, v), 0.0, 1.0);
     float eta = s.front ? outside / inside : inside / outside;

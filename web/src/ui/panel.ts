@@ -26,12 +26,15 @@ export function sceneSection(app: App): HTMLElement {
         model.querySelector('select')!.value = app.model.name;
         environment.fill(own(environmentNames, app.environmentName));
         environment.querySelector('select')!.value = app.environmentName;
+        lights.hidden = app.stage.lights === 0;
         variants.hidden = app.model.variants.length === 0;
         variant.replaceChildren(element('option', {value: ''}, 'as in the file'), ...app.model.variants.map((name, k) => element('option', {value: `${k}`}, name)));
     });
     const projection = new SelectControl(store, 'projection', 'Files without a stated projection are', projections.map(name => [name, name === 'auto' ? 'recognised by their shape' : name] as const));
+    const lights = new CheckControl(store, 'lights', 'Lights of the model', 'Points, spots and directional lights of the file (KHR_lights_punctual)');
+    lights.hidden = true;
     return section('Scene', true, model, variants, environment, projection, new CheckControl(store, 'furnace', 'White furnace', 'Light of radiance 1 from everywhere (W)'),
-        new CheckControl(store, 'motion', 'Let it move', 'Balls to and fro, models about the vertical axis (M)'));
+        lights, new CheckControl(store, 'motion', 'Let it move', 'Balls to and fro, models about the vertical axis (M)'));
 }
 
 export function pictureSection({store}: App): HTMLElement {
