@@ -20,7 +20,7 @@ if (!files.length) throw new Error('Which environment? node bench/web.mjs [--run
 const chromium = execFileSync('sh', ['-c', 'command -v chromium'], {encoding: 'utf8'}).trim();
 const folders = Object.fromEntries(files.map((file, k) => [`/file${k}/`, path.dirname(path.resolve(file))]));
 const empty = fs.mkdtempSync(path.join(os.tmpdir(), 'domelight-web-'));
-fs.writeFileSync(path.join(empty, 'session'), JSON.stringify({scene: null, environment: [], truth: false}));
+fs.writeFileSync(path.join(empty, 'session'), JSON.stringify({scene: null, environment: [], probes: [], truth: false}));
 const server = await serve({'/app/api/': empty, '/app/': path.join(root, 'build/web'), ...folders});
 
 const categories = ['devtools.timeline', 'v8', 'v8.execute', 'disabled-by-default-v8.cpu_profiler', 'toplevel', 'blink', 'cc', 'gpu', 'base', 'blink.user_timing'];

@@ -30,7 +30,7 @@ struct ViewWords {
     std::vector<std::string> files;
     EnvironmentOptions environment;
     std::optional<int> port;
-    std::string app;
+    std::string app, probes;
     bool no_browser = false;
 };
 
@@ -38,6 +38,8 @@ void declare(Arguments& a, ViewWords& w) {
     a.positional("[SCENE] [ENV]", w.files,
                  "a model (.glb, .gltf) and an environment of any kind, in any order; without them the page shows its "
                  "own, and takes files that are dropped on it");
+    a.text("--probes", "DIR", w.probes,
+           "a set that `domelight probes` captured in the scene: the page lights the scene by it (docs/app.md)");
     a.group("The page");
     a.integer("--port", "N", w.port, "the port on 127.0.0.1, 1 to 65535 (one that is free)");
     a.flag("--no-browser", w.no_browser, "only print the page's address, and open no browser");
@@ -67,6 +69,7 @@ Result<ViewOptions> options_of(const ViewWords& w) {
     options.environment_options = w.environment;
     options.environment_options.threads = w.common.threads.value_or(0);
     options.threads = w.common.threads.value_or(0);
+    options.probes = w.probes;
     options.port = w.port.value_or(0);
     std::vector<std::string> environment;
     for (const std::string& file : w.files) {

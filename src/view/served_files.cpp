@@ -3,6 +3,8 @@
 #include "domelight/io/file/file_extension.h"
 
 #include "io/file/json.h"
+#include "io/file/path_inside.h"
+#include "probe/probe_record.h"
 #include "scene/gltf/gltf_uri.h"
 
 #include <fmt/core.h>
@@ -112,6 +114,21 @@ Result<std::string> ServedFiles::add_environment(const fs::path& file, int numbe
     const std::string address = fmt::format("/files/environment/{}/{}", number, file.filename().generic_string());
     files_[address] = {file, media_type(file)};
     return address;
+}
+
+Result<std::vector<std::string>> ServedFiles::add_probes(const fs::path& folder) {
+    const auto record = read_probe_record(folder);
+    if (!record) return record.error();
+    std::vector<std::string> names{k_probes_json, record->specular.file, record->irradiance.file}, addresses;
+    if (record->distance) names.push_back(record->distance->file);
+    for (const std::string& name : names) {
+        const auto place = path_inside(folder / name, folder, name);
+        if (!place) return place.error().at((folder / k_probes_json).string());
+        if (auto ok = check_readable(*place); !ok) return ok.error();
+        addresses.push_back("/files/probes/" + name);
+        files_[addresses.back()] = {*place, media_type(*place)};
+    }
+    return addresses;
 }
 
 const ServedFiles::File* ServedFiles::find(const std::string& address) const {

@@ -27,6 +27,11 @@ class ServedFiles {
     /// A file of an environment as "/files/environment/NUMBER/NAME"; returns that address. Errors: it cannot be read.
     Result<std::string> add_environment(const std::filesystem::path& file, int number);
 
+    /// probes.json of a set of probes, and the files of cubes that it names, as "/files/probes/NAME"; returns their
+    /// addresses, that of probes.json first. Errors: probes.json is missing or damaged; a file is missing or outside of
+    /// the folder.
+    Result<std::vector<std::string>> add_probes(const std::filesystem::path& folder);
+
     /// Null where the address does not exist.
     const File* find(const std::string& address) const;
 

@@ -109,6 +109,13 @@ Result<void> ViewServer::Impl::find_files(const ViewOptions& options) {
         if (!address) return address.error();
         environment_json.push_back({{"name", file.filename().string()}, {"url", escaped(*address)}});
     }
+    Json probes_json = Json::array();
+    if (!options.probes.empty()) {
+        const auto addresses = files.add_probes(options.probes);
+        if (!addresses) return addresses.error();
+        for (const std::string& address : *addresses)
+            probes_json.push_back({{"name", fs::path(address).filename().string()}, {"url", escaped(address)}});
+    }
     if (environment.empty() && files.find("/default.hdr")) environment = {options.app / "default.hdr"};
 
     const EnvironmentOptions& o = options.environment_options;
@@ -123,6 +130,7 @@ Result<void> ViewServer::Impl::find_files(const ViewOptions& options) {
                      {"up", o.up},
                      {"rotate_y_deg", o.rotate_y_deg},
                      {"exposure", o.exposure}}},
+                   {"probes", std::move(probes_json)},
                    {"truth", renders}};
     if (renders) truth = std::make_unique<Truth>(scene, environment, o, options.threads);
     return {};

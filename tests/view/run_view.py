@@ -146,6 +146,19 @@ def test_the_page_and_the_files_of_the_command_line_are_served(folder):
         assert (status, body) == (206, (folder / "sky.hdr").read_bytes()[2:10])
 
 
+def test_a_set_of_probes_is_served_with_the_page(folder):
+    subprocess.run([PROGRAM, "probes", "tri angle.gltf", "--env", "sky.hdr", "-o", "probes", "--at", "0,0,1", "--size", "8", "--spp", "1", "--quiet"], cwd=folder, check=True)
+    (folder / "probes/notes.txt").write_text("secret")
+    with serving(folder, "tri angle.gltf", "sky.hdr", "--probes", "probes") as port:
+        files = json.loads(ask(port, "/api/session")[2])["probes"]
+        assert [file["name"] for file in files] == ["probes.json", "specular.ktx2", "irradiance.ktx2", "distance.ktx2"], files
+        for file in files:
+            assert ask(port, file["url"])[2] == (folder / "probes" / file["name"]).read_bytes(), file
+        assert ask(port, "/files/probes/notes.txt")[0] == 404
+    refused = subprocess.run([PROGRAM, "view", "--no-browser", "--app", "app", "--probes", "app"], cwd=folder, capture_output=True, text=True)
+    assert refused.returncode == 1 and "probes.json" in refused.stderr, refused
+
+
 def test_nothing_else_is_served(folder):
     with serving(folder, "tri angle.gltf", "sky.hdr") as port:
         for path in ["/secret.txt", "/../secret.txt", "/app/../secret.txt", "/%2e%2e/secret.txt", "/files/scene/../secret.txt",

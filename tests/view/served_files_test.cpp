@@ -37,6 +37,37 @@ TEST_CASE("view: the page's folder is served, without what links lead to") {
     }
 }
 
+TEST_CASE("view: of a set of probes, probes.json and the files that it names are served") {
+    TemporaryFolder folder;
+    const auto record = [&](const std::string& specular) {
+        write(folder / "set/probes.json",
+              R"({"format": 1, "grid": null, "specular": {"file": ")" + specular +
+                  R"(", "size": 8, "levels": [{"roughness": 0}]}, "irradiance": {"file": "irradiance.ktx2", "size": 4},
+                  "probes": [{"place": [0, 1, 0], "position": [0, 1, 0], "harmonics": [[1,1,1],[0,0,0],[0,0,0],[0,0,0],
+                  [0,0,0],[0,0,0],[0,0,0],[0,0,0],[0,0,0]]}]})");
+    };
+    record("specular.ktx2");
+    write(folder / "set/specular.ktx2");
+    write(folder / "set/notes.txt");
+    write(folder / "secret.ktx2");
+    ServedFiles missing;
+    CHECK_FALSE(missing.add_probes(folder / "set"));
+    write(folder / "set/irradiance.ktx2");
+    ServedFiles files;
+    const auto addresses = files.add_probes(folder / "set");
+    REQUIRE(addresses);
+    CHECK(*addresses == std::vector<std::string>{"/files/probes/probes.json", "/files/probes/specular.ktx2",
+                                                 "/files/probes/irradiance.ktx2"});
+    for (const std::string& address : *addresses) CHECK(files.find(address));
+    for (const char* none : {"/files/probes/notes.txt", "/files/probes/distance.ktx2", "/files/probes/"})
+        CHECK(files.find(none) == nullptr);
+
+    record("../secret.ktx2");
+    const auto outside = ServedFiles().add_probes(folder / "set");
+    REQUIRE_FALSE(outside);
+    CHECK_FALSE(ServedFiles().add_probes(folder / "nowhere"));
+}
+
 TEST_CASE("view: a folder without a page is refused") {
     TemporaryFolder folder;
     const auto added = ServedFiles().add_app(folder.path());

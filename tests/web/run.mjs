@@ -26,7 +26,7 @@ const policy = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-
                "connect-src 'self' blob:; worker-src 'self' blob:; base-uri 'none'; form-action 'none'";
 // A server without files on its command line: the page asks for its session.
 fs.mkdirSync(path.join(work, 'api'), {recursive: true});
-fs.writeFileSync(path.join(work, 'api/session'), JSON.stringify({scene: null, environment: [], truth: false}));
+fs.writeFileSync(path.join(work, 'api/session'), JSON.stringify({scene: null, environment: [], probes: [], truth: false}));
 const server = await serve({'/app/api/': path.join(work, 'api'), '/app/': path.join(root, 'build/web'), '/work/': work, '/models/': path.join(root, 'tests/web/models'), '/data/': process.env.DOMELIGHT_DATA ?? work},
                            {'Content-Security-Policy': policy});
 const browser = await launch(path.join(root, 'web/node_modules'), chromium);

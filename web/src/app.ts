@@ -121,6 +121,7 @@ export class App {
         }
         const {scene} = served ?? {};
         if (scene) await this.work(`reading ${scene.name}`, async () => this.showModel(await loadModel(this.stage.renderer, scene.name, await (await fetchFile(scene)).arrayBuffer(), new Map(), scene.url.replace(/[^/]*$/, ''))));
+        if (served?.probes.length) await this.work('reading the probes', async () => this.openProbes(await Promise.all(served.probes.map(fetchFile))));
         await table;
     }
 

@@ -10,6 +10,8 @@ export interface NamedFile {
 export interface Session {
     scene: NamedFile | null;
     environment: NamedFile[];
+    /// probes.json of a set, and the files that it names.
+    probes: NamedFile[];
     truth: boolean;
 }
 

@@ -23,8 +23,9 @@ struct ViewOptions {
     std::filesystem::path scene;                     ///< .glb, .gltf, .obj or .ply; empty: the page's own
     std::vector<std::filesystem::path> environment;  ///< what open_environment() takes; empty: the page's own
     EnvironmentOptions environment_options;
-    int port = 0;     ///< 1 to 65535; 0: any that is free
-    int threads = 0;  ///< for path tracing; 0: all
+    std::filesystem::path probes;  ///< the folder of a set of probes by which the page lights the scene; empty: none
+    int port = 0;                  ///< 1 to 65535; 0: any that is free
+    int threads = 0;               ///< for path tracing; 0: all
 };
 
 /// Serves the page's folder, the files that the options name with those that they refer to, and pictures that are path
@@ -35,7 +36,7 @@ struct ViewOptions {
 class ViewServer {
   public:
     /// Listens when it returns; requests are answered on threads of its own. Errors: no index.html in `app`; a file that
-    /// does not exist (`scene`, `environment`); the port is in use or not allowed (`port`).
+    /// does not exist (`scene`, `environment`); no set of probes (`probes`); the port is in use or not allowed (`port`).
     static Result<ViewServer> start(const ViewOptions& options);
     /// Ends all answers, and the path tracing.
     ~ViewServer();
