@@ -86,7 +86,7 @@ def test_probes_are_placed_automatically_with_their_boxes(folder):
 
 
 def test_probes_refuse_what_cannot_work(folder):
-    def refused(*words, code, says, scene="spheres"):
+    def refused(*words, code, says, scene="ball"):
         error = run("probes", scene, "-o", "set", *PROBES, *words, folder=folder, code=code).stderr
         assert says in error, error
         assert not (folder / "set").exists(), words
