@@ -61,10 +61,10 @@ def scene_file(name, folder):
     return file
 
 
-# How each scene is lit, seen, and filled with probes.
+# How each scene is lit, seen, and filled with probes. spp: times that of the others, for a lamp that paths only meet by chance.
 SCENES = {
     "rooms": {"env": DATA / NOON, "exposure": 4.5, "camera": rooms.CAMERA, "probes": ["--grid", "9,3,4", "--region", "0,0,0,9,2.8,4"]},
-    "cornell": {"env": DATA / NOON, "exposure": 0, "camera": ("-278,273,560", "-278,273,-280", 50), "probes": ["--grid", "5,5,5", "--size", 32]},
+    "cornell": {"env": DATA / NOON, "exposure": 0, "spp": 4, "camera": ("-278,273,560", "-278,273,-280", 50), "probes": ["--grid", "5,5,5", "--size", 32]},
     "zdm2": {"env": DATA / FIELD, "exposure": 1.5, "camera": ("2.5,2.2,2.5", "-3,1.2,-3", 75), "probes": ["--grid", "8,3,8", "--region", "-6,0,-6,6,4,6", "--size", 32]},
 }
 
@@ -90,7 +90,7 @@ def measure(name, arguments, folder):
     light = whole if arguments.whole else sun_and_rest(how["env"], folder) + whole[2:]
     truth = folder / f"{name}_truth.exr"
     if not truth.exists():
-        domelight("render", scene, *whole, *view, "--spp", arguments.spp, "--bounces", 8, "-o", truth)
+        domelight("render", scene, *whole, *view, "--spp", arguments.spp * how.get("spp", 1), "--bounces", 8, "-o", truth)
     probes = folder / f"{name}_probes{'_whole' if arguments.whole else ''}"
     made = {"probes": None}
     if not (probes / "probes.json").exists():

@@ -38,8 +38,8 @@ def test_probes_are_written_whole_and_described(folder):
 
 
 def test_a_render_is_lit_by_probes(folder):
-    run("probes", "spheres", "-o", "set", "--grid", "2,2,2", *PROBES, folder=folder)
-    view = ["spheres", "--width", "16", "--height", "8", "--spp", "1", "--background", "transparent", "--shading", "split-sum", "--quiet"]
+    run("probes", "spheres", "--env", "evening.hdr", "-o", "set", "--grid", "2,2,2", *PROBES, folder=folder)
+    view = ["spheres", "--env", "evening.hdr", "--width", "16", "--height", "8", "--spp", "1", "--background", "transparent", "--shading", "split-sum", "--quiet"]
     pictures = []
     for options in [[], ["--parallax", "off"], ["--probe-blend", "1"], ["--probe-visibility", "off"], ["--probe-visibility", "off", "--probe-offset", "0.5"],
                     ["--irradiance", "sh"], ["--shading", "stretched"], ["--shading", "phong"]]:
