@@ -94,10 +94,6 @@ int print_completion(const std::vector<std::string>& words) {
     return exit_done;
 }
 
-Result<void> write_text(const std::filesystem::path& file, const std::string& text) {
-    return write_file_atomically(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
-
 /// domelight manual DIR: writes the manual pages and the completions, which cmake --install installs.
 int write_manual(const std::vector<std::string>& words) {
     if (words.size() != 1) return print_error({"names one folder that exists", "manual", ""}, exit_usage);
@@ -110,7 +106,7 @@ int write_manual(const std::vector<std::string>& words) {
     for (const CommandDescription& command : program.commands)
         files.emplace_back("domelight-" + command.command + ".1", command_manual(program, command));
     for (const auto& [name, text] : files)
-        if (auto ok = write_text(folder / name, text); !ok) return print_error(ok.error());
+        if (auto ok = write_file_atomically(folder / name, text); !ok) return print_error(ok.error());
     return exit_done;
 }
 

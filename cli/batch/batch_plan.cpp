@@ -37,8 +37,7 @@ Result<void> write_commands(const std::filesystem::path& folder, int shards) {
     const std::string place = shell_word(std::filesystem::weakly_canonical(folder, failure).string());
     std::string text;
     for (int i = 1; i <= shards; ++i) text += fmt::format("domelight batch run {} --shard {}/{}\n", place, i, shards);
-    return write_file_atomically(folder / "commands.txt",
-                                 {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    return write_file_atomically(folder / "commands.txt", text);
 }
 
 void print_result(const BatchWords& w, const BatchPlan& plan, int shards) {

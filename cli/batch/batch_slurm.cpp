@@ -117,10 +117,6 @@ std::string merge_script(const BatchWords& w, const fs::path& place) {
            fmt::format("{0} batch merge {1}\nstatus=$?\n{0} batch report {1}\nexit $status\n", program, folder);
 }
 
-Result<void> write_script(const fs::path& file, const std::string& text) {
-    return write_file_atomically(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
-
 /// The number of shards of the array that was submitted before, and its job; 0 and empty where there is none.
 std::pair<int, std::string> submitted_before(const fs::path& place) {
     const auto json = Json::read(place / "slurm/submitted.json");
@@ -200,16 +196,17 @@ int batch_slurm(const BatchWords& w) {
         return exit_done;
     }
     fs::create_directories(place / "slurm", failure);
-    if (auto ok = write_script(place / "slurm/array.sh", array_script(w, place, request)); !ok)
+    if (auto ok = write_file_atomically(place / "slurm/array.sh", array_script(w, place, request)); !ok)
         return print_error(ok.error());
-    if (auto ok = write_script(place / "slurm/merge.sh", merge_script(w, place)); !ok) return print_error(ok.error());
+    if (auto ok = write_file_atomically(place / "slurm/merge.sh", merge_script(w, place)); !ok)
+        return print_error(ok.error());
     std::pair<std::string, std::string> jobs;
     if (!w.no_submit) {
         const auto submitted = submit(place, request);
         if (!submitted) return print_error(submitted.error());
         jobs = *submitted;
         const Json json{{"shards", shards}, {"array", jobs.first}, {"merge", jobs.second}};
-        if (auto ok = write_script(place / "slurm/submitted.json", json.dump(1) + "\n"); !ok)
+        if (auto ok = write_file_atomically(place / "slurm/submitted.json", json.dump(1) + "\n"); !ok)
             return print_error(ok.error());
     }
     print_result(w, place, request, jobs.first, jobs.second);

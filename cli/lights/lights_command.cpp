@@ -170,10 +170,6 @@ Json document(const LightsWords& w, const Outcome& o) {
             {"texel_deg", r.texel_deg}};
 }
 
-Result<void> write_text(const std::filesystem::path& file, const std::string& text) {
-    return write_file_atomically(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
-
 Result<void> write_remainder(const std::filesystem::path& file, const Outcome& o, bool hdr, int threads) {
     if (hdr) return write_hdr(file, o.found.remainder.view(), threads);
     ExrWriteOptions exr;
@@ -203,9 +199,9 @@ Result<Json> write_all(const LightsWords& w, Outcome& o) {
     const double turned_deg = o.keeps_orientation() ? w.environment.rotate_y_deg : 0;
     const std::string gltf =
         gltf_lights(o.found.lights, w.lux_per_unit, turned_deg, fmt::format("domelight {}", version()));
-    if (auto ok = write_text(staging->stage("lights.gltf"), gltf); !ok) return ok.error();
+    if (auto ok = write_file_atomically(staging->stage("lights.gltf"), gltf); !ok) return ok.error();
     Json json = document(w, o);
-    if (auto ok = write_text(staging->stage("lights.json"), json.dump(2) + "\n"); !ok) return ok.error();
+    if (auto ok = write_file_atomically(staging->stage("lights.json"), json.dump(2) + "\n"); !ok) return ok.error();
     if (auto ok = staging->commit("lights.json"); !ok) return ok.error();
     return json;
 }

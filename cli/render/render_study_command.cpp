@@ -104,7 +104,7 @@ class Output {
         }
         const std::string file = (fs::path(place_) / "study.json").string(), text = json.dump(2) + "\n";
         files_.push_back(file);
-        return write_file_atomically(file, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+        return write_file_atomically(file, text);
     }
     const std::vector<std::string>& files() const { return files_; }
 

@@ -294,8 +294,7 @@ class EngineBake {
     }
 
     Result<void> write_text(const std::string& name, const std::string& text) {
-        return write_file_atomically(staging_.stage(name),
-                                     {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+        return write_file_atomically(staging_.stage(name), text);
     }
 
     void write_brdf() {

@@ -87,10 +87,7 @@ Result<JobReport> run(const JobCall& call) {
                                         *bake, *audit, *as_read, convention, repaired.lines())
                                  .dump(2) +
                              "\n";
-    if (auto ok = write_file_atomically(call.folder / call.name,
-                                        {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-        !ok)
-        return ok.error();
+    if (auto ok = write_file_atomically(call.folder / call.name, text); !ok) return ok.error();
     JobReport report;
     report.warnings = repaired.lines();
     if (!audit->passed()) report.warnings.push_back("the audit was not passed: " + audit->verdict);

@@ -118,8 +118,7 @@ Result<fs::path> write_batch_report(const BatchPlan& plan, const fs::path& folde
     for (std::size_t i = 0; i < shown.size(); ++i) jobs.push_back(job_json(plan.jobs[i], shown[i], logs, store, page));
     const std::string text = k_report_head + inside_script(document.dump()) + k_report_tail;
     const fs::path file = page / "index.html";
-    if (auto ok = write_file_atomically(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}); !ok)
-        return ok.error();
+    if (auto ok = write_file_atomically(file, text); !ok) return ok.error();
     return file;
 }
 

@@ -199,8 +199,7 @@ Result<BatchMerge> merge_batch(const BatchPlan& plan, const fs::path& folder, Ba
         return merge;
     }
     store.remove_leftovers(true);
-    const auto ok = write_file_atomically(batch / "index.jsonl",
-                                          {reinterpret_cast<const std::uint8_t*>(index.data()), index.size()});
+    const auto ok = write_file_atomically(batch / "index.jsonl", index);
     return ok ? Result<BatchMerge>(std::move(merge)) : ok.error();
 }
 

@@ -154,10 +154,7 @@ Result<void> ResultStore::finish(const BatchJob& job, const JobReport& report) c
     auto files = take_stock(from / "files", report.hashes);
     if (!files) return files.error();
     const std::string text = record_text({job.id, job.kind, *std::move(files), report});
-    if (auto ok = write_file_atomically(from / k_record_file,
-                                        {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-        !ok)
-        return ok;
+    if (auto ok = write_file_atomically(from / k_record_file, text); !ok) return ok;
     std::error_code failure;
     fs::create_directories(to.parent_path(), failure);
     if (failure) return Error{"cannot be created: " + failure.message(), to.parent_path().string(), ""};

@@ -151,10 +151,6 @@ Result<ProbeMapRecord> map_record(const fs::path& file, const std::string& name,
     return ProbeMapRecord{name, *std::move(hash), name_of(encoding), size};
 }
 
-Result<void> write_text(const fs::path& file, const std::string& text) {
-    return write_file_atomically(file, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
-}
-
 }  // namespace
 
 Result<ProbeBakeReport> bake_probes(const RayScene& scene, const EnvironmentSampler& sampler,
@@ -213,7 +209,7 @@ Result<ProbeBakeReport> bake_probes(const RayScene& scene, const EnvironmentSamp
     }
     const std::string text = probe_record_text(record);
     report->bytes += text.size();
-    if (auto ok = write_text(staging->stage(k_probes_json), text); !ok) return ok.error();
+    if (auto ok = write_file_atomically(staging->stage(k_probes_json), text); !ok) return ok.error();
     if (auto ok = staging->commit(k_probes_json); !ok) return ok.error();
     return report;
 }

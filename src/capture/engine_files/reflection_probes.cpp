@@ -77,8 +77,7 @@ Result<void> write_reflection_probes(EngineFilesJob& job) {
         Json{{"generator", fmt::format("domelight {}", version())}, {"engine", job.engine}, {"probes", list}}.dump(1) +
         "\n";
     job.report.files.push_back("probes.json");
-    return write_file_atomically(job.folder / "probes.json",
-                                 std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+    return write_file_atomically(job.folder / "probes.json", text);
 }
 
 }  // namespace domelight

@@ -35,8 +35,7 @@ Result<void> write_grid_files(EngineFilesJob& job, const std::string& name, cons
     json["generator"] = fmt::format("domelight {}", version());
     json["texture"] = texture;
     const std::string text = json.dump(1) + "\n";
-    const auto bytes = std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-    if (auto written = write_file_atomically(staging->stage(description), bytes); !written) return written.error();
+    if (auto written = write_file_atomically(staging->stage(description), text); !written) return written.error();
     job.report.files = {texture, description};
     return staging->commit(description);
 }

@@ -88,4 +88,8 @@ Result<void> write_file_atomically(const fs::path& file, std::span<const std::ui
     });
 }
 
+Result<void> write_file_atomically(const std::filesystem::path& file, std::string_view text) {
+    return write_file_atomically(file, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+}
+
 }  // namespace domelight

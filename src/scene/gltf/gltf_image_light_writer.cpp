@@ -57,7 +57,7 @@ Result<void> write_gltf_image_light(const std::filesystem::path& file, const Glt
                     {"scenes", Json::array({{{"extensions", {{"EXT_lights_image_based", {{"light", 0}}}}}}})},
                     {"scene", 0}};
     const std::string text = json.dump(1) + "\n";
-    return write_file_atomically(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    return write_file_atomically(file, text);
 }
 
 }  // namespace domelight

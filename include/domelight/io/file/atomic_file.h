@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace domelight {
@@ -21,6 +22,7 @@ namespace domelight {
 Result<void> write_file_atomically(const std::filesystem::path& file,
                                    const std::function<Result<void>(const std::filesystem::path&)>& write);
 Result<void> write_file_atomically(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
+Result<void> write_file_atomically(const std::filesystem::path& file, std::string_view text);
 
 /// Several files that appear together: each is written under a temporary name beside its place, and commit() moves all
 /// of them. What has not been committed is removed with the object, or when a signal ends the program.
