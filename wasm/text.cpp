@@ -1,5 +1,6 @@
-// base/text.cpp without std::to_chars, whose tables for doubles are 150 kilobytes.
+// base/text.cpp and base/read_number.cpp without std::to_chars and std::from_chars, whose tables for doubles are 150 and 11 kilobytes.
 
+#include "base/read_number.h"
 #include "base/text.h"
 
 #include <cmath>
@@ -60,6 +61,19 @@ std::string decimal(float value) {
 
 std::string decimal(std::int64_t value) {
     return std::to_string(value);
+}
+
+const char* read_number(const char* begin, const char* end, double& value) {
+    // strtod also takes blanks, a plus and hexadecimal digits, and wants a terminator.
+    char text[64] = "";
+    int count = 0;
+    while (begin + count < end && count < 63 && begin[count] != 'x' && begin[count] != 'X') text[count] = begin[count], ++count;
+    if (text[0] == '+' || static_cast<unsigned char>(text[0]) <= ' ') return nullptr;
+    char* stopped = nullptr;
+    const double number = std::strtod(text, &stopped);
+    if (stopped == text || std::isinf(number)) return nullptr;
+    value = number;
+    return begin + (stopped - text);
 }
 
 }  // namespace domelight

@@ -1,11 +1,11 @@
 #include "domelight/projection/projections.h"
 
+#include "base/read_number.h"
 #include "projection/latlong_convention.h"
 #include "projection/shapes.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <vector>
 
 namespace domelight {
@@ -54,7 +54,7 @@ struct Convention {
 Result<void> read_key(const std::string& key, const std::string& value, bool has_fov, Convention& c) {
     if (key == "fov" && has_fov) {
         const char* end = value.data() + value.size();
-        if (const auto [stop, code] = std::from_chars(value.data(), end, c.fov_deg); code != std::errc() || stop != end)
+        if (read_number(value.data(), end, c.fov_deg) != end)
             return Error{"\"" + value + "\" is not a number", "fov", ""};
         if (!(c.fov_deg >= 0 && c.fov_deg < 175))
             return Error{"a mirror ball's fov must lie between 0 and 175 degrees", "fov", ""};

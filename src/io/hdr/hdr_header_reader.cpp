@@ -1,5 +1,6 @@
 #include "io/hdr/hdr_header_reader.h"
 
+#include "base/read_number.h"
 #include "io/file/printable.h"
 #include "io/image_reader.h"
 
@@ -35,8 +36,8 @@ std::vector<double> numbers_in(std::string_view text) {
     for (;;) {
         while (at < end && (*at == ' ' || *at == '\t' || *at == '+')) ++at;
         double value = 0;
-        const auto [stopped, code] = std::from_chars(at, end, value);
-        if (code != std::errc()) return numbers;
+        const char* stopped = read_number(at, end, value);
+        if (!stopped) return numbers;
         numbers.push_back(value);
         at = stopped;
     }

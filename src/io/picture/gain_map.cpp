@@ -1,12 +1,12 @@
 #include "io/picture/gain_map.h"
 
+#include "base/read_number.h"
 #include "io/picture/exif.h"
 #include "io/picture/texture_image.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
@@ -96,8 +96,8 @@ std::vector<double> xmp_numbers(std::string_view xmp, std::string_view name) {
     for (const char *p = value.data(), *end = p + value.size(); p < end;) {
         if (*p == '<' || *p == '>') in_tag = *p == '<';
         double number = 0;
-        const auto [stopped, code] = std::from_chars(*p == '+' ? p + 1 : p, end, number);
-        if (in_tag || code != std::errc()) {
+        const char* stopped = read_number(*p == '+' ? p + 1 : p, end, number);
+        if (in_tag || !stopped) {
             ++p;
         } else {
             numbers.push_back(number);
