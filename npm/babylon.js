@@ -1,7 +1,7 @@
 // Babylon.js: what scene.environmentTexture takes, in place of HDRCubeTexture and of files that were prefiltered before.
 
-import {bake, DomelightError, Environment, fromPixels, read} from './index.js';
-import {colours, cubePixels} from './source.js';
+import {bake, DomelightError, fromPixels, read} from './index.js';
+import {colours, cubePixels, withEnvironment} from './source.js';
 
 /// Babylon's constants TEXTUREFORMAT_RGBA, TEXTURETYPE_FLOAT, TEXTURETYPE_HALF_FLOAT and TEXTURE_TRILINEAR_SAMPLINGMODE.
 const rgba = 5, floats = 1, halves = 2, trilinear = 3;
@@ -18,15 +18,10 @@ export async function bakeEnvironment(scene, source, {file, BABYLON = globalThis
         throw new DomelightError('has no RawCubeTexture and SphericalPolynomial', 'BABYLON', "Give {BABYLON}, of import * as BABYLON from '@babylonjs/core'.");
     const {size = 256} = options;
     if (!(Number.isInteger(Math.log2(size)) && size >= 1)) throw new DomelightError(`${size} is not a power of two`, 'size');
-    const own = !(source instanceof Environment);
-    const environment = own ? await open(scene, source, {signal: options.signal, ...file}) : source;
-    try {
-        // Babylon's graphics processor wants every level down to 1².
-        const fixed = {engine: 'babylon', encoding: 'rgba16f', layout: 'cube', levels: Math.log2(size) + 1, shBands: 3};
-        return cubeTexture(BABYLON, scene, await bake(environment, {...options, ...fixed}));
-    } finally {
-        if (own) environment.close();
-    }
+    // Babylon's graphics processor wants every level down to 1².
+    const fixed = {engine: 'babylon', encoding: 'rgba16f', layout: 'cube', levels: Math.log2(size) + 1, shBands: 3};
+    return withEnvironment(source, () => open(scene, source, {signal: options.signal, ...file}), async environment =>
+        cubeTexture(BABYLON, scene, await bake(environment, {...options, ...fixed})));
 }
 
 function open(scene, source, options) {

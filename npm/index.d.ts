@@ -124,6 +124,8 @@ interface Filtering extends Work {
 export interface PrefilterOptions extends Filtering {
     /** How many, each half the size of the one before (default 5, from size 256, roughness linear); or each by itself. */
     levels?: number | LevelSpec[];
+    /** Directions in the world, three numbers each: each level is then one row of a pixel for each of them, whatever its size. No level may have roughness 0. */
+    directions?: ArrayLike<number>;
     /** 3 x 3 by rows: a turn of the light. */
     worldToSource?: ArrayLike<number>;
 }

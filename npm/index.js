@@ -175,6 +175,11 @@ class Host {
         }
     }
 
+    /// Whether the worker of that generation still runs.
+    holds(generation) {
+        return !!this.#worker && this.generation === generation;
+    }
+
     /// Ends the worker, and with it all memory that it holds.
     terminate() {
         const worker = this.#worker;
@@ -214,7 +219,8 @@ class Remote {
         if (this.#closed) return;
         this.#closed = true;
         const id = this.#id, generation = this.#generation;
-        // Nothing is to be freed where the worker has ended meanwhile.
+        // Nothing is to be freed where the worker has ended, and no other is started for that.
+        if (!host.holds(generation)) return;
         host.call('close', worker => ({id: worker.generation === generation ? id : -1})).catch(() => {});
     }
 }

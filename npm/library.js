@@ -91,7 +91,7 @@ export class Library {
     /// Everything that is filtered, in one reading of the environment.
     prefilter(environment, options) {
         const {progress, signal, ...asked} = check(
-            options, 'levels', 'size', 'lobe', 'roughness', 'layout', 'texels', 'worldToSource', 'irradianceSize', 'shBands', 'progress', 'signal');
+            options, 'levels', 'size', 'lobe', 'roughness', 'layout', 'texels', 'directions', 'worldToSource', 'irradianceSize', 'shBands', 'progress', 'signal');
         const levels = levelSpecs(asked);
         return this.#filtered(environment, {...asked, levels}, progress, signal, handle => {
             const result = this.#results(handle, asked);
@@ -137,7 +137,8 @@ export class Library {
         });
     }
 
-    #filterOptions(scope, {layout, texels, levels, worldToSource, irradianceSize, shBands}, progress) {
+    #filterOptions(scope, {layout, texels, levels, directions, worldToSource, irradianceSize, shBands}, progress) {
+        const aims = directions === undefined ? undefined : triples(directions, 'directions');
         const instance = this.#instance, specs = scope.bytes(levelStruct.size * Math.max(levels.length, 1));
         levels.forEach(({size, roughness, exponent, lobe}, l) => {
             const at = specs + l * levelStruct.size;
@@ -147,7 +148,7 @@ export class Library {
         });
         return scope.options('prefilter_options', prefilterOptionsStruct, {
             layout: scope.word(layout, 'layout'), texels: scope.word(texels, 'texels'), levels: specs, levelCount: levels.length,
-            worldToSource: worldToSource ? scope.copy(matrix(worldToSource)) : 0,
+            directions: aims && scope.copy(aims), directionCount: aims && aims.length / 3, worldToSource: worldToSource ? scope.copy(matrix(worldToSource)) : 0,
             irradianceSize: integer(irradianceSize, 'irradianceSize'), shBands: integer(shBands, 'shBands'), progress,
         });
     }
@@ -446,6 +447,12 @@ const isDetached = buffer => {
         return true;
     }
 };
+
+/// Directions of three numbers each.
+function triples(values, field) {
+    if (!(values?.length > 0) || values.length % 3) throw new DomelightError('is not an array of three numbers each', field);
+    return Float64Array.from(values);
+}
 
 function matrix(values) {
     if (values?.length !== 9) throw new DomelightError('is not nine numbers, a 3 x 3 matrix by rows', 'worldToSource');

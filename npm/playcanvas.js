@@ -1,7 +1,7 @@
 // PlayCanvas: what scene.envAtlas takes, in place of EnvLighting.generateAtlas.
 
-import {DomelightError, encode, Environment, fromPixels, prefilter, read} from './index.js';
-import {latlongPixels} from './source.js';
+import {DomelightError, encode, fromPixels, prefilter, read} from './index.js';
+import {latlongPixels, withEnvironment} from './source.js';
 
 /// Filters an environment exactly, in a worker.
 ///
@@ -14,18 +14,14 @@ import {latlongPixels} from './source.js';
 export async function bakeEnvironment(scene, source, {file, pc = globalThis.pc, progress, signal, ...others} = {}) {
     if (!pc?.Texture) throw new DomelightError('has no Texture', 'pc', "Give {pc}, of import * as pc from 'playcanvas'.");
     for (const name of Object.keys(others)) throw new DomelightError('is not an option', name, 'Options: file, pc, progress, signal.');
-    const own = !(source instanceof Environment);
-    const environment = own ? await open(pc, source, {signal, ...file}) : source;
-    try {
+    return withEnvironment(source, () => open(pc, source, {signal, ...file}), async environment => {
         const filtered = await prefilter(environment, {layout: 'latlong', levels: chain, irradianceSize: 64, progress, signal});
         const {levels} = await encode(atlas(filtered), {encoding: 'rgbp', signal});
         return new pc.Texture(scene.device, {
             name: 'domelight', width: side, height: side, format: pc.PIXELFORMAT_RGBA8, type: pc.TEXTURETYPE_RGBP, projection: pc.TEXTUREPROJECTION_EQUIRECT,
             addressU: pc.ADDRESS_CLAMP_TO_EDGE, addressV: pc.ADDRESS_CLAMP_TO_EDGE, minFilter: pc.FILTER_LINEAR, magFilter: pc.FILTER_LINEAR, mipmaps: false, levels: [levels[0].data],
         });
-    } finally {
-        if (own) environment.close();
-    }
+    });
 }
 
 function open(pc, source, options) {

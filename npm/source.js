@@ -1,6 +1,18 @@
 // What engines give as a source of light, as the pixels that fromPixels() takes. Shared by the adapters.
 
 import {DomelightError} from './errors.js';
+import {Environment} from './index.js';
+
+/// What use() gives of the environment that open() makes of a source, and closes it. A source that is an Environment itself is used and stays open.
+export async function withEnvironment(source, open, use) {
+    if (source instanceof Environment) return use(source);
+    const environment = await open(source);
+    try {
+        return await use(environment);
+    } finally {
+        environment.close();
+    }
+}
 
 const isPixels = data => data instanceof Float32Array || data instanceof Uint16Array || (typeof Float16Array === 'function' && data instanceof Float16Array);
 

@@ -1,8 +1,8 @@
 // three.js, r187 and later: what scene.environment takes, in place of PMREMGenerator.
 
 import {CompressedCubeTexture, HalfFloatType, LinearFilter, LinearMipmapLinearFilter, LinearSRGBColorSpace, REVISION, RGBAFormat} from 'three';
-import {bake, DomelightError, Environment, fromPixels, read} from './index.js';
-import {cubePixels, latlongPixels} from './source.js';
+import {bake, DomelightError, fromPixels, read} from './index.js';
+import {cubePixels, latlongPixels, withEnvironment} from './source.js';
 
 /// Filters an environment exactly, in a worker.
 ///
@@ -14,15 +14,11 @@ import {cubePixels, latlongPixels} from './source.js';
 export async function bakeEnvironment(renderer, source, {file, ...options} = {}) {
     if (Number.parseInt(REVISION, 10) < 187)
         throw new DomelightError(`three.js r${REVISION} reads another layout of filtered environments than cubes with levels`, '', 'r187 or later is needed.');
-    const own = !(source instanceof Environment);
-    const environment = own ? await open(renderer, source, {signal: options.signal, ...file}) : source;
-    try {
+    return withEnvironment(source, () => open(renderer, source, {signal: options.signal, ...file}), async environment => {
         const texture = cubeTexture(await bake(environment, {...options, engine: 'three', encoding: 'rgba16f', layout: 'cube'}));
         texture.name = environment.name ?? 'PMREM';
         return texture;
-    } finally {
-        if (own) environment.close();
-    }
+    });
 }
 
 function open(renderer, source, options) {
