@@ -154,6 +154,47 @@ async function testLive({open, claim}) {
     await page.close();
 }
 
+/// The page's mean FLIP of two methods is that of `domelight compare`.
+async function testFlip({open, claim, work, program}) {
+    const page = await open('#panel=false&fullResolution=true&mode=split-sum&other=phong&view=split&divider=1', {viewport: {width: 240, height: 120}});
+    await page.waitForFunction(() => domelight.app.least >= 64, undefined, {timeout: 60_000});
+    const shown = async (divider, file) => {
+        const url = await page.evaluate(divider => {
+            const {stage, app} = domelight;
+            stage.show({...app.state, divider});
+            return stage.renderer.domElement.toDataURL();
+        }, divider);
+        fs.writeFileSync(path.join(work, file), Buffer.from(url.split(',')[1], 'base64'));
+    };
+    await shown(2, 'flip-left.png');
+    await shown(-1, 'flip-right.png');
+    await page.evaluate(() => domelight.store.set({view: 'flip'}));
+    const text = await page.waitForFunction(() => [...document.querySelectorAll('#panel .note')].map(n => n.textContent).find(t => /mean FLIP/.test(t)), undefined, {timeout: 30_000});
+    const found = Number(/mean FLIP ([\d.]+)/.exec(await text.jsonValue())[1]);
+    let output;
+    try {
+        output = execFileSync(program, ['compare', path.join(work, 'flip-left.png'), path.join(work, 'flip-right.png'), '--json'], {encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe']});
+    } catch (error) {
+        output = error.stdout;
+    }
+    const {flip} = JSON.parse(output).errors;
+    claim('FLIP: the page has the number of `domelight compare`', flip > 0.005 && Math.abs(found - flip) < 2e-4 ? [] : [`${found}, and the program ${flip}`], `${found} and ${flip.toFixed(4)}`);
+    await page.close();
+}
+
+/// What the page writes for three.js: levels of the filter at its roughness, mirrored.
+async function testExport({open, claim, program, work}) {
+    const page = await open('', {viewport: {width: 900, height: 500}});
+    await page.evaluate(() => document.querySelectorAll('details').forEach(d => (d.open = true)));
+    const download = page.waitForEvent('download');
+    await page.getByRole('button', {name: 'environment.pmrem.ktx2'}).click();
+    const saved = await download, file = path.join(work, 'three.pmrem.ktx2');
+    await saved.saveAs(file);
+    const told = execFileSync(program, ['info', file], {encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe']});
+    claim('export: the program reads the cube for three.js', /512/.test(told) && saved.suggestedFilename() === 'studio.pmrem.ktx2' ? [] : [`${saved.suggestedFilename()}: ${told}`]);
+    await page.close();
+}
+
 async function testLostContext({open, claim}) {
     const page = await open('#fullResolution=true', {viewport: {width: 400, height: 240}});
     const middle = () => page.evaluate(async () => {
@@ -228,7 +269,7 @@ async function testTab({open, claim}) {
 }
 
 export async function testInterface(app) {
-    for (const test of [testKeys, testAddress, testBadFiles, testModels, testProjections, testLive, testLostContext, testPhone, testAccessibility, testTab]) {
+    for (const test of [testKeys, testAddress, testBadFiles, testModels, testProjections, testFlip, testExport, testLive, testLostContext, testPhone, testAccessibility, testTab]) {
         const start = performance.now();
         try {
             await test(app);

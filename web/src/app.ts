@@ -143,6 +143,10 @@ export class App {
         if (await this.relight(`reading ${file.name}`)) this.store.set({furnace: false});
         else this.source = before;
     }
+    /// Has a file made of the environment, and hands its bytes on.
+    export(name: string, make: () => Promise<ArrayBuffer>, save: (bytes: ArrayBuffer) => void): Promise<boolean> {
+        return this.work(`making ${name}`, async () => save(await make()));
+    }
     /// A picture of the truth, to compare with.
     openPicture(file: File): Promise<boolean> {
         return this.work(`reading ${file.name}`, async () => {

@@ -228,8 +228,9 @@ export class Environment {
         return this.prefilter('ggx', [size], [0], 0, 'centre').chain.levels[0]!;
     }
 
-    /// A chain of cubes; with irradianceSize also the irradiance and nine harmonics. texels: made to be interpolated, or the light at their centres.
-    prefilter(lobe: Chain['lobe'], sizes: number[], parameters: number[], irradianceSize: number, texels: 'read' | 'centre' = 'read'): Filtered {
+    /// A chain of cubes; with irradianceSize also the irradiance and nine harmonics. texels: made to be interpolated, or the light at their centres. mirrored: to be looked up at
+    /// (-x, y, z).
+    prefilter(lobe: Chain['lobe'], sizes: number[], parameters: number[], irradianceSize: number, texels: 'read' | 'centre' = 'read', mirrored = false): Filtered {
         const m = this.module;
         return m.scope(scope => {
             const levels = scope.bytes(k_level_bytes * sizes.length);
@@ -247,6 +248,9 @@ export class Environment {
             m.words(options)[2] = read;
             m.words(options).set([levels, sizes.length], 3);
             m.words(options).set([irradianceSize, irradianceSize > 0 ? 3 : 0, 1], 8);
+            const turn = scope.bytes(72);
+            m.doubles(turn, 9).set([-1, 0, 0, 0, 1, 0, 0, 0, 1]);
+            if (mirrored) m.words(options)[7] = turn;
             const handle = scope.bytes(4);
             m.check(m.call('domelight_prefilter', this.handle, options, handle));
             const filtered = m.words(handle)[0]!;

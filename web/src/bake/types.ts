@@ -90,6 +90,7 @@ export type Request =
     | {kind: 'survey'; rows: number}
     | {kind: 'samples'; count: number}
     | {kind: 'filtered'; lobe: Lobe; parameter: number; directions: Float64Array}
+    | {kind: 'chain'; sizes: number[]; roughness: number[]; mirrored: boolean}
     | {kind: 'live'; size: number; texels: Float32Array}
     | {kind: 'picture'; name: string; bytes: ArrayBuffer};
 
@@ -104,6 +105,7 @@ export interface Replies {
     samples: Float32Array;
     /// RGB of each direction.
     filtered: Float32Array;
+    chain: Chain;
     live: Bake;
     picture: Latlong;
 }

@@ -2,6 +2,7 @@
 
 import * as THREE from 'three';
 import type {App} from '../app';
+import {harmonicsError, type HarmonicsError} from '../bake/harmonics';
 import {k_bins_per_ev, k_least_ev, type Survey} from '../bake/types';
 import {heatColour} from '../compare/heat';
 import {radians} from '../scene/framing';
@@ -9,7 +10,9 @@ import {button, element} from './controls';
 import {note, section} from './panel';
 
 const k_samples = 512;
-type Overlay = 'samples' | 'density' | 'lobe';
+/// The error that has the brightest colour of the overlay.
+const k_full_error = 0.25;
+type Overlay = 'samples' | 'density' | 'lobe' | 'harmonics';
 
 export class MapSection {
     readonly root: HTMLDetailsElement;
@@ -19,6 +22,8 @@ export class MapSection {
     private readonly overlays = new Set<Overlay>();
     private survey?: Survey;
     private samples?: Float32Array;
+    private harmonics?: HarmonicsError;
+    private readonly harmonicsText = note();
     private lobe: {direction: THREE.Vector3; roughness: number} | null = null;
 
     constructor(private readonly app: App) {
@@ -36,11 +41,14 @@ export class MapSection {
         this.plot.setAttribute('viewBox', '0 0 288 64');
         this.root = section('Environment map', false, this.canvas,
             element('div', {className: 'row'}, toggle('samples', 'Samples', `${k_samples} light directions, drawn by luminance`),
-                    toggle('density', 'Density', 'With which directions are drawn, logarithmic'), toggle('lobe', 'Lobe', 'The GGX lobe of the point under the pointer')),
+                    toggle('density', 'Density', 'With which directions are drawn, logarithmic'), toggle('lobe', 'Lobe', 'The GGX lobe of the point under the pointer'),
+                    toggle('harmonics', 'SH', 'How far nine harmonics are from the exact irradiance: black 0, yellow a quarter of its mean or more')),
+            this.harmonicsText,
             this.plot as unknown as HTMLElement, this.facts);
         this.root.addEventListener('toggle', () => void this.load());
         app.onOpened(() => {
             this.survey = this.samples = undefined;
+            this.harmonics = undefined;
             void this.load();
         });
         app.store.listen(changed => ['exposure', 'tonemap', 'turn'].some(key => changed.has(key as never)) && void this.draw());
@@ -66,6 +74,8 @@ export class MapSection {
         const {survey} = this;
         if (!survey || !this.root.open) return;
         if (this.overlays.has('samples')) this.samples ??= await this.app.baker.samples(k_samples);
+        if (this.overlays.has('harmonics') && this.app.bake) this.harmonics ??= await harmonicsError(this.app.baker, this.app.bake.sh);
+        this.tellHarmonics();
         const {width, height, pixels} = survey.thumbnail, context = this.canvas.getContext('2d')!;
         this.canvas.width = width;
         this.canvas.height = height;
@@ -76,11 +86,18 @@ export class MapSection {
                 const r = pixels[3 * k]!, g = pixels[3 * k + 1]!, b = pixels[3 * k + 2]!;
                 let colour: [number, number, number] = [show(r), show(g), show(b)];
                 if (this.overlays.has('density')) colour = heatColour(0.5 + Math.log2((0.2126 * r + 0.7152 * g + 0.0722 * b) / survey.meanLuminance + 1e-9) / 14);
+                if (this.overlays.has('harmonics') && this.harmonics) colour = heatColour(errorAt(this.harmonics, (x + 0.5) / width, (y + 0.5) / height) / k_full_error);
                 const part = lobe ? lobe((x + 0.5) / width, (y + 0.5) / height) : 0;
                 picture.data.set([colour[0] + (80 - colour[0]) * part, colour[1] + (255 - colour[1]) * part, colour[2] + (120 - colour[2]) * part, 255], 4 * k);
             }
         context.putImageData(picture, 0, 0);
         if (this.overlays.has('samples') && this.samples) this.drawSamples(context, this.samples, width, height);
+    }
+
+    private tellHarmonics(): void {
+        const {harmonics} = this;
+        this.harmonicsText.hidden = !this.overlays.has('harmonics') || !harmonics;
+        if (harmonics) this.harmonicsText.textContent = `Nine harmonics against the exact irradiance: RMS ${percent(harmonics.rms)} of its mean, at most ${percent(harmonics.most)}.`;
     }
 
     /// The lobe's share at a point of the map, 0 to 0.85: D of GGX about the mirror direction, with n = v = r.
@@ -110,3 +127,6 @@ export class MapSection {
         this.facts.textContent = `Luminance in EV by solid angle. Mean ${meanLuminance.toPrecision(3)}, brightest ${peakLuminance.toPrecision(3)}, ${stops.toFixed(1)} stops above the mean.`;
     }
 }
+
+const percent = (part: number) => `${(100 * part).toPrecision(2)} %`;
+const errorAt = ({width, height, errors}: HarmonicsError, u: number, v: number) => Math.abs(errors[Math.floor(v * height) * width + Math.floor(u * width)]!);
