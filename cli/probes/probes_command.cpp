@@ -167,6 +167,11 @@ int run_capture(const ProbesWords& w, Scene scene, const Environment& environmen
     const Scene::Box bounds = scene.bounds();
     options.filter.farthest = std::max(1e-3f, length(bounds.high - bounds.low));
 
+    ProbeBakerOptions filter = options.filter;
+    filter.size = options.capture.size;
+    if (auto ok = w.budget > 0 ? Result<void>() : check_baker_options(filter); !ok)
+        return print_error(with_options(ok.error()));
+
     auto traced = RayScene::build(std::move(scene));
     if (!traced) return print_error(traced.error().at(w.scene_name()));
     auto sampler = EnvironmentSampler::build(environment, reference_sampler_options(LightStrategy::mis, w.threads()));

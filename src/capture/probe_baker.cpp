@@ -93,6 +93,10 @@ Cubemap moments(const CapturedCube& captured, float farthest, int size) {
 
 }  // namespace
 
+Result<void> check_baker_options(const ProbeBakerOptions& options) {
+    return check(with_defaults(options));
+}
+
 std::uint64_t probe_bytes(const ProbeBakerOptions& given, Encoding encoding) {
     const ProbeBakerOptions o = with_defaults(given);
     const auto cube = [](int size) { return std::uint64_t(6) * std::uint64_t(size) * std::uint64_t(size); };

@@ -19,6 +19,9 @@ struct ProbeBakerOptions {
     float farthest = 1000;
 };
 
+/// Errors: an option out of its range, or several that do not go together.
+Result<void> check_baker_options(const ProbeBakerOptions& options);
+
 /// Bytes of one probe's maps on disk. The options must be valid.
 std::uint64_t probe_bytes(const ProbeBakerOptions& options, Encoding encoding);
 
