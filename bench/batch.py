@@ -20,6 +20,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from pathlib import Path
 
@@ -74,27 +75,36 @@ def plan(folder, jobs, *words):
 
 
 def scaling(folder, count):
-    """Bare bakes, one worker and two workers of one thread, each three times in turn."""
+    """Bare bakes one after the other and in two loops side by side, then one worker and two workers of one thread, each three times in turn."""
     jobs = copies(folder / "env", count)
     batch = plan(folder, jobs)
 
-    def bare():
+    def loop(some):
+        for job in some:
+            subprocess.run([PROGRAM, "bake", job["environment"], "-o", f"bare/{job['output']}", "--rotate-y-deg", str(job["options"]["rotate_y_deg"]), "--threads", "1", "--quiet"],
+                           cwd=folder, check=True)
+
+    def bare(loops):
         shutil.rmtree(folder / "bare", ignore_errors=True)
-        sums = [0, 0]
-        for job in jobs:
-            wall, cpu, _ = run("bake", job["environment"], "-o", f"bare/{job['output']}", "--rotate-y-deg", job["options"]["rotate_y_deg"], "--threads", 1, "--quiet", cwd=folder)
-            sums = [sums[0] + wall, sums[1] + cpu]
-        return sums
+        before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+        threads = [threading.Thread(target=loop, args=(jobs[i::loops],)) for i in range(loops)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return time.monotonic() - start, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
     def workers(n):
         shutil.rmtree(batch / "results", ignore_errors=True)
         shutil.rmtree(batch / "out", ignore_errors=True)
         return run("batch", "run", "batch", "--workers", n, "--threads", n, "--quiet", cwd=folder)[:2]
 
-    rounds = [{"bare": bare(), "one": workers(1), "two": workers(2)} for _ in range(3)]
+    rounds = [{"bare": bare(1), "bare_two": bare(2), "one": workers(1), "two": workers(2)} for _ in range(3)]
     return {"jobs": count,
-            "one_worker_seconds": statistics.median(r["one"][0] for r in rounds),
+            "one_worker_seconds": round(statistics.median(r["one"][0] for r in rounds), 2),
             "speed_of_two_workers": [round(r["one"][0] / r["two"][0], 3) for r in rounds],
+            "speed_of_two_bare_loops": [round(r["bare"][0] / r["bare_two"][0], 3) for r in rounds],
             "overhead_cpu_over_bare": [round(r["one"][1] / r["bare"][1] - 1, 4) for r in rounds],
             "overhead_wall_over_bare": [round(r["one"][0] / r["bare"][0] - 1, 4) for r in rounds]}
 

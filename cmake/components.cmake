@@ -74,7 +74,7 @@ domelight_component(view ROOMS view USES render LINKS fmt::fmt PkgConfig::httpli
 domelight_component(bake ROOMS bake compare convert USES io preview LINKS fmt::fmt)
 domelight_component(capture ROOMS capture USES render bake LINKS fmt::fmt)
 domelight_component(study ROOMS study USES render bake LINKS fmt::fmt)
-domelight_component(batch ROOMS batch USES render bake LINKS fmt::fmt)
+domelight_component(batch ROOMS batch USES capture LINKS fmt::fmt)
 include(cmake/c_interface.cmake)
 if(domelight_unassigned)
   message(FATAL_ERROR "These files of src/ are in no component of cmake/components.cmake: ${domelight_unassigned}")

@@ -5,7 +5,7 @@
 namespace domelight {
 
 std::span<const JobKind> job_kinds() {
-    static const JobKind table[] = {bake_kind(), convert_kind(), audit_kind(), render_kind()};
+    static const JobKind table[] = {bake_kind(), convert_kind(), audit_kind(), render_kind(), probes_kind()};
     return table;
 }
 

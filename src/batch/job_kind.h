@@ -73,5 +73,6 @@ JobKind bake_kind();
 JobKind convert_kind();
 JobKind audit_kind();
 JobKind render_kind();
+JobKind probes_kind();
 
 }  // namespace domelight

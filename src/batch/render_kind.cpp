@@ -8,6 +8,7 @@
 
 #include "batch/job_kind.h"
 #include "batch/option_reader.h"
+#include "batch/scene_input.h"
 #include "preview/exposure_meter.h"
 #include "preview/screen_picture.h"
 #include "render/render_layers.h"
@@ -66,7 +67,7 @@ Result<RenderJob> options_of(const Json& json) {
     RenderOptions& o = job.options;
     o.samples = 64;
     o.bounces = 4;
-    reader.read("scene", job.scene);
+    read_scene_option(reader, job.scene);
     read_word(reader, "format", job.format, {"exr", "hdr", "png", "jpg"}, "a format");
     reader.read("width", job.width);
     reader.read("height", job.height);
@@ -97,9 +98,6 @@ Result<RenderJob> options_of(const Json& json) {
     if (o.background == Background::colour)
         return Error{"a background colour is not for batches", field_place("background"),
                      "Render it transparent, and put the colour behind it."};
-    const auto names = built_in_scene_names();
-    if (!job.scene.empty() && std::ranges::find(names, job.scene) == names.end())
-        return unknown_name(job.scene, "a built-in scene", names).at(field_place("scene"));
     o.background_roughness = float(job.background_roughness);
     job.shading_options.multiple_scattering = o.multiple_scattering;
     job.shading_options.occlusion = o.occlusion;
@@ -180,13 +178,7 @@ Result<JobReport> run(const JobCall& call) {
     auto job = options_of(call.options);
     if (!job) return job.error();
     job->options.threads = job->environment.threads = call.threads;
-    const auto file = call.inputs.find("scene");
-    if ((file == call.inputs.end()) == job->scene.empty())
-        return Error{"needs one scene", field_place("scene"), "A file as the input \"scene\", or the option scene."};
-    SceneOptions scene_options;
-    scene_options.threads = call.threads;
-    scene_options.lux_per_unit = float(job->lux_per_unit);
-    auto scene = job->scene.empty() ? load_scene(file->second[0].string(), scene_options) : built_in_scene(job->scene);
+    auto scene = open_scene(call, job->scene, job->lux_per_unit);
     if (!scene) return scene.error();
     if (job->brdf == "phong")
         for (Material& m : scene->materials) m.phong = true;

@@ -249,6 +249,22 @@ def test_renders_are_those_of_render(folder):
         assert says in run("batch", "plan", "jobs.jsonl", "-o", "bad", folder=folder, code=1).stderr, says
 
 
+def test_captures_are_those_of_probes(folder):
+    words = ["--size", "8", "--spp", "2", "--bounces", "1", "--irradiance-size", "4", "--distance-size", "4"]
+    options = {"scene": "spheres", "size": 8, "spp": 2, "bounces": 1, "irradiance_size": 4, "distance_size": 4}
+    cases = {"grid": ({"grid": [2, 1, 2]}, ["--grid", "2,1,2"]), "at": ({"at": [0, 2, 0, 3, 1, 0], "encoding": "rgba16f", "seed": 2},
+                                                                       ["--at", "0,2,0", "--at", "3,1,0", "--encoding", "rgba16f", "--seed", "2"])}
+    manifest(folder, *[{"kind": "probes", "environment": "hdris/noon.hdr", "output": name, "options": {**options, **more}} for name, (more, _) in cases.items()])
+    run("batch", "plan", "jobs.jsonl", "-o", "batch", folder=folder)
+    run("batch", "run", "batch", folder=folder)
+    for name, (_, more) in cases.items():
+        run("probes", "spheres", "--env", "hdris/noon.hdr", "-o", f"bare/{name}", *words, *more, "--quiet", folder=folder)
+    assert files_of(folder / "batch/out") == files_of(folder / "bare")
+    for more, says in [({}, "--grid"), ({"grid": [1, 1, 1], "density": 1}, "--density"), ({"grid": [0, 1, 1]}, "--grid"), ({"at": [1, 2]}, "--at"), ({"auto": 2}, "--auto")]:
+        manifest(folder, {"kind": "probes", "environment": "hdris/noon.hdr", "output": "x", "options": {**options, **more}})
+        assert says in run("batch", "plan", "jobs.jsonl", "-o", "bad", folder=folder, code=1).stderr, says
+
+
 def test_a_second_run_does_nothing_and_a_damaged_result_is_made_again(folder):
     batch = plan(folder)
     statuses(folder)
