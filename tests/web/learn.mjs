@@ -110,6 +110,20 @@ const lessons = {
                   [smooth, rough].map(n => `BRDF ${n.brdf.toFixed(2)}, environment ${n.environment.toFixed(2)}, both ${n.both.toFixed(2)}`).join('; '));
         },
     },
+    probes: {
+        slider: ['Point: x', 3.3], number: 'probes',
+        check: async (page, claim) => {
+            const n = await numbers(page), eight = [...Array(8).keys()], total = eight.reduce((sum, k) => sum + n[`product${k}`], 0);
+            claim('probes: each weight is the product of its factors over the sum of all eight', [...near('the sum of the weights', n.sum, 1, 1e-4), ...near('that of t', n.trilinear, 1, 1e-4),
+                  ...eight.flatMap(k => near(`weight ${k}`, n[`weight${k}`], n[`product${k}`] / total, 1e-3))]);
+            claim('probes: with visibility, the dark room is as dark as it is', n.ratio > 0.8 && n.ratio < 1.25 ? [] : [`the light is ${n.ratio} of the truth`], n.ratio.toFixed(3));
+            await page.getByLabel('Visibility', {exact: true}).uncheck();
+            await settled(page);
+            const leak = await numbers(page);
+            claim('probes: without it, light leaks through the wall', leak.ratio > 3 ? [] : [`the light is ${leak.ratio} of the truth`], `${leak.ratio.toFixed(1)} of the truth`);
+            claim('probes: then the weights are trilinear', eight.flatMap(k => near(`weight ${k}`, leak[`weight${k}`], leak[`t${k}`], 1e-3)));
+        },
+    },
 };
 
 async function testAxe(page, axe, what, claim) {

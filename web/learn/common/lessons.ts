@@ -14,4 +14,5 @@ export const lessons: readonly LessonEntry[] = [
     {name: 'split-sum', title: 'The split sum', about: 'The BRDF table by samples, and where n = v = r fails: at grazing angles, beside Monte Carlo.'},
     {name: 'importance', title: 'Importance sampling of an environment', about: 'A random point finds a row, then a column: both cumulative functions, and the loops of a shader.'},
     {name: 'mis', title: 'BRDF, environment, or both', about: 'Three ways to choose directions, the noise of each by roughness, and multiple importance sampling.'},
+    {name: 'probes', title: 'Probes: the light at many points', about: 'The light of a point from the eight probes around it: each factor of the weights, the leak through a wall, and parallax.'},
 ];
