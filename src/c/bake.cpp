@@ -20,23 +20,6 @@ domelight_bake_options defaults() {
 }
 
 /// A word for a field that each engine has a default of its own for.
-template <NamedEnum E>
-Result<void> read_optional(const char* word, std::optional<E>& field, const char* name) {
-    if (!word) return {};
-    const auto value = c::read_word(word, E{}, name);
-    if (!value) return value.error();
-    field = *value;
-    return {};
-}
-
-template <NamedEnum E>
-Result<void> read_choice(const char* word, E& field, const char* name) {
-    const auto value = c::read_word(word, field, name);
-    if (!value) return value.error();
-    field = *value;
-    return {};
-}
-
 /// "three, babylon" in its parts.
 std::vector<std::string> parts_of(const std::string& words) {
     std::vector<std::string> parts(1);
@@ -52,16 +35,16 @@ std::vector<std::string> parts_of(const std::string& words) {
 Result<void> read_words(const domelight_bake_options& given, BakeOptions& options) {
     if (given.engines) options.engines = parts_of(given.engines);
     if (given.latlong_out) options.latlong_out = given.latlong_out;
-    if (auto ok = read_optional(given.layout, options.layout, "layout"); !ok) return ok;
-    if (auto ok = read_optional(given.lobe, options.lobe, "lobe"); !ok) return ok;
-    if (auto ok = read_optional(given.texels, options.texels, "texels"); !ok) return ok;
-    if (auto ok = read_optional(given.encoding, options.encoding, "encoding"); !ok) return ok;
-    if (auto ok = read_optional(given.format, options.format, "format"); !ok) return ok;
-    if (auto ok = read_optional(given.irradiance_quantity, options.irradiance_quantity, "irradiance_quantity"); !ok)
+    if (auto ok = c::read_optional(given.layout, options.layout, "layout"); !ok) return ok;
+    if (auto ok = c::read_optional(given.lobe, options.lobe, "lobe"); !ok) return ok;
+    if (auto ok = c::read_optional(given.texels, options.texels, "texels"); !ok) return ok;
+    if (auto ok = c::read_optional(given.encoding, options.encoding, "encoding"); !ok) return ok;
+    if (auto ok = c::read_optional(given.format, options.format, "format"); !ok) return ok;
+    if (auto ok = c::read_optional(given.irradiance_quantity, options.irradiance_quantity, "irradiance_quantity"); !ok)
         return ok;
-    if (auto ok = read_choice(given.encoding_quality, options.encoding_quality, "encoding_quality"); !ok) return ok;
-    if (auto ok = read_choice(given.sh_window, options.sh_window, "sh_window"); !ok) return ok;
-    return read_choice(given.brdf_masking, options.brdf_g, "brdf_masking");
+    if (auto ok = c::read_choice(given.encoding_quality, options.encoding_quality, "encoding_quality"); !ok) return ok;
+    if (auto ok = c::read_choice(given.sh_window, options.sh_window, "sh_window"); !ok) return ok;
+    return c::read_choice(given.brdf_masking, options.brdf_g, "brdf_masking");
 }
 
 Result<BakeOptions> read_options(const domelight_bake_options* options) {

@@ -16,6 +16,7 @@
 #include <exception>
 #include <initializer_list>
 #include <new>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -119,6 +120,21 @@ Result<E> read_word(const char* word, E otherwise, const char* name) {
     const auto value = from_name<E>(word);
     if (!value) return value.error().at(field_place(name));
     return value;
+}
+
+/// Sets `field` to the value of the word, if the caller gave one.
+template <NamedEnum E>
+Result<void> read_choice(const char* word, E& field, const char* name) {
+    const auto value = read_word(word, field, name);
+    if (!value) return value.error();
+    field = *value;
+    return {};
+}
+template <NamedEnum E>
+Result<void> read_optional(const char* word, std::optional<E>& field, const char* name) {
+    if (!word) return {};
+    field.emplace();
+    return read_choice(word, *field, name);
 }
 
 inline std::string text_or(const char* given, const char* otherwise) {

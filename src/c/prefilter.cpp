@@ -53,18 +53,14 @@ Result<std::vector<Vec3d>> read_directions(const double* directions, std::size_t
 
 Result<FilterOptions> read_options(const domelight_prefilter_options& given) {
     FilterOptions options;
-    const auto layout = c::read_word(given.layout, Layout::cube, "layout");
-    if (!layout) return layout.error();
-    const auto texels = c::read_word(given.texels, Texels::centre, "texels");
-    if (!texels) return texels.error();
+    if (auto ok = c::read_choice(given.layout, options.layout, "layout"); !ok) return ok.error();
+    if (auto ok = c::read_choice(given.texels, options.texels, "texels"); !ok) return ok.error();
     auto levels = read_levels(given.levels, given.level_count);
     if (!levels) return levels.error();
     auto directions = read_directions(given.directions, given.direction_count);
     if (!directions) return directions.error();
     const auto turn = c::read_turn(given.world_to_source);
     if (!turn) return turn.error();
-    options.layout = *layout;
-    options.texels = *texels;
     options.specular = *std::move(levels);
     options.directions = *std::move(directions);
     options.world_to_source = *turn;
