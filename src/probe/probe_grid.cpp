@@ -11,7 +11,8 @@ struct AxisCell {
 };
 
 AxisCell axis_cell(float at, float origin, float spacing, int count) {
-    const float t = std::clamp((at - origin) / spacing, 0.0f, float(count - 1));
+    // 0 also for what is not a number.
+    const float t = at > origin ? std::min((at - origin) / spacing, float(count - 1)) : 0;
     const int low = std::min(int(t), std::max(count - 2, 0));
     return {low, std::min(low + 1, count - 1), t - float(low)};
 }

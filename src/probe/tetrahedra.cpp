@@ -347,7 +347,7 @@ void Tetrahedra::make_shortcuts() {
 
 int Tetrahedra::shortcut(const Vec3d& p) const {
     const auto bin = [](double at, double origin, double size, int count) {
-        return std::clamp(int(std::clamp((at - origin) / size, 0.0, 1e6)), 0, count - 1);
+        return at > origin ? int(std::min((at - origin) / size, count - 1.0)) : 0;  // 0 for what is not a number
     };
     const int x = bin(p.x, bin_origin_.x, bin_size_.x, bins_[0]), y = bin(p.y, bin_origin_.y, bin_size_.y, bins_[1]),
               z = bin(p.z, bin_origin_.z, bin_size_.z, bins_[2]);

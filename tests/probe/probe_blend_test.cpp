@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 using namespace domelight;
 using domelight::test::TwoRooms;
@@ -154,6 +155,19 @@ TEST_SUITE("probe") {
         CHECK(weight(0.51f) == 0);
     }
 
+    TEST_CASE("blend: a point that is not finite is no reason to read beyond the probes") {
+        for (const bool with_grid : {true, false}) {
+            const auto set = TwoRooms().set(with_grid);
+            const ProbeBlender blender(*set);
+            for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                                    -std::numeric_limits<float>::infinity()})
+                for (const Vec3f& p : {Vec3f{bad, 1, 0}, Vec3f{0, bad, 0}, Vec3f{0, 1, bad}, Vec3f{bad, bad, bad}}) {
+                    const ProbeBlend blend = blender.at(p, {0, 1, 0});
+                    for (const auto& part : blend.all()) CHECK(part.probe < 144);
+                }
+        }
+    }
+
     TEST_CASE("blend: with fewer probes, one enters and leaves with weight 0") {
         const auto set = TwoRooms().set();
         const ProbeBlender blender(*set, {.most = 4});
@@ -162,7 +176,8 @@ TEST_SUITE("probe") {
         for (int k = 0; k <= 3000; ++k) {
             const Vec3f p = Vec3f{-3.4f, 0.7f, -2.2f} + Vec3f{2.7f, 0, 0} * (float(k) / 3000);
             std::array<float, 256> now{};
-            for (const auto& part : blender.at(p, {0, 1, 0}).all()) now[std::size_t(part.probe)] = part.weight;
+            const ProbeBlend blend = blender.at(p, {0, 1, 0});
+            for (const auto& part : blend.all()) now[std::size_t(part.probe)] = part.weight;
             for (std::size_t i = 0; i < now.size(); ++i)
                 if (k) largest = std::max(largest, std::abs(double(now[i]) - double(last[i])));
             last = now;

@@ -40,7 +40,8 @@ struct ProbeBlend {
     std::array<Part, 8> parts;
     int count = 0;
 
-    std::span<const Part> all() const { return {parts.data(), std::size_t(count)}; }
+    std::span<const Part> all() const& { return {parts.data(), std::size_t(count)}; }
+    std::span<const Part> all() const&& = delete;  // it would refer to a blend that is gone
 };
 
 /// The direction in which to look up a probe's cube for what `point` sees in `direction`, if the walls are those of the
