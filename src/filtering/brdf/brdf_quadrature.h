@@ -35,4 +35,7 @@ double brdf_visibility(double NdotL, double NdotV, double alpha, BrdfG g);
 /// towards the mirror azimuth, where the integrand varies on the scale of NdotV.
 double integrate_sheen(double NdotV, double alpha, int nodes = 32);
 
+/// The table of size x size of these integrals, as brdf_table() describes it. sheen: or 0 in the third channel.
+ImageF integrate_brdf_table(int size, BrdfG g, bool sheen, int threads);
+
 }  // namespace domelight

@@ -66,13 +66,17 @@ double montecarlo_sheen(double NdotV, double alpha, const PointSet& points) {
 
 }  // namespace
 
+ImageF integrate_brdf_table(int size, BrdfG g, bool sheen, int threads) {
+    return fill(size, threads, [&](double NdotV, double alpha) {
+        const BrdfTerms terms = integrate_brdf(NdotV, alpha, g);
+        return Vec3d{terms.scale, terms.bias, sheen ? integrate_sheen(NdotV, alpha) : 0};
+    });
+}
+
 ImageF brdf_table(const BrdfTableOptions& options) {
     const bool same_sheen = options.size == k_brdf_embedded_size;  // the sheen lobe does not depend on G
     if (same_sheen && options.g == BrdfG::correlated) return brdf_table_default();
-    ImageF table = fill(options.size, options.threads, [&](double NdotV, double alpha) {
-        const BrdfTerms terms = integrate_brdf(NdotV, alpha, options.g);
-        return Vec3d{terms.scale, terms.bias, same_sheen ? 0 : integrate_sheen(NdotV, alpha)};
-    });
+    ImageF table = integrate_brdf_table(options.size, options.g, !same_sheen, options.threads);
     if (same_sheen) {
         const ImageF& embedded = brdf_table_default();
         for (std::size_t i = 2; i < table.pixels().size(); i += 3) table.pixels()[i] = embedded.pixels()[i];
