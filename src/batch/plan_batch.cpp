@@ -115,6 +115,14 @@ class CheckedOptions {
     std::unordered_map<std::string, bool> good_;
 };
 
+/// A kind that takes a scene needs one: a file, or the name of a built-in one.
+Result<void> check_scene(const JobKind& kind, const PlanEntry& entry) {
+    if (std::ranges::find(kind.roles, "scene?") == kind.roles.end()) return {};
+    const bool file = std::ranges::any_of(entry.inputs, [](const BatchInput& input) { return input.role == "scene"; });
+    if (file != entry.options.contains("scene")) return {};
+    return Error{"needs one scene", entry.place, "A file as the key \"scene\", or a built-in one as the option scene."};
+}
+
 }  // namespace
 
 Result<BatchPlan> plan_batch(const fs::path& source, const BatchPlanOptions& options) {
@@ -127,6 +135,7 @@ Result<BatchPlan> plan_batch(const fs::path& source, const BatchPlanOptions& opt
     plan.jobs.reserve(asked->entries.size());
     for (PlanEntry& entry : asked->entries) {
         const JobKind& kind = **find_job_kind(entry.kind);
+        if (auto ok = check_scene(kind, entry); !ok) return ok.error();
         BatchJob job{"", entry.kind, entry.output, std::move(entry.inputs), entry.options.dump(), 0, 0};
         if (auto ok = checked.check(kind, entry.options, job.options, entry.place); !ok) return ok.error();
         if (!kind.makes_folder)

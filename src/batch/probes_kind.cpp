@@ -122,7 +122,7 @@ JobEstimate estimate(const Json& json, std::span<const InputFacts> inputs) {
     for (const InputFacts& input : inputs) texels += input.texels();
     const CaptureOptions& c = job->bake.capture;
     const double paths = count_of(*job) * 6 * c.size * c.size * c.samples;
-    return {0.5 + 0.3e-6 * double(texels) + 0.5e-6 * paths * (1 + 0.5 * c.bounces),
+    return {0.2 + 0.3e-6 * double(texels) + 0.25e-6 * paths * (1 + 0.5 * c.bounces),
             (std::int64_t(250) << 20) + 60 * texels};
 }
 

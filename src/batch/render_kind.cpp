@@ -122,7 +122,7 @@ JobEstimate estimate(const Json& json, std::span<const InputFacts> inputs) {
     for (const InputFacts& input : inputs) texels += input.texels();
     const double width = job->width.value_or(job->height.value_or(512)), height = job->height.value_or(int(width));
     const double paths = width * height * job->options.samples * (job->model ? 1 : 1 + 0.5 * job->options.bounces);
-    return {0.5 + 0.3e-6 * double(texels) + 1.5e-6 * paths,
+    return {0.2 + 0.3e-6 * double(texels) + 0.25e-6 * paths,
             (std::int64_t(200) << 20) + 60 * texels + std::int64_t(width * height * 140)};
 }
 

@@ -36,8 +36,8 @@ main { padding: 16px clamp(16px, 3vw, 40px) 60px; }
 .cards { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(300px, 100%), 1fr)); gap: 14px; }
 .card { background: var(--card); border: 1px solid var(--line); border-radius: 12px; overflow: hidden; display: flex; flex-direction: column; content-visibility: auto;
         contain-intrinsic-size: auto 360px; }
-.shot { display: block; width: 100%; border: 0; padding: 0; background: #16181c; cursor: zoom-in; aspect-ratio: 1600 / 1130; }
-.shot img { display: block; width: 100%; height: 100%; object-fit: contain; }
+.shot { display: block; position: relative; overflow: hidden; width: 100%; border: 0; padding: 0; background: #16181c; cursor: zoom-in; aspect-ratio: 1600 / 1130; }
+.shot img { position: absolute; inset: 0; width: 100%; height: 100%; object-fit: contain; }
 .none { display: grid; place-items: center; aspect-ratio: 1600 / 1130; color: var(--quiet); background: color-mix(in srgb, var(--line) 40%, transparent); font-size: 13px; }
 .body { padding: 10px 14px 14px; display: flex; flex-direction: column; gap: 6px; flex: 1; }
 .name { font-weight: 600; overflow-wrap: anywhere; }

@@ -247,6 +247,9 @@ def test_renders_are_those_of_render(folder):
                           ({"camera_position": [1]}, "--camera-position"), ({"background": "colour"}, "--background")]:
         manifest(folder, {"kind": "render", "environment": "hdris/noon.hdr", "output": "x", "options": {"scene": "ball", **options}})
         assert says in run("batch", "plan", "jobs.jsonl", "-o", "bad", folder=folder, code=1).stderr, says
+    for job in [{}, {"scene": "scene.obj", "options": {"scene": "ball"}}]:
+        manifest(folder, {"kind": "render", "environment": "hdris/noon.hdr", "output": "x", **job})
+        assert "needs one scene" in run("batch", "plan", "jobs.jsonl", "-o", "bad", folder=folder, code=1).stderr, job
 
 
 def test_captures_are_those_of_probes(folder):
