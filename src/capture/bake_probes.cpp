@@ -73,12 +73,21 @@ Result<Sharing> shared(const std::vector<Probe>& probes) {
     return sharing;
 }
 
-/// Between the places, which lie apart also where two probes were moved to one point.
+/// Between the positions of the probes that are valid, of which a blend is made; they fill the convex hull.
 std::vector<std::array<int, 4>> tetrahedra_of(const std::vector<Probe>& probes) {
-    std::vector<Vec3f> places;
-    for (const Probe& probe : probes) places.push_back(probe.place);
-    const Tetrahedra tetrahedra(places);
-    return {tetrahedra.cells().begin(), tetrahedra.cells().end()};
+    std::vector<Vec3f> positions;
+    std::vector<int> numbers;
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+        if (!probes[i].valid) continue;
+        positions.push_back(probes[i].position);
+        numbers.push_back(int(i));
+    }
+    if (positions.empty()) return {};
+    const Tetrahedra tetrahedra(positions, Tetrahedra::Outside::nothing);
+    std::vector<std::array<int, 4>> cells(tetrahedra.cells().begin(), tetrahedra.cells().end());
+    for (auto& cell : cells)
+        for (int& corner : cell) corner = numbers[std::size_t(corner)];
+    return cells;
 }
 
 Result<ProbeBaker> make_filter(const ProbeBakeOptions& options) {

@@ -106,10 +106,10 @@ std::array<Vec3d, 3> Tetrahedra::face_positions(const Cell& cell, std::size_t op
     return {position_[std::size_t(face[0])], position_[std::size_t(face[1])], position_[std::size_t(face[2])]};
 }
 
-Tetrahedra::Tetrahedra(std::span<const Vec3f> points) {
+Tetrahedra::Tetrahedra(std::span<const Vec3f> points, Outside outside) {
     assert(!points.empty());
     make_frame(points);
-    make_vertices(points);
+    make_vertices(points, outside);
     if (frame_.rank == 0) return;
     triangulate();
     for (int t = 0; t < int(tetrahedra_.size()); ++t) {
@@ -163,7 +163,7 @@ Vec3d Tetrahedra::to_frame(const Vec3f& place) const {
             frame_.rank > 2 ? dot(d, frame_.axis[2]) : 0};
 }
 
-void Tetrahedra::make_vertices(std::span<const Vec3f> points) {
+void Tetrahedra::make_vertices(std::span<const Vec3f> points, Outside outside) {
     std::vector<Vec3d> kept;
     for (int i = 0; i < int(points.size()); ++i) {
         const Vec3d place = to_frame(points[std::size_t(i)]);
@@ -181,6 +181,7 @@ void Tetrahedra::make_vertices(std::span<const Vec3f> points) {
         const double raise = 0.01 * nearest * nearest;
         add_vertex(kept[i], own[i], raise);
         is_copy_.resize(position_.size(), 0);
+        if (outside == Outside::nothing) continue;
         for (int axis = 0; axis < frame_.rank; ++axis)
             for (const double sign : {1.0, -1.0})
                 if (is_outermost(kept, i, axis, sign)) {

@@ -62,6 +62,15 @@ TEST_SUITE("probe") {
         }
     }
 
+    TEST_CASE("tetrahedra: without copies of the outermost points, they fill the hull of points anywhere") {
+        std::vector<Vec3f> points = random_points(40, {1, 1, 1});
+        for (const Vec3f& corner : grid_points(2, 2, 2)) points.push_back(corner);  // the hull is the unit cube
+        const Tetrahedra tetrahedra(points, Tetrahedra::Outside::nothing);
+        double sum = 0;
+        for (const auto& cell : tetrahedra.cells()) sum += volume(cell, points);
+        CHECK(sum == doctest::Approx(1).epsilon(1e-3));
+    }
+
     TEST_CASE("tetrahedra: those of a grid fill its box") {
         const std::vector<Vec3f> points = grid_points(6, 5, 4);
         const Tetrahedra tetrahedra(points);

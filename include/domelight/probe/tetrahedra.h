@@ -24,11 +24,16 @@ namespace domelight {
 ///     each time.
 class Tetrahedra {
   public:
+    /// What lies outside of the points' convex hull.
+    enum class Outside {
+        copies,  ///< copies of the outermost points, as above
+        nothing  ///< cells() then fill the hull
+    };
     /// points: at least 1, finite. A point that coincides with an earlier one (within 1e-5 of the extent) is left out:
     /// its weight is 0 everywhere.
-    explicit Tetrahedra(std::span<const Vec3f> points);
+    explicit Tetrahedra(std::span<const Vec3f> points, Outside outside = Outside::copies);
 
-    /// The points of each tetrahedron of four different points. None where the points lie on a plane or a line.
+    /// The points of each tetrahedron that has no copy among its corners. None where the points lie on a plane or a line.
     std::span<const std::array<int, 4>> cells() const { return cells_; }
 
     /// The points between which a place lies, and their weights: >= 0, sum 1. A point may occur more than once.
@@ -56,7 +61,7 @@ class Tetrahedra {
     };
 
     void make_frame(std::span<const Vec3f> points);
-    void make_vertices(std::span<const Vec3f> points);
+    void make_vertices(std::span<const Vec3f> points, Outside outside);
     /// Adds a point; where the points lie on a plane or a line, its layers on both sides of that.
     void add_vertex(const Vec3d& place, int point, double raise);
     /// No other place is near in this direction.
