@@ -156,16 +156,9 @@ int run_capture(const ProbesWords& w, Scene scene, const Environment& environmen
     options.filter.irradiance_size = w.irradiance_size.value_or(16);
     options.filter.distance_size = w.distance_size.value_or(-1);
     options.encoding = w.encoding;
-    options.scene = {std::filesystem::path(w.scene_name()).filename().string(), scene_sha256(scene)};
-    const auto hash = environment_sha256(environment);
-    if (!hash) return print_error(hash.error());
-    options.environment = {environment.file.filename().string(), *hash};
-    options.inputs = environment.files;
-    options.inputs.push_back(w.scene_name());
+    if (auto ok = set_sources(options, w.scene_name(), scene, environment); !ok) return print_error(ok.error());
     options.inputs.insert(options.inputs.end(), w.light_files.begin(), w.light_files.end());
     options.capture.environment_lights = std::move(lights);
-    const Scene::Box bounds = scene.bounds();
-    options.filter.farthest = std::max(1e-3f, length(bounds.high - bounds.low));
 
     ProbeBakerOptions filter = options.filter;
     filter.size = options.capture.size;
@@ -241,9 +234,8 @@ int run_probes(const std::vector<std::string>& words) {
     SceneOptions scene_options;
     scene_options.threads = w.threads();
     scene_options.lux_per_unit = float(w.lux_per_unit);
-    const auto built_in = built_in_scene_names();
     const std::string name = w.scene_name();
-    auto scene = std::ranges::count(built_in, name) ? built_in_scene(name) : load_scene(name, scene_options);
+    auto scene = open_scene(name, scene_options);
     if (!scene) return print_error(scene.error());
     print_warnings(scene->warnings, w.common, name);
     print_warnings(not_rendered(*scene), w.common, name);

@@ -5,6 +5,7 @@
 
 #include "cli/console/field_options.h"
 #include "cli/console/print.h"
+#include "probe/probe_record.h"
 
 #include <fmt/core.h>
 
@@ -15,11 +16,10 @@ namespace fs = std::filesystem;
 
 void print_report(const ProbesWords& w, const std::string& engine, const fs::path& folder,
                   const EngineFilesReport& report) {
-    std::vector<std::string> warnings = report.warnings;
     if (report.clipped_texels > 0)
-        warnings.push_back(fmt::format("{} texels are brighter than the files for {} can hold and were clipped",
-                                       report.clipped_texels, engine));
-    print_warnings(warnings, w.common, folder.string());
+        print_warnings({fmt::format("{} texels are brighter than the files for {} can hold and were clipped",
+                                    report.clipped_texels, engine)},
+                       w.common, folder.string());
     if (w.common.json || w.common.quiet) return;
     print("{}: {} files for {}\n", folder.string(), report.files.size(), engine);
 }
@@ -35,7 +35,7 @@ Json report_json(const std::string& engine, const fs::path& folder, const Engine
 
 bool names_a_set(const ProbesWords& w) {
     std::error_code ignored;
-    return w.scenes.size() == 1 && fs::exists(fs::path(w.scenes.front()) / "probes.json", ignored);
+    return w.scenes.size() == 1 && fs::exists(fs::path(w.scenes.front()) / k_probes_json, ignored);
 }
 
 Result<void> check_engine_words(const ProbesWords& w, const Arguments& a) {
@@ -55,8 +55,9 @@ int write_for_engines(const ProbesWords& w, const fs::path& set_folder, const fs
     const bool folder_each = w.engines.size() > 1 || folder == set_folder;
     EngineFilesOptions options;
     options.threads = w.threads();
-    for (const char* file : {"probes.json", "specular.ktx2", "irradiance.ktx2", "distance.ktx2"})
-        options.inputs.push_back(set_folder / file);
+    const auto record = read_probe_record(set_folder);
+    if (!record) return print_error(record.error());
+    for (const std::string& file : files_of(*record)) options.inputs.push_back(set_folder / file);
     Json document = Json::array();
     for (const std::string& engine : w.engines) {
         const fs::path place = folder_each ? folder / engine : folder;

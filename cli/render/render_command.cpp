@@ -270,10 +270,9 @@ int run_render(const std::vector<std::string>& words) {
     scene_options.threads = w.threads();
     scene_options.lux_per_unit = float(w.lux_per_unit);
     const std::string name = w.scene_name();
-    const auto built_in = built_in_scene_names();
     std::optional<Scene> scene;
     if (!name.empty()) {
-        auto loaded = std::ranges::count(built_in, name) ? built_in_scene(name) : load_scene(name, scene_options);
+        auto loaded = open_scene(name, scene_options);
         if (!loaded) return print_error(loaded.error());
         scene = std::move(*loaded);
         if (w.brdf == "phong")

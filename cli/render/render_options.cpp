@@ -213,20 +213,9 @@ Result<void> set_camera(RenderOptions& o, const RenderWords& w, const Scene& sce
         if (!found) return found.error();
         own = *found;
     }
-    if (!w.camera_position.empty()) own = nullptr;
-    const float aspect = own && own->aspect > 0 ? own->aspect : 1;
-    if (w.width || !w.height) {
-        o.width = w.width.value_or(512);
-        o.height = w.height.value_or(std::clamp(int(std::lround(float(o.width) / aspect)), 1, 16384));
-    } else {
-        o.height = *w.height;
-        o.width = std::clamp(int(std::lround(float(o.height) * aspect)), 1, 16384);
-    }
-    const float shape = float(o.width) / float(o.height);
-    o.camera = own ? camera_for(*own, shape)
-               : w.camera_position.empty()
-                   ? default_camera(scene, shape)
-                   : look_at(vector(w.camera_position), vector(w.camera_target), float(w.fov_deg * k_pi / 180));
+    SceneView view{w.width, w.height, own, {}, vector(w.camera_target), float(w.fov_deg * k_pi / 180)};
+    if (!w.camera_position.empty()) view.eye = vector(w.camera_position);
+    set_view(o, scene, view);
     return {};
 }
 

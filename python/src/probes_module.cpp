@@ -79,24 +79,11 @@ ProbeBakeOptions bake_options(const Keywords& words) {
     return o;
 }
 
-Scene open_scene(const std::string& name, int threads) {
-    const auto names = built_in_scene_names();
-    if (std::find(names.begin(), names.end(), name) != names.end()) return value_of(built_in_scene(name));
-    SceneOptions options;
-    options.threads = threads;
-    return value_of(load_scene(name, options));
-}
-
 /// Captures in memory, or into a folder, which is then read.
 ProbeSet capture_set(const std::string& name, const Environment& environment, const std::optional<fs::path>& folder,
                      ProbePlanOptions plan, ProbeBakeOptions bake) {
-    Scene scene = open_scene(name, plan.threads);
-    bake.scene = {fs::path(name).filename().string(), scene_sha256(scene)};
-    bake.environment = {environment.file.filename().string(), value_of(environment_sha256(environment))};
-    bake.inputs = environment.files;
-    bake.inputs.push_back(name);
-    const Scene::Box bounds = scene.bounds();
-    bake.filter.farthest = std::max(1e-3f, length(bounds.high - bounds.low));
+    Scene scene = value_of(open_scene(name, {.threads = plan.threads}));
+    value_of(set_sources(bake, name, scene, environment));
     const RayScene traced = value_of(RayScene::build(std::move(scene)));
     const EnvironmentSampler light =
         value_of(EnvironmentSampler::build(environment, reference_sampler_options(LightStrategy::mis, plan.threads)));

@@ -21,14 +21,6 @@
 namespace domelight::python {
 namespace {
 
-Scene open_scene(const std::string& name, int threads) {
-    const auto names = built_in_scene_names();
-    if (std::find(names.begin(), names.end(), name) != names.end()) return value_of(built_in_scene(name));
-    SceneOptions options;
-    options.threads = threads;
-    return value_of(load_scene(name, options));
-}
-
 Vec3f vector_of(const Keywords& words, const char* name) {
     std::vector<double> v;
     words.read(name, v);
@@ -43,28 +35,26 @@ void within(const char* field, double value, double low, double high) {
 }
 
 /// Size in pixels and camera: the scene's own, or one that shows all of it.
-void set_view(const Keywords& words, const Scene& scene, RenderOptions& options) {
-    const bool placed = words.has("camera_position");
-    const Camera* own = placed || scene.cameras.empty() ? nullptr : &scene.cameras.front();
-    const float aspect = own && own->aspect > 0 ? own->aspect : 1;
-    words.read("width", options.width);
-    options.height = std::clamp(int(std::lround(float(options.width) / aspect)), 1, 16384);
-    words.read("height", options.height);
-    within("width", options.width, 1, 16384);
-    within("height", options.height, 1, 16384);
+void read_view(const Keywords& words, const Scene& scene, RenderOptions& options) {
+    SceneView view{options.width, {}, scene.cameras.empty() ? nullptr : &scene.cameras.front(), {}, {}, 0};
+    words.read("width", view.width);
+    words.read("height", view.height);
+    within("width", *view.width, 1, 16384);
+    if (view.height) within("height", *view.height, 1, 16384);
     double fov_deg = 35;
     words.read("fov_deg", fov_deg);
     within("fov_deg", fov_deg, 0.1, 170);
-    const float shape = float(options.width) / float(options.height);
-    options.camera = own      ? camera_for(*own, shape)
-                     : placed ? look_at(vector_of(words, "camera_position"), vector_of(words, "camera_target"),
-                                        float(fov_deg * k_pi / 180))
-                              : default_camera(scene, shape);
+    view.fov_y = float(fov_deg * k_pi / 180);
+    if (words.has("camera_position")) {
+        view.eye = vector_of(words, "camera_position");
+        view.target = vector_of(words, "camera_target");
+    }
+    set_view(options, scene, view);
 }
 
 RenderOptions render_options(const Keywords& words, const Scene& scene) {
     RenderOptions options;
-    set_view(words, scene, options);
+    read_view(words, scene, options);
     options.bounces = 4;
     words.read("spp", options.samples);
     words.read("noise", options.noise);
@@ -161,7 +151,7 @@ nb::dict run_render(const std::string& name, const Environment& environment, con
     const Keywords words(dictionary);
     int threads = 0;
     words.read("threads", threads);
-    Scene scene = run_work_for(nb::none(), [&](const Progress&) { return open_scene(name, threads); });
+    Scene scene = run_work_for(nb::none(), [&](const Progress&) { return value_of(open_scene(name, {.threads = threads})); });
     RenderOptions options = render_options(words, scene);
     const Shading shading = shading_of(words, options);
     std::vector<std::string> warnings = scene.warnings;

@@ -41,13 +41,8 @@ Result<AuditJob> options_of(const Json& json) {
     return job;
 }
 
-Result<void> check(const Json& json) {
-    const auto job = options_of(json);
-    return job ? Result<void>() : job.error();
-}
-
 std::string file_name(const Json&, const std::string& name) {
-    return name.ends_with(".json") ? name : name + ".json";
+    return with_ending(name, ".json");
 }
 
 /// Audits filter the source some five times, at the sizes of the levels.
@@ -82,17 +77,15 @@ Result<JobReport> run(const JobCall& call) {
     if (!as_read) return as_read.error();
     const std::string convention =
         environment->cube() ? "" : convention_of(audit->orientation.ours_from_theirs, environment->world_to_source);
-    const RepairReport repaired = environment->report();
     const std::string text = audit_json(names_of_files(call.files("bake")), names_of_files(call.files("environment")),
-                                        *bake, *audit, *as_read, convention, repaired.lines())
+                                        *bake, *audit, *as_read, convention, environment->report().lines())
                                  .dump(2) +
                              "\n";
     if (auto ok = write_file_atomically(call.folder / call.name, text); !ok) return ok.error();
     JobReport report;
-    report.warnings = repaired.lines();
+    note_repairs(*environment, report);
     if (!audit->passed()) report.warnings.push_back("the audit was not passed: " + audit->verdict);
     report.warnings.insert(report.warnings.end(), audit->notes.begin(), audit->notes.end());
-    report.repaired = repaired.repaired();
     report.error = 0;
     for (const LevelAudit& level : audit->levels)
         report.error = std::max(report.error, level.stated_roughness ? level.stated_error : level.error);
@@ -108,7 +101,7 @@ JobKind audit_kind() {
             .roles = {"bake", "environment"},
             .makes_folder = false,
             .file_name = file_name,
-            .check = check,
+            .check = check_options<options_of>,
             .estimate = estimate,
             .run = run};
 }

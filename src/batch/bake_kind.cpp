@@ -7,7 +7,6 @@
 #include "batch/option_reader.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace domelight {
@@ -15,12 +14,9 @@ namespace {
 
 /// The two words of the command line for what an irradiance map holds.
 void read_irradiance(OptionReader& reader, BakeOptions& options) {
-    std::string word;
-    reader.read("irradiance", word);
-    if (word.empty()) return;
-    const std::array<std::string, 2> accepted{"e", "over-pi"};
-    if (std::ranges::find(accepted, word) == accepted.end())
-        return reader.fail(unknown_name(word, "a quantity", accepted).at(field_place("irradiance")));
+    if (!reader.given("irradiance")) return reader.know("irradiance");
+    std::string word = "e";
+    reader.read_word("irradiance", word, {"e", "over-pi"}, "a quantity");
     options.irradiance_quantity = word == "e" ? Quantity::irradiance : Quantity::irradiance_over_pi;
 }
 
@@ -37,12 +33,9 @@ void read_plain_methods(OptionReader& reader, BakeOptions& options) {
     } else if (!steps.empty()) {
         reader.fail({"is not two numbers", field_place("riemann_steps"), "[K, J]: K steps of phi by J of theta."});
     }
-    std::string sum;
-    reader.read("riemann_sum", sum);
-    const std::array<std::string, 2> accepted{"normalised", "plain"};
-    if (!sum.empty() && std::ranges::find(accepted, sum) == accepted.end())
-        reader.fail(unknown_name(sum, "a Riemann sum", accepted).at(field_place("riemann_sum")));
-    if (!sum.empty()) options.riemann.normalised = sum == "normalised";
+    std::string sum = options.riemann.normalised ? "normalised" : "plain";
+    reader.read_word("riemann_sum", sum, {"normalised", "plain"}, "a Riemann sum");
+    options.riemann.normalised = sum == "normalised";
 }
 
 Result<BakeOptions> options_of(const Json& json) {
@@ -78,15 +71,6 @@ Result<BakeOptions> options_of(const Json& json) {
     if (auto ok = reader.finish(); !ok) return ok.error();
     if (auto ok = check_bake_options(o); !ok) return ok.error();
     return o;
-}
-
-Result<void> check(const Json& json) {
-    const auto options = options_of(json);
-    return options ? Result<void>() : options.error();
-}
-
-std::string no_file(const Json&, const std::string&) {
-    return {};
 }
 
 /// Seconds for each texel of encodings that search, beyond what the plain ones take.
@@ -206,7 +190,7 @@ JobKind bake_kind() {
             .roles = {"environment"},
             .makes_folder = true,
             .file_name = no_file,
-            .check = check,
+            .check = check_options<options_of>,
             .estimate = estimate,
             .run = run};
 }

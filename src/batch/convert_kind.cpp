@@ -77,15 +77,9 @@ Result<ConvertJob> options_of(const Json& json) {
     return job;
 }
 
-Result<void> check(const Json& json) {
-    const auto job = options_of(json);
-    return job ? Result<void>() : job.error();
-}
-
 std::string file_name(const Json& json, const std::string& name) {
     const auto job = options_of(json);
-    const std::string ending = "." + (job ? job->format : "exr");
-    return name.ends_with(ending) ? name : name + ending;
+    return with_ending(name, "." + (job ? job->format : "exr"));
 }
 
 JobEstimate estimate(const Json& json, std::span<const InputFacts> inputs) {
@@ -128,8 +122,7 @@ Result<JobReport> run(const JobCall& call) {
     if (!written) return written.error();
 
     JobReport report;
-    const RepairReport repaired = environment->report();
-    report.warnings = repaired.lines();
+    note_repairs(*environment, report);
     if (written->encoding.clipped_texels > 0)
         report.warnings.push_back(fmt::format("{} clips {} texels and {:.3g} % of the power", written->encoding_name,
                                               written->encoding.clipped_texels,
@@ -137,7 +130,6 @@ Result<JobReport> run(const JobCall& call) {
     if (!target.full())
         report.warnings.push_back(fmt::format("{} shows {:.0f} % of all directions: the rest is lost", target.name(),
                                               25 * target.shape().coverage() / k_pi));
-    report.repaired = repaired.repaired();
     const double before = luminance(made->power_before), after = luminance(made->power_after);
     report.error = before > 0 ? std::abs(after / before - 1) : 0;
     report.error_of = "relative change of the radiant power";
@@ -153,7 +145,7 @@ JobKind convert_kind() {
             .roles = {"environment"},
             .makes_folder = false,
             .file_name = file_name,
-            .check = check,
+            .check = check_options<options_of>,
             .estimate = estimate,
             .run = run};
 }

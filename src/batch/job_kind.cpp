@@ -4,6 +4,21 @@
 
 namespace domelight {
 
+std::string with_ending(const std::string& name, const std::string& ending) {
+    return name.ends_with(ending) ? name : name + ending;
+}
+
+std::string no_file(const Json&, const std::string&) {
+    return {};
+}
+
+void note_repairs(const Environment& environment, JobReport& report) {
+    const RepairReport repaired = environment.report();
+    const auto lines = repaired.lines();
+    report.warnings.insert(report.warnings.end(), lines.begin(), lines.end());
+    report.repaired = repaired.repaired();
+}
+
 std::span<const JobKind> job_kinds() {
     static const JobKind table[] = {bake_kind(), convert_kind(), audit_kind(), render_kind(), probes_kind()};
     return table;

@@ -3,6 +3,7 @@
 
 #include "domelight/base/result.h"
 #include "domelight/batch/batch_plan.h"
+#include "domelight/environment/environment.h"
 
 #include "io/file/json.h"
 
@@ -63,6 +64,19 @@ struct JobKind {
     JobEstimate (*estimate)(const Json& options, std::span<const InputFacts> inputs);
     Result<JobReport> (*run)(const JobCall& call);
 };
+
+/// JobKind::check for a function that reads the options into a struct of the kind's own, and checks them.
+template <auto options_of>
+Result<void> check_options(const Json& json) {
+    const auto options = options_of(json);
+    return options ? Result<void>() : options.error();
+}
+/// The name of a file with this ending, ".exr", which is put behind it unless it is there.
+std::string with_ending(const std::string& name, const std::string& ending);
+/// JobKind::file_name of a kind whose result is a folder.
+std::string no_file(const Json& options, const std::string& name);
+/// Adds what was repaired in an environment to a report.
+void note_repairs(const Environment& environment, JobReport& report);
 
 std::span<const JobKind> job_kinds();
 /// Errors: there is no kind of that name; the error lists those that there are.

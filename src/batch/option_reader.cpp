@@ -13,6 +13,13 @@ const Json* OptionReader::find(const char* name) {
     return error_ ? nullptr : options_.find(name);
 }
 
+void OptionReader::read_word(const char* name, std::string& field, const std::vector<std::string>& accepted,
+                             const char* kind) {
+    read(name, field);
+    if (std::ranges::find(accepted, field) == accepted.end())
+        fail(unknown_name(field, kind, accepted).at(field_place(name)));
+}
+
 void OptionReader::fail(Error error) {
     if (!error_) error_ = std::move(error);
 }

@@ -53,6 +53,9 @@ class OptionReader {
         check_range(name, double(field), low, high);
     }
 
+    /// One of these words. kind: what they are, "a format". Where the member is missing, the field must be one of them.
+    void read_word(const char* name, std::string& field, const std::vector<std::string>& accepted, const char* kind);
+
     /// For a member that the caller has read itself.
     void know(const char* name) { known_.emplace_back(name); }
     bool given(const char* name) const { return options_.contains(name); }

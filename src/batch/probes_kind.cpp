@@ -99,15 +99,6 @@ Result<ProbesJob> options_of(const Json& json) {
     return job;
 }
 
-Result<void> check(const Json& json) {
-    const auto job = options_of(json);
-    return job ? Result<void>() : job.error();
-}
-
-std::string no_file(const Json&, const std::string&) {
-    return {};
-}
-
 /// How many probes there will be, as far as the options tell.
 double count_of(const ProbesJob& job) {
     if (!job.grid.empty()) return job.grid[0] * job.grid[1] * job.grid[2];
@@ -146,14 +137,9 @@ Result<JobReport> run(const JobCall& call) {
     if (!scene) return scene.error();
     const auto environment = open_environment(call.files("environment"), job->environment);
     if (!environment) return environment.error();
-    const auto hash = environment_sha256(*environment);
-    if (!hash) return hash.error();
     const auto file = call.inputs.find("scene");
-    job->bake.scene = {file == call.inputs.end() ? job->scene : file->second[0].filename().string(),
-                       scene_sha256(*scene)};
-    job->bake.environment = {environment->file.filename().string(), *hash};
-    const Scene::Box bounds = scene->bounds();
-    job->bake.filter.farthest = std::max(1e-3f, length(bounds.high - bounds.low));
+    const std::string name = file == call.inputs.end() ? job->scene : file->second[0].string();
+    if (auto ok = set_sources(job->bake, name, *scene, *environment); !ok) return ok.error();
     JobReport report;
     report.warnings = scene->warnings;
     for (const std::string& line : not_rendered(*scene)) report.warnings.push_back(line);
@@ -167,10 +153,8 @@ Result<JobReport> run(const JobCall& call) {
     job->bake.placement = plan->how;
     const auto baked = bake_probes(*traced, *sampler, plan->probes, plan->grid, job->bake, call.folder);
     if (!baked) return baked.error();
-    const RepairReport repaired = environment->report();
-    for (const auto& lines : {repaired.lines(), warnings_of(*baked, plan->probes)})
-        report.warnings.insert(report.warnings.end(), lines.begin(), lines.end());
-    report.repaired = repaired.repaired();
+    note_repairs(*environment, report);
+    for (const std::string& line : warnings_of(*baked, plan->probes)) report.warnings.push_back(line);
     return report;
 }
 
@@ -182,7 +166,7 @@ JobKind probes_kind() {
             .roles = {"environment", "scene?"},
             .makes_folder = true,
             .file_name = no_file,
-            .check = check,
+            .check = check_options<options_of>,
             .estimate = estimate,
             .run = run};
 }

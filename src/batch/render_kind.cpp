@@ -39,17 +39,10 @@ void check_vector(OptionReader& reader, const char* name, const std::vector<doub
     if (!v.empty() && v.size() != 3) reader.fail({"is not three numbers", field_place(name), "[x, y, z]"});
 }
 
-void read_word(OptionReader& reader, const char* name, std::string& word, const std::vector<std::string>& accepted,
-               const char* kind) {
-    reader.read(name, word);
-    if (std::ranges::find(accepted, word) == accepted.end())
-        reader.fail(unknown_name(word, kind, accepted).at(field_place(name)));
-}
-
 void read_shading(OptionReader& reader, RenderJob& job) {
     std::vector<std::string> accepted = names_of<ShadingModel>();
     accepted.insert(accepted.begin(), "reference");
-    read_word(reader, "shading", job.shading, accepted, "a model of shading");
+    reader.read_word("shading", job.shading, accepted, "a model of shading");
     if (const auto model = from_name<ShadingModel>(job.shading)) job.model = *model;
     ShadingOptions& s = job.shading_options;
     reader.read("lookup", s.lookup);
@@ -57,7 +50,7 @@ void read_shading(OptionReader& reader, RenderJob& job) {
     reader.read("bent_lookup", s.bent_lookup);
     reader.read("diffuse_weight", s.diffuse_weight);
     std::string irradiance = "cube";
-    read_word(reader, "irradiance", irradiance, {"cube", "sh"}, "a kind of irradiance");
+    reader.read_word("irradiance", irradiance, {"cube", "sh"}, "a kind of irradiance");
     s.sh_irradiance = irradiance == "sh";
 }
 
@@ -68,7 +61,7 @@ Result<RenderJob> options_of(const Json& json) {
     o.samples = 64;
     o.bounces = 4;
     read_scene_option(reader, job.scene);
-    read_word(reader, "format", job.format, {"exr", "hdr", "png", "jpg"}, "a format");
+    reader.read_word("format", job.format, {"exr", "hdr", "png", "jpg"}, "a format");
     reader.read("width", job.width);
     reader.read("height", job.height);
     reader.read("camera_position", job.position);
@@ -86,7 +79,7 @@ Result<RenderJob> options_of(const Json& json) {
     reader.read("background_roughness", job.background_roughness, 0, 1);
     reader.read("seed", o.seed);
     reader.read("lux_per_unit", job.lux_per_unit, 1e-12, 1e12);
-    read_word(reader, "brdf", job.brdf, {"scene", "phong"}, "a BRDF");
+    reader.read_word("brdf", job.brdf, {"scene", "phong"}, "a BRDF");
     read_shading(reader, job);
     reader.read("tonemap", job.tonemap);
     reader.read("ev", job.ev);
@@ -104,15 +97,9 @@ Result<RenderJob> options_of(const Json& json) {
     return job;
 }
 
-Result<void> check(const Json& json) {
-    const auto job = options_of(json);
-    return job ? Result<void>() : job.error();
-}
-
 std::string file_name(const Json& json, const std::string& name) {
     const auto job = options_of(json);
-    const std::string ending = "." + (job ? job->format : "exr");
-    return name.ends_with(ending) ? name : name + ending;
+    return with_ending(name, "." + (job ? job->format : "exr"));
 }
 
 JobEstimate estimate(const Json& json, std::span<const InputFacts> inputs) {
@@ -126,26 +113,15 @@ JobEstimate estimate(const Json& json, std::span<const InputFacts> inputs) {
             (std::int64_t(200) << 20) + 60 * texels + std::int64_t(width * height * 140)};
 }
 
-/// The camera that was asked for, or the scene's first, and the size of the picture: as `domelight render` has them.
+/// The camera that was asked for, or the scene's first, and the size of the picture.
 void set_camera(RenderJob& job, const Scene& scene) {
-    RenderOptions& o = job.options;
-    const Camera* own = scene.cameras.empty() || !job.position.empty() ? nullptr : &scene.cameras.front();
-    const float aspect = own && own->aspect > 0 ? own->aspect : 1;
-    if (job.width || !job.height) {
-        o.width = job.width.value_or(512);
-        o.height = job.height.value_or(std::clamp(int(std::lround(float(o.width) / aspect)), 1, 16384));
-    } else {
-        o.height = *job.height;
-        o.width = std::clamp(int(std::lround(float(o.height) * aspect)), 1, 16384);
-    }
-    const float shape = float(o.width) / float(o.height);
     const auto vector = [](const std::vector<double>& v) {
         return v.empty() ? Vec3f{} : Vec3f(Vec3d{v[0], v[1], v[2]});
     };
-    o.camera = own ? camera_for(*own, shape)
-               : job.position.empty()
-                   ? default_camera(scene, shape)
-                   : look_at(vector(job.position), vector(job.target), float(job.fov_deg * k_pi / 180));
+    const Camera* own = scene.cameras.empty() ? nullptr : &scene.cameras.front();
+    SceneView view{job.width, job.height, own, {}, vector(job.target), float(job.fov_deg * k_pi / 180)};
+    if (!job.position.empty()) view.eye = vector(job.position);
+    set_view(job.options, scene, view);
 }
 
 Result<RenderResult> draw(RenderJob& job, const RayScene& scene, const EnvironmentSampler& sampler) {
@@ -197,9 +173,7 @@ Result<JobReport> run(const JobCall& call) {
     const auto result = draw(*job, *traced, *sampler);
     if (!result) return result.error();
     if (auto ok = write(*job, call.folder / call.name, *result, traced->scene()); !ok) return ok.error();
-    const RepairReport repaired = environment->report();
-    for (const std::string& line : repaired.lines()) report.warnings.push_back(line);
-    report.repaired = repaired.repaired();
+    note_repairs(*environment, report);
     if (!job->model && result->sample_count > 1) {
         report.error = result->noise;
         report.error_of = "standard error of L/(1+L)";
@@ -216,7 +190,7 @@ JobKind render_kind() {
             .roles = {"environment", "scene?"},
             .makes_folder = false,
             .file_name = file_name,
-            .check = check,
+            .check = check_options<options_of>,
             .estimate = estimate,
             .run = run};
 }

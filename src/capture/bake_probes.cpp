@@ -1,6 +1,8 @@
 #include "domelight/base/version.h"
 #include "domelight/capture/probe_bake.h"
+#include "domelight/io/environment/open_environment.h"
 #include "domelight/io/file/atomic_file.h"
+#include "domelight/probe/scene_hash.h"
 #include "domelight/probe/tetrahedra.h"
 
 #include "bake/staging.h"
@@ -161,6 +163,19 @@ Result<ProbeMapRecord> map_record(const fs::path& file, const std::string& name,
 }
 
 }  // namespace
+
+Result<void> set_sources(ProbeBakeOptions& options, const std::string& name, const Scene& scene,
+                         const Environment& environment) {
+    const auto hash = environment_sha256(environment);
+    if (!hash) return hash.error();
+    options.scene = {fs::path(name).filename().string(), scene_sha256(scene)};
+    options.environment = {environment.file.filename().string(), *hash};
+    options.inputs.insert(options.inputs.end(), environment.files.begin(), environment.files.end());
+    options.inputs.push_back(name);
+    const Scene::Box bounds = scene.bounds();
+    options.filter.farthest = std::max(1e-3f, length(bounds.high - bounds.low));
+    return {};
+}
 
 Result<ProbeBakeReport> bake_probes(const RayScene& scene, const EnvironmentSampler& sampler,
                                     const std::vector<Probe>& probes, const std::optional<ProbeGrid>& grid,

@@ -22,21 +22,19 @@ Json number_json(float value) {
     std::from_chars(text.data(), text.data() + text.size(), number);
     return number;
 }
+const char* shape_name(ProbeInfluence::Shape shape) {
+    return shape == ProbeInfluence::Shape::box      ? "box"
+           : shape == ProbeInfluence::Shape::sphere ? "sphere"
+                                                    : "everywhere";
+}
+
+}  // namespace
+
 Json vector_json(const Vec3f& v) {
     return Json::array({number_json(v.x), number_json(v.y), number_json(v.z)});
 }
 Json box_json(const ProbeBox& box) {
     return {{"low", vector_json(box.low)}, {"high", vector_json(box.high)}};
-}
-
-Json source_json(const ProbeSource& source) {
-    return {{"file", source.file}, {"sha256", source.sha256.empty() ? Json(nullptr) : Json(source.sha256)}};
-}
-
-const char* shape_name(ProbeInfluence::Shape shape) {
-    return shape == ProbeInfluence::Shape::box      ? "box"
-           : shape == ProbeInfluence::Shape::sphere ? "sphere"
-                                                    : "everywhere";
 }
 
 Json influence_json(const ProbeInfluence& influence) {
@@ -45,6 +43,18 @@ Json influence_json(const ProbeInfluence& influence) {
     if (influence.shape == ProbeInfluence::Shape::sphere) json["radius"] = number_json(influence.radius);
     if (influence.shape != ProbeInfluence::Shape::everywhere) json["fade"] = number_json(influence.fade);
     return json;
+}
+
+std::vector<std::string> files_of(const ProbeSetRecord& record) {
+    std::vector<std::string> files{k_probes_json, record.specular.file, record.irradiance.file};
+    if (record.distance) files.push_back(record.distance->file);
+    return files;
+}
+
+namespace {
+
+Json source_json(const ProbeSource& source) {
+    return {{"file", source.file}, {"sha256", source.sha256.empty() ? Json(nullptr) : Json(source.sha256)}};
 }
 
 Json probe_json(const Probe& probe, const std::array<Vec3d, 9>& harmonics) {

@@ -29,6 +29,14 @@ struct ProbeSetRecord {
     float farthest = 0;  ///< metres: the distance of directions without a surface
 };
 
+/// Its files, relative to its folder; probes.json is the first.
+std::vector<std::string> files_of(const ProbeSetRecord& record);
+
+/// A vector, a box and an influence as probes.json has them; numbers in as many digits as a float needs.
+Json vector_json(const Vec3f& v);
+Json box_json(const ProbeBox& box);
+Json influence_json(const ProbeInfluence& influence);
+
 std::string probe_record_text(const ProbeSetRecord& record);
 
 /// Reads FOLDER/probes.json. Errors name it, and the member that is wrong.

@@ -8,8 +8,7 @@
 
 namespace domelight {
 
-CameraRays::CameraRays(const Camera& camera, int width, int height)
-    : camera_(camera), width_(width), height_(height) {
+CameraRays::CameraRays(const Camera& camera, int width, int height) : camera_(camera), width_(width), height_(height) {
     half_height_ = camera.orthographic ? camera.half_height : std::tan(0.5f * camera.fov_y);
     half_width_ = half_height_ * float(width) / float(height);
     step_u_ = 2 * half_width_ / float(width);
@@ -110,6 +109,23 @@ Camera default_camera(const Scene& scene, float aspect) {
     const float distance = framing_distance(look_at(middle + back, middle, fov_y).to_world,
                                             sweep_of(scene, box, middle), tan_y * aspect, tan_y);
     return look_at(middle + back * std::max(1e-6f, distance), middle, fov_y);
+}
+
+void set_view(RenderOptions& o, const Scene& scene, const SceneView& view) {
+    const Camera* camera = view.eye ? nullptr : view.camera;
+    const float aspect = camera && camera->aspect > 0 ? camera->aspect : 1;
+    const auto other_side = [](float length) { return std::clamp(int(std::lround(length)), 1, 16384); };
+    if (view.width || !view.height) {
+        o.width = view.width.value_or(512);
+        o.height = view.height ? *view.height : other_side(float(o.width) / aspect);
+    } else {
+        o.height = *view.height;
+        o.width = other_side(float(o.height) * aspect);
+    }
+    const float shape = float(o.width) / float(o.height);
+    o.camera = camera     ? camera_for(*camera, shape)
+               : view.eye ? look_at(*view.eye, view.target, view.fov_y)
+                          : default_camera(scene, shape);
 }
 
 }  // namespace domelight

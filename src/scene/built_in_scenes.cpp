@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace domelight {
@@ -191,6 +192,12 @@ Result<Scene> built_in_scene(const std::string& name) {
     std::string names;
     for (const BuiltInScene& scene : k_scenes) names += (names.empty() ? "" : ", ") + std::string(scene.name);
     return Error{fmt::format("there is no built-in scene '{}'", name.substr(0, 40)), "", "There are " + names + "."};
+}
+
+Result<Scene> open_scene(const std::string& name_or_file, const SceneOptions& options) {
+    const bool is_built_in =
+        std::ranges::any_of(k_scenes, [&](const BuiltInScene& scene) { return name_or_file == scene.name; });
+    return is_built_in ? built_in_scene(name_or_file) : load_scene(name_or_file, options);
 }
 
 }  // namespace domelight

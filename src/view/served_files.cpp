@@ -119,9 +119,8 @@ Result<std::string> ServedFiles::add_environment(const fs::path& file, int numbe
 Result<std::vector<std::string>> ServedFiles::add_probes(const fs::path& folder) {
     const auto record = read_probe_record(folder);
     if (!record) return record.error();
-    std::vector<std::string> names{k_probes_json, record->specular.file, record->irradiance.file}, addresses;
-    if (record->distance) names.push_back(record->distance->file);
-    for (const std::string& name : names) {
+    std::vector<std::string> addresses;
+    for (const std::string& name : files_of(*record)) {
         const auto place = path_inside(folder / name, folder, name);
         if (!place) return place.error().at((folder / k_probes_json).string());
         if (auto ok = check_readable(*place); !ok) return ok.error();

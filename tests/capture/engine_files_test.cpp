@@ -1,8 +1,8 @@
 #include "domelight/capture/engine_files.h"
 
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
-#include "domelight/projection/projection.h"
 
+#include "probe/cube_of.h"
 #include "test.h"
 #include "texture/texel/half.h"
 #include "texture/texel/rgb9e5.h"
@@ -18,6 +18,7 @@
 namespace domelight {
 namespace {
 
+using test::cube_of;
 using test::TemporaryFolder;
 
 /// The nine coefficients of the radiance at a place: different at each, and E above 0 everywhere.
@@ -40,15 +41,10 @@ ProbeSet grid_set(const ProbeGrid& grid) {
         m.harmonics = harmonics_at(i);
         const auto e = sh_irradiance_over_pi(m.harmonics);
         const auto fill = [](int size, std::span<const Vec3d> coefficients) {
-            Cubemap cube(size, 3);
-            for (int f = 0; f < 6; ++f)
-                for (int y = 0; y < size; ++y)
-                    for (int x = 0; x < size; ++x) {
-                        const Vec3d d = normalize(cube_direction(f, {(x + 0.5) / size, (y + 0.5) / size}));
-                        const Vec3f v(sh_evaluate(coefficients, d));
-                        std::ranges::copy(std::array{v.x, v.y, v.z}, cube.face(f).at(x, y));
-                    }
-            return cube;
+            return cube_of(size, 3, [&](const Vec3d& d, float* texel) {
+                const Vec3f v(sh_evaluate(coefficients, d));
+                texel[0] = v.x, texel[1] = v.y, texel[2] = v.z;
+            });
         };
         m.irradiance_over_pi = fill(16, e);
         m.specular = {fill(16, m.harmonics), fill(8, e)};

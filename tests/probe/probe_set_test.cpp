@@ -3,6 +3,7 @@
 #include "domelight/filtering/harmonic/spherical_harmonics.h"
 #include "domelight/projection/projection.h"
 
+#include "probe/cube_of.h"
 #include "projection/bilinear.h"
 #include "test.h"
 
@@ -13,14 +14,7 @@
 namespace domelight {
 namespace {
 
-Cubemap cube_of(int size, int channels, const std::function<void(const Vec3d& direction, float* texel)>& value) {
-    Cubemap cube(size, channels);
-    for (int f = 0; f < 6; ++f)
-        for (int y = 0; y < size; ++y)
-            for (int x = 0; x < size; ++x)
-                value(normalize(cube_direction(f, {(x + 0.5) / size, (y + 0.5) / size})), cube.face(f).at(x, y));
-    return cube;
-}
+using test::cube_of;
 
 /// In the middle of a cube with walls 2 (probe + 1) metres apart.
 double wall_distance(int probe, const Vec3d& direction) {

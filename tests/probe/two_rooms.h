@@ -4,21 +4,13 @@
 #include "domelight/probe/probe_set.h"
 #include "domelight/projection/projection.h"
 
+#include "probe/cube_of.h"
+
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <vector>
 
 namespace domelight::test {
-
-inline Cubemap cube_of(int size, int channels, const std::function<void(const Vec3d& direction, float* texel)>& value) {
-    Cubemap cube(size, channels);
-    for (int f = 0; f < 6; ++f)
-        for (int y = 0; y < size; ++y)
-            for (int x = 0; x < size; ++x)
-                value(normalize(cube_direction(f, {(x + 0.5) / size, (y + 0.5) / size})), cube.face(f).at(x, y));
-    return cube;
-}
 
 /// The distance from a point in a box to its walls.
 inline double distance_in_box(const ProbeBox& box, const Vec3f& from, const Vec3d& direction) {

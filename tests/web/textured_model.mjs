@@ -1,32 +1,13 @@
 // A model with everything that the shaders read: a ball with all five textures, and three lights.
 
-import zlib from 'node:zlib';
+import {glb, png} from '../engines/browser/files.mjs';
 
-/// A PNG of RGB bytes.
-function png(size, colour) {
-    const rows = Buffer.alloc(size * (1 + 3 * size));
+/// A square PNG whose pixels are colour(u, v), three values from 0 to 1.
+function pictureOf(size, colour) {
+    const rgb = Buffer.alloc(3 * size * size);
     for (let y = 0; y < size; ++y)
-        for (let x = 0; x < size; ++x) colour((x + 0.5) / size, (y + 0.5) / size).forEach((v, c) => (rows[y * (1 + 3 * size) + 1 + 3 * x + c] = Math.round(255 * v)));
-    const chunk = (name, data) => {
-        const body = Buffer.concat([Buffer.from(name), data]), out = Buffer.alloc(8 + body.length);
-        out.writeUInt32BE(data.length, 0);
-        body.copy(out, 4);
-        out.writeUInt32BE(zlib.crc32 ? zlib.crc32(body) : crc32(body), 4 + body.length);
-        return out;
-    };
-    const head = Buffer.alloc(13);
-    head.writeUInt32BE(size, 0);
-    head.writeUInt32BE(size, 4);
-    head.set([8, 2, 0, 0, 0], 8);
-    return Buffer.concat([Buffer.from([0x89, 0x50, 0x4e, 0x47, 13, 10, 26, 10]), chunk('IHDR', head), chunk('IDAT', zlib.deflateSync(rows)), chunk('IEND', Buffer.alloc(0))]);
-}
-function crc32(bytes) {
-    let crc = ~0;
-    for (const byte of bytes) {
-        crc ^= byte;
-        for (let k = 0; k < 8; ++k) crc = crc & 1 ? (crc >>> 1) ^ 0xedb88320 : crc >>> 1;
-    }
-    return ~crc >>> 0;
+        for (let x = 0; x < size; ++x) colour((x + 0.5) / size, (y + 0.5) / size).forEach((v, c) => (rgb[3 * (y * size + x) + c] = Math.round(255 * v)));
+    return png(size, size, rgb);
 }
 
 function ball(columns, rows) {
@@ -52,9 +33,9 @@ export function texturedModel() {
         return [0.5 + 0.5 * x, 0.5 + 0.5 * y, 0.5 + 0.5 * z];
     };
     const pictures = [
-        png(128, (u, v) => [0.3 + 0.6 * wave(u, v, 2, 3), 0.5, 0.9 - 0.6 * wave(u, v, 2, 3)]),  // base colour
-        png(128, (u, v) => [0, 0.15 + 0.7 * wave(u, v, 3, 2), wave(u, v, 1, 4)]),               // roughness, metalness
-        png(256, bump), png(128, (u, v) => [0.4 + 0.6 * wave(u, v, 2, 5), 0, 0]), png(128, (u, v) => [0, 0.2 * wave(u, v, 4, 2) ** 4, 0]),
+        pictureOf(128, (u, v) => [0.3 + 0.6 * wave(u, v, 2, 3), 0.5, 0.9 - 0.6 * wave(u, v, 2, 3)]),  // base colour
+        pictureOf(128, (u, v) => [0, 0.15 + 0.7 * wave(u, v, 3, 2), wave(u, v, 1, 4)]),               // roughness, metalness
+        pictureOf(256, bump), pictureOf(128, (u, v) => [0.4 + 0.6 * wave(u, v, 2, 5), 0, 0]), pictureOf(128, (u, v) => [0, 0.2 * wave(u, v, 4, 2) ** 4, 0]),
     ];
     const parts = [Float32Array.from(positions), Float32Array.from(normals), Float32Array.from(tangents), Float32Array.from(uvs), Uint16Array.from(indices)]
         .map(array => Buffer.from(array.buffer)).concat(pictures);
@@ -82,8 +63,7 @@ export function texturedModel() {
         materials: [{pbrMetallicRoughness: {baseColorTexture: {index: 0}, metallicRoughnessTexture: {index: 1}}, normalTexture: {index: 2},
                      occlusionTexture: {index: 3}, emissiveTexture: {index: 4}, emissiveFactor: [1, 1, 1]}],
         textures: pictures.map((_, source) => ({source})), images: pictures.map((_, k) => ({bufferView: 5 + k, mimeType: 'image/png'})),
-        bufferViews: views, buffers: [{byteLength: blob.length}],
+        bufferViews: views,
     };
-    const text = Buffer.from(JSON.stringify(document)), json = Buffer.concat([text, Buffer.alloc(-text.length & 3, ' ')]), words = (...values) => Buffer.from(Uint32Array.from(values).buffer);
-    return Buffer.concat([words(0x46546c67, 2, 28 + json.length + blob.length, json.length, 0x4e4f534a), json, words(blob.length, 0x4e4942), blob]);
+    return glb(document, blob);
 }

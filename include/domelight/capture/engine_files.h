@@ -24,9 +24,8 @@ struct EngineFilesOptions {
 };
 
 struct EngineFilesReport {
-    std::vector<std::string> files;     ///< relative to the folder, the one that names the others last
-    std::int64_t clipped_texels = 0;    ///< brighter than the file's encoding can hold
-    std::vector<std::string> warnings;  ///< what the engine cannot use of the set
+    std::vector<std::string> files;   ///< relative to the folder, the one that names the others last
+    std::int64_t clipped_texels = 0;  ///< brighter than the file's encoding can hold
 };
 
 /// Writes a set for an engine:

@@ -28,6 +28,15 @@ struct ProbeBakeOptions {
     std::vector<std::filesystem::path> inputs;  ///< files that must not be overwritten
 };
 
+/// Records what probes are captured from (`scene` and `environment` of the options), keeps both from being overwritten,
+/// and sets the farthest distance to the scene's diagonal.
+///
+/// name   a built-in scene, or the scene's file
+///
+/// Errors: those of reading the environment.
+Result<void> set_sources(ProbeBakeOptions& options, const std::string& name, const Scene& scene,
+                         const Environment& environment);
+
 struct ProbeBakeReport {
     int size = 0;  ///< texels along a face of level 0
     std::int64_t rays = 0;

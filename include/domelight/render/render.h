@@ -14,6 +14,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 
 namespace domelight {
 
@@ -165,6 +166,18 @@ struct ShadowCatcher {
 /// its samples are added to RenderResult::non_finite_samples. Errors: "cancelled".
 Result<void> catch_shadow(RenderResult& picture, const RayScene& scene, const EnvironmentSampler& sampler,
                           const ShadowCatcher& catcher, const RenderOptions& options);
+
+/// What a picture shows of a scene.
+struct SceneView {
+    std::optional<int> width, height;  ///< pixels, 1 .. 16384; without both, the width is 512
+    const Camera* camera = nullptr;    ///< one of the scene's; not used where `eye` is set
+    std::optional<Vec3f> eye;          ///< a camera there looks at `target`
+    Vec3f target{};
+    float fov_y = 0.6f;  ///< of that camera, radians
+};
+/// Sets the camera and the size of the picture. A width or height that is not given follows from the camera's own aspect
+/// ratio, which is 1 where it has none. Without a camera and an eye it is default_camera().
+void set_view(RenderOptions& options, const Scene& scene, const SceneView& view);
 
 /// Features of the scene's materials that render_reference does not support, as warnings: "clearcoat of 2 materials is
 /// left out".

@@ -215,5 +215,7 @@ Result<EnvironmentLights> load_environment_lights(const std::filesystem::path& f
 Result<Scene> built_in_scene(const std::string& name);
 /// The names that built_in_scene accepts.
 std::vector<std::string> built_in_scene_names();
+/// The built-in scene of that name, or else the file, by load_scene().
+Result<Scene> open_scene(const std::string& name_or_file, const SceneOptions& options = {});
 
 }  // namespace domelight

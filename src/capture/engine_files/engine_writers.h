@@ -5,6 +5,7 @@
 #include "bake/staging.h"
 #include "capture/engine_files/volume_texture.h"
 #include "io/file/json.h"
+#include "probe/probe_record.h"
 
 namespace domelight {
 
@@ -34,7 +35,5 @@ GridVolume volume_of(const ProbeGrid& grid);
 /// Writes one volume texture, and a file NAME.json that holds `json` and names it; both appear together.
 Result<void> write_grid_files(EngineFilesJob& job, const std::string& name, const VolumeTexels& volume,
                               Encoding encoding, Json json);
-
-Json json_of(const Vec3f& v);
 
 }  // namespace domelight

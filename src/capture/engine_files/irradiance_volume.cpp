@@ -21,8 +21,8 @@ Result<void> write_irradiance_volume(EngineFilesJob& job) {
             }
     const GridVolume volume = volume_of(*grid);
     return write_grid_files(job, "irradiance-volume", texture, Encoding::rgb9e5,
-                            {{"translation", json_of(volume.centre)},
-                             {"scale", json_of(volume.size)},
+                            {{"translation", vector_json(volume.centre)},
+                             {"scale", vector_json(volume.size)},
                              {"resolution", {grid->nx, grid->ny, grid->nz}}});
 }
 

@@ -40,8 +40,8 @@ Result<void> write_light_probe_grid(EngineFilesJob& job) {
             }
     const GridVolume volume = volume_of(*grid);
     return write_grid_files(job, "light-probe-grid", atlas, Encoding::rgba16f,
-                            {{"position", json_of(volume.centre)},
-                             {"size", json_of(volume.size)},
+                            {{"position", vector_json(volume.centre)},
+                             {"size", vector_json(volume.size)},
                              {"resolution", {grid->nx, grid->ny, grid->nz}}});
 }
 

@@ -11,22 +11,6 @@
 namespace domelight {
 namespace {
 
-Json json_of(const ProbeBox& box) {
-    return {{"low", json_of(box.low)}, {"high", json_of(box.high)}};
-}
-
-Json json_of(const ProbeInfluence& influence) {
-    switch (influence.shape) {
-        case ProbeInfluence::Shape::box:
-            return {{"box", json_of(influence.box)}, {"fade", influence.fade}};
-        case ProbeInfluence::Shape::sphere:
-            return {{"radius", influence.radius}, {"fade", influence.fade}};
-        case ProbeInfluence::Shape::everywhere:
-            break;
-    }
-    return "everywhere";
-}
-
 /// The bake of one probe in its own folder. Returns the files, relative to the set's folder.
 Result<std::vector<std::string>> bake_probe(EngineFilesJob& job, int probe, const std::string& name) {
     BakeOptions options;
@@ -52,9 +36,9 @@ Result<std::vector<std::string>> bake_probe(EngineFilesJob& job, int probe, cons
 Json probe_json(const Probe& probe, int number, const std::vector<std::string>& files) {
     Json json{{"probe", number},
               {"files", files},
-              {"position", json_of(probe.position)},
-              {"influence", json_of(probe.influence)}};
-    if (probe.proxy) json["box"] = json_of(*probe.proxy);
+              {"position", vector_json(probe.position)},
+              {"influence", influence_json(probe.influence)}};
+    if (probe.proxy) json["box"] = box_json(*probe.proxy);
     return json;
 }
 
@@ -76,8 +60,8 @@ Result<void> write_reflection_probes(EngineFilesJob& job) {
     const std::string text =
         Json{{"generator", fmt::format("domelight {}", version())}, {"engine", job.engine}, {"probes", list}}.dump(1) +
         "\n";
-    job.report.files.push_back("probes.json");
-    return write_file_atomically(job.folder / "probes.json", text);
+    job.report.files.push_back(k_probes_json);
+    return write_file_atomically(job.folder / k_probes_json, text);
 }
 
 }  // namespace domelight

@@ -9,10 +9,6 @@
 
 namespace domelight {
 
-Json json_of(const Vec3f& v) {
-    return {v.x, v.y, v.z};
-}
-
 Result<ProbeGrid> grid_for(const EngineFilesJob& job) {
     if (const auto& grid = job.set.grid()) return *grid;
     return Error{fmt::format("{} interpolates in a grid, and the probes of this set are not in one", job.engine),

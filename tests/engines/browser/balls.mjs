@@ -1,6 +1,7 @@
 // The scenes that every engine and Domelight's own renderer draw: spheres, as .glb files.
 
 import fs from 'node:fs';
+import {glb} from './files.mjs';
 
 /// Positions, normals and triangles of a sphere about the origin; `rings` from pole to pole and twice as many sectors.
 function sphere(radius, rings) {
@@ -23,8 +24,6 @@ function sphere(radius, rings) {
 function writeGlb(path, radius, rings, balls) {
     const mesh = sphere(radius, rings);
     const parts = [mesh.positions, mesh.normals, mesh.triangles].map(a => Buffer.from(a.buffer));
-    const pad = (buffer, fill) => Buffer.concat([buffer, Buffer.alloc((4 - buffer.length % 4) % 4, fill)]);
-    const binary = pad(Buffer.concat(parts), 0);
     const offsets = [0, parts[0].length, parts[0].length + parts[1].length];
     const bound = Array(3).fill(radius);
     const document = {
@@ -41,12 +40,8 @@ function writeGlb(path, radius, rings, balls) {
             {bufferView: 2, componentType: 5123, count: mesh.triangles.length, type: 'SCALAR'},
         ],
         bufferViews: parts.map((part, k) => ({buffer: 0, byteOffset: offsets[k], byteLength: part.length, target: k < 2 ? 34962 : 34963})),
-        buffers: [{byteLength: binary.length}],
     };
-    const json = pad(Buffer.from(JSON.stringify(document)), 0x20);
-    const words = (...numbers) => Buffer.from(Uint32Array.from(numbers).buffer);
-    fs.writeFileSync(path, Buffer.concat([words(0x46546c67, 2, 28 + json.length + binary.length), words(json.length, 0x4e4f534a), json,
-                                          words(binary.length, 0x004e4942), binary]));
+    fs.writeFileSync(path, glb(document, Buffer.concat(parts)));
 }
 
 const metal = roughness => ({pbrMetallicRoughness: {baseColorFactor: [1, 1, 1, 1], metallicFactor: 1, roughnessFactor: roughness}});

@@ -172,6 +172,17 @@ export function repaintUastcHdr(from, to, value, {size = 64, count = 5} = {}) {
     return values;
 }
 
+/// A .glb of a glTF document and its one buffer.
+export function glb(document, binary) {
+    const pad = (buffer, fill) => Buffer.concat([buffer, Buffer.alloc((4 - buffer.length % 4) % 4, fill)]);
+    const bytes = pad(binary, 0), json = pad(Buffer.from(JSON.stringify({...document, buffers: [{byteLength: bytes.length}]})), 0x20);
+    const words = (...numbers) => Buffer.from(Uint32Array.from(numbers).buffer);
+    return Buffer.concat([words(0x46546c67, 2, 28 + json.length + bytes.length), words(json.length, 0x4e4f534a), json, words(bytes.length, 0x004e4942), bytes]);
+}
+
+/// A value of linear light as a screen shows it: sRGB's curve, between 0 and 1.
+export const onScreen = v => (v <= 0.0031308 ? 12.92 * Math.max(0, v) : 1.055 * Math.min(1, v) ** (1 / 2.4) - 0.055);
+
 // PNG, for pictures that people look at.
 
 /// An 8-bit PNG of RGB or RGBA rows from the top.

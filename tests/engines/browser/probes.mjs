@@ -3,15 +3,14 @@
 import fs from 'node:fs';
 import path from 'node:path';
 import {call, draw, open} from './browser.mjs';
-import {readHdr} from './files.mjs';
+import {onScreen, readHdr} from './files.mjs';
 import {roomScene, writeRoom} from './room.mjs';
 
 /// RMS difference of two pictures as a screen shows them (sRGB's curve, clipped at 1), in steps of 1/255.
 function screenError(a, b) {
-    const shown = v => (v <= 0.0031308 ? 12.92 * v : 1.055 * Math.min(1, v) ** (1 / 2.4) - 0.055);
     let sum = 0, count = 0;
     for (let k = 0; k < a.rgba.length; k += 4)
-        for (let c = 0; c < 3; ++c, ++count) sum += (shown(Math.max(0, a.rgba[k + c])) - shown(Math.max(0, b.rgba[k + c]))) ** 2;
+        for (let c = 0; c < 3; ++c, ++count) sum += (onScreen(a.rgba[k + c]) - onScreen(b.rgba[k + c])) ** 2;
     return 255 * Math.sqrt(sum / count);
 }
 

@@ -1,6 +1,7 @@
 // A room with an open side, and boxes in it, as a .glb: all of it matte, so that only the diffuse light of probes shows.
 
 import fs from 'node:fs';
+import {glb} from './files.mjs';
 
 /// The six sides of a box, outwards or inwards; `without`: the side to leave out, as axis and sign.
 function box(low, high, inwards, without) {
@@ -53,14 +54,9 @@ export function writeRoom(folder) {
                                            NORMAL: add(Float32Array.from(normals), 'VEC3', 34962)},
                               indices: add(Uint16Array.from(triangles), 'SCALAR', 34963), material: k}]};
     });
-    const binary = Buffer.concat(chunks);
-    const text = Buffer.from(JSON.stringify({
+    const document = {
         asset: {version: '2.0'}, extensionsUsed: ['KHR_materials_specular', 'KHR_materials_ior'], scene: 0, scenes: [{nodes: parts.map((_, k) => k)}],
         nodes: parts.map((_, k) => ({mesh: k})), meshes, materials: parts.map(([, colour]) => matte(colour)), accessors, bufferViews: views,
-        buffers: [{byteLength: binary.length}],
-    }));
-    const json = Buffer.concat([text, Buffer.alloc((4 - text.length % 4) % 4, 0x20)]);
-    const words = (...numbers) => Buffer.from(Uint32Array.from(numbers).buffer);
-    fs.writeFileSync(`${folder}/${file}`, Buffer.concat([words(0x46546c67, 2, 28 + json.length + binary.length), words(json.length, 0x4e4f534a), json,
-                                                         words(binary.length, 0x004e4942), binary]));
+    };
+    fs.writeFileSync(`${folder}/${file}`, glb(document, Buffer.concat(chunks)));
 }

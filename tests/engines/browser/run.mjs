@@ -11,7 +11,7 @@ import {call, draw, launch, open, serve} from './browser.mjs';
 import {entries} from './engines.mjs';
 import {testFormats} from './formats.mjs';
 import {testProbes} from './probes.mjs';
-import {readHdr, writeConstantHdr, writePng} from './files.mjs';
+import {onScreen, readHdr, writeConstantHdr, writePng} from './files.mjs';
 import {albedoOf, axes, ballErrors, ballMeans, drawMetals, filteredLight, findLabels, likeness} from './measure.mjs';
 import {Claims} from './claims.mjs';
 
@@ -52,10 +52,9 @@ const picturesOf = {};
 
 /// Keeps a picture as PNG: the values as they are, with sRGB's curve.
 function keep(name, picture) {
-    const encode = v => (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055);
     const rgb = Buffer.alloc(3 * picture.width * picture.height);
     for (let k = 0; k < rgb.length / 3; ++k)
-        for (let c = 0; c < 3; ++c) rgb[3 * k + c] = Math.round(255 * encode(Math.min(1, Math.max(0, picture.rgba[4 * k + c]))));
+        for (let c = 0; c < 3; ++c) rgb[3 * k + c] = Math.round(255 * onScreen(picture.rgba[4 * k + c]));
     writePng(path.join(work, 'pictures', `${name}.png`), picture.width, picture.height, rgb);
     picturesOf[name] = {width: picture.width, height: picture.height, rgb};
 }
