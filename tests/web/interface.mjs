@@ -86,6 +86,8 @@ async function testBadFiles({open, claim, work}) {
     }
     await page.locator('#notes button').first().click();
     claim('bad files: a sentence can be closed', (await page.locator('#notes p').count()) === 2 ? [] : ['it stays']);
+    await page.evaluate(() => domelight.app.events.told('A hint.'));
+    claim('bad files: a hint looks different from an error', (await page.locator('#notes .hint').count()) === 1 ? [] : ['it does not']);
     claim('bad files: the console is silent', page.complaints);
     await page.close();
 }
@@ -247,6 +249,8 @@ async function testAccessibility({all, open, claim, root, work}) {
         await check('all sections open');
         await page.evaluate(() => domelight.app.events.failed('A sentence.'));
         await check('a sentence shown');
+        const [note, panel] = await Promise.all(['#notes > div', '#panel'].map(selector => page.locator(selector).last().boundingBox()));
+        claim('notes: a sentence lies beside the panel', note.x >= 0 && note.x + note.width <= panel.x ? [] : [`${JSON.stringify(note)} and ${JSON.stringify(panel)}`]);
         await page.keyboard.press('?');
         await check('the help');
         await page.keyboard.press('Escape');

@@ -27,6 +27,8 @@ const k_noisy_frames = 4096;
 const k_pause_ms = 4;
 
 export interface Events extends JobEvents {
+    /// A sentence on what was repaired or guessed.
+    told: (sentence: string) => void;
     /// A frame was drawn.
     drawn: () => void;
 }
@@ -35,6 +37,8 @@ export class App {
     readonly stage: Stage;
     model!: Model;
     environmentName = '';
+    /// What was repaired in the environment, and what its file leaves open.
+    warnings: readonly string[] = [];
     bake?: Bake;
     brdf?: BrdfTable;
     /// Of the Phong chain; 0 before it exists.
@@ -196,12 +200,13 @@ export class App {
     private relight(what = 'filtering the environment'): Promise<boolean> {
         return this.work(what, async () => {
             const info = await (this.state.furnace ? builtIn('furnace') : this.source)(this.baker, this.state.projection);
-            for (const warning of info.warnings) this.events.failed(`${info.name}: ${warning}`);
+            for (const warning of info.warnings) this.events.told(`${info.name}: ${warning}`);
             const [bake, map] = await Promise.all([this.baker.bake(this.state.size), this.stage.upload(info)]);
             ++this.light;
             this.needed = {phong: false, rows: 0};
             this.phongLevels = 0;
             this.environmentName = info.name;
+            this.warnings = info.warnings;
             Object.assign(this.timings, {open: info.milliseconds, bake: bake.milliseconds});
             this.stage.setEnvironment(map);
             this.stage.setBake((this.bake = bake));

@@ -30,8 +30,12 @@ if (innerWidth < 700 && !location.hash.includes('panel')) store.state.panel = fa
 const layout = layOut(store);
 
 function start(served: Session | null): void {
-    const app = new App(layout.canvas, store, {working: layout.work, failed: layout.complain, drawn: () => drawn()}, baker, served);
-    const choose = chooser('Environments, models and sets of probes', [...environmentEndings, ...modelEndings, ...partEndings, ...probeEndings], files => void app.openFiles(files));
+    const app = new App(layout.canvas, store, {working: layout.work, failed: layout.complain, told: layout.tell, drawn: () => drawn()}, baker, served);
+    const openFiles = (files: File[]) => {
+        layout.clear();
+        void app.openFiles(files);
+    };
+    const choose = chooser('Environments, models and sets of probes', [...environmentEndings, ...modelEndings, ...partEndings, ...probeEndings], openFiles);
     const choosePicture = chooser('A picture to compare with', pictureEndings, ([file]) => file && void app.openPicture(file));
     const screenshot = () => {
         app.stage.show(app.state);
@@ -50,7 +54,7 @@ function start(served: Session | null): void {
 
     const status = new Status(app, layout.status), hover = new Hover(app, status, map);
     bindPointer(layout.canvas, store, (x, y) => hover.at(x, y));
-    bindDrops(layout.drop, files => void app.openFiles(files));
+    bindDrops(layout.drop, openFiles);
     const drawn = () => {
         status.update();
         noise.update();

@@ -5,6 +5,9 @@ import {button, ChoiceControl, element} from './controls';
 import type {keyTable} from './keys';
 import {modeNames, modeNotes} from './labels';
 
+/// A hint that can be read again in the panel stays so long.
+const k_hint_ms = 10_000;
+
 export interface Layout {
     canvas: HTMLCanvasElement;
     caption: HTMLElement;
@@ -14,8 +17,12 @@ export interface Layout {
     divider: HTMLElement;
     /// Says what is being worked on; empty text hides it.
     work: (what: string) => void;
-    /// Shows a sentence until it is closed.
+    /// Shows a sentence on what went wrong until it is closed.
     complain: (sentence: string) => void;
+    /// Shows a sentence for a while.
+    tell: (sentence: string) => void;
+    /// Takes all sentences away.
+    clear: () => void;
     drop: HTMLElement;
     tags: [HTMLElement, HTMLElement];
 }
@@ -50,6 +57,12 @@ export function layOut(store: Store): Layout {
     document.body.prepend(view);
     document.body.append(bar, unfold, aside, notes, drop, progress, spoken);
 
+    const say = (sentence: string, className: string) => {
+        const note = element('div', {className}, element('p', {}, sentence), button('Close', () => note.remove()));
+        notes.append(note);
+        while (notes.children.length > 3) notes.firstElementChild!.remove();
+        return note;
+    };
     const fold = () => document.body.classList.toggle('folded', !store.state.panel);
     fold();
     store.listen(changed => changed.has('panel') && fold());
@@ -59,11 +72,12 @@ export function layOut(store: Store): Layout {
             progress.hidden = what === '';
             spoken.textContent = what;
         },
-        complain: sentence => {
-            const note = element('div', {className: 'surface'}, element('p', {}, sentence), button('Close', () => note.remove()));
-            notes.append(note);
-            while (notes.children.length > 3) notes.firstElementChild!.remove();
+        complain: sentence => say(sentence, 'surface'),
+        tell: sentence => {
+            const note = say(sentence, 'surface hint'), leave = () => (note.matches(':hover, :focus-within') ? setTimeout(leave, k_hint_ms) : note.remove());
+            setTimeout(leave, k_hint_ms);
         },
+        clear: () => notes.replaceChildren(),
     };
 }
 

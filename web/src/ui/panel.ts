@@ -16,7 +16,7 @@ const models = [['spheres', 'Spheres: gold, plastic'], ['grid', 'Grid: roughness
 export function sceneSection(app: App): HTMLElement {
     const {store} = app;
     const model = new SelectControl(store, 'model', 'Model', models), environment = new SelectControl(store, 'environment', 'Environment', environmentNames);
-    const variant = element('select', {id: 'variant'});
+    const variant = element('select', {id: 'variant'}), warnings = note();
     const variants = element('div', {className: 'select', hidden: true}, element('label', {htmlFor: 'variant'}, 'Material variant'), variant);
     variant.addEventListener('change', () => void app.useVariant(variant.value === '' ? null : Number(variant.value)));
     app.onOpened(() => {
@@ -26,6 +26,8 @@ export function sceneSection(app: App): HTMLElement {
         model.querySelector('select')!.value = app.model.name;
         environment.fill(own(environmentNames, app.environmentName));
         environment.querySelector('select')!.value = app.environmentName;
+        warnings.hidden = app.warnings.length === 0;
+        warnings.textContent = app.warnings.map(text => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`).join(' ');
         lights.hidden = app.stage.lights === 0;
         variants.hidden = app.model.variants.length === 0;
         variant.replaceChildren(element('option', {value: ''}, 'as in the file'), ...app.model.variants.map((name, k) => element('option', {value: `${k}`}, name)));
@@ -33,7 +35,7 @@ export function sceneSection(app: App): HTMLElement {
     const projection = new SelectControl(store, 'projection', 'Files without a stated projection are', projections.map(name => [name, name === 'auto' ? 'recognised by their shape' : name] as const));
     const lights = new CheckControl(store, 'lights', 'Lights of the model', 'Points, spots and directional lights of the file (KHR_lights_punctual)');
     lights.hidden = true;
-    return section('Scene', true, model, variants, environment, projection, new CheckControl(store, 'furnace', 'White furnace', 'Light of radiance 1 from everywhere (W)'),
+    return section('Scene', true, model, variants, environment, warnings, projection, new CheckControl(store, 'furnace', 'White furnace', 'Light of radiance 1 from everywhere (W)'),
         lights, new CheckControl(store, 'motion', 'Let it move', 'Balls to and fro, models about the vertical axis (M)'));
 }
 
