@@ -4,6 +4,7 @@ import {fileURLToPath} from 'node:url';
 import {defineConfig} from 'vite';
 import {makeBrdfTable} from './build_steps/brdf_table';
 import {fewerDecoders, makeBasisTranscoder} from './build_steps/decoders';
+import {commonParts} from './build_steps/pages';
 
 const here = (name: string) => fileURLToPath(new URL(name, import.meta.url));
 
@@ -25,7 +26,7 @@ export default defineConfig(async () => {
     makeBasisTranscoder(here('node_modules/three/examples/jsm/libs/basis/basis_transcoder.js'), transcoder);
     return {
         base: './',
-        plugins: [fewerDecoders()],
+        plugins: [commonParts(), fewerDecoders()],
         resolve: {alias: Object.entries(alias).map(([name, replacement]) => ({find: new RegExp(`^${name.replace('.', '\\.')}(?=\\?)`), replacement}))},
         build: {outDir: '../build/web', emptyOutDir: true, target: 'es2022', assetsInlineLimit: 0, chunkSizeWarningLimit: 1200, rollupOptions: {input}},
         worker: {format: 'es'},

@@ -150,6 +150,31 @@ async function testFiles(page, claim) {
     await page.waitForFunction(() => lesson.light.name === 'studio' && lesson.ready, undefined, {timeout: 30_000});
 }
 
+/// The parts that all pages share: titles, icons, and the links from one page to the next and back.
+async function testFrame(page, server, links, claim) {
+    const wrong = await page.evaluate(async ([app, links]) => {
+        const wrong = [], at = (href, base) => new URL(href, base).href, pages = ['index.html', 'learn/index.html', ...links.map(link => `learn/${link}`)].map(name => at(name, app));
+        const read = async url => new DOMParser().parseFromString(await (await fetch(url)).text(), 'text/html');
+        for (const [k, url] of pages.entries()) {
+            const text = await read(url), href = selector => text.querySelector(selector)?.getAttribute('href'), heading = text.querySelector('h1').textContent;
+            const say = (what, right) => right || wrong.push(`${url.replace(app, '')}: ${what}`);
+            say('title', text.title === (k ? `${heading} – Domelight` : 'Domelight'));
+            say('description', text.querySelector('meta[name=description]')?.content.length > 20);
+            say('charset within the first kilobyte', text.head.firstElementChild.getAttribute('charset') === 'utf-8');
+            const icon = await fetch(at(href('link[rel=icon]'), url));
+            say('icon', icon.ok && icon.headers.get('content-type') === 'image/svg+xml');
+            for (const a of text.querySelectorAll('a')) say(`link to ${a.getAttribute('href')}`, pages.includes(at(a.getAttribute('href'), url)));
+            if (k < 2) continue;
+            for (const [rel, to] of [['prev', pages[k - 1]], ['next', pages[k + 1]]]) {
+                const there = k + (rel === 'next' ? 1 : -1) > 1 ? to : undefined, found = href(`a[rel=${rel}]`);
+                say(`the ${rel} page`, (found && at(found, url)) === there);
+            }
+        }
+        return wrong;
+    }, [`${server.url}/app/`, links]);
+    claim('learn: every page has its title and an icon, and leads to its neighbours', wrong);
+}
+
 export async function testLearn({root, server, browser, claim, watch}) {
     const axe = fs.readFileSync(path.join(root, 'web/node_modules/axe-core/axe.min.js'), 'utf8');
     const open = async (name, options = {}) => {
@@ -160,6 +185,7 @@ export async function testLearn({root, server, browser, claim, watch}) {
     const list = await open('');
     const links = await list.locator('#pages a').evaluateAll(all => all.map(a => a.getAttribute('href')));
     claim('learn: the list has every page, and only those', [...links.filter(link => !lessons[link.split('/')[0]]), ...Object.keys(lessons).filter(name => !links.includes(`${name}/index.html`))]);
+    await testFrame(list, server, links, claim);
     await testAxe(list, axe, 'learn', claim);
     await list.close();
     for (const [name, {slider: [label, value], number, check}] of Object.entries(lessons)) {

@@ -7,7 +7,6 @@ import {button, element, SelectControl} from '../../src/ui/controls';
 import {bindDrops, chooser} from '../../src/ui/files';
 import {environmentNames} from '../../src/ui/labels';
 import {whatIsMissing} from '../../src/ui/missing';
-import {lessons} from './lessons';
 import {k_rows, Light} from './light';
 import {Painter} from './painter';
 
@@ -35,9 +34,9 @@ export class Lesson<T extends Choices> {
     private drawn = false;
     private failed = false;
 
-    constructor(name: string, usual: T, words: Words<T> = {}) {
+    constructor(usual: T, words: Words<T> = {}) {
         this.values = new Values({...usual, ...readHash(location.hash, usual, {environment: computed.map(([name]) => name), ...words})}, usual);
-        this.layOut(name);
+        this.layOut();
         this.values.listen(changed => {
             const hash = writeHash({...this.state, environment: this.state.environment === k_file ? usual.environment : this.state.environment}, usual);
             history.replaceState(null, '', hash || location.pathname);
@@ -126,19 +125,12 @@ export class Lesson<T extends Choices> {
         for (const draw of this.drawings) draw();
     }
 
-    /// The header with its links, the environment, and the links to the neighbours below.
-    private layOut(name: string): void {
-        const at = lessons.findIndex(lesson => lesson.name === name), lesson = lessons[at]!;
-        document.title = `${lesson.title} – Domelight`;
-        const main = document.querySelector('main')!;
-        const pages = element('nav', {ariaLabel: 'Pages that teach'}, element('a', {href: '../../index.html'}, 'Domelight'), element('a', {href: '../index.html'}, 'All pages'));
-        document.body.prepend(element('header', {}, pages));
+    /// The choice of the environment, and what files are dropped on.
+    private layOut(): void {
         const choose = chooser('Your environment', environmentEndings, ([file]) => file && void this.openFile(file));
         this.select = new SelectControl(this.values as never, 'environment', 'Environment', computed) as never;
         const open = button('Open a file…', choose, 'A lat-long map, .hdr or .exr. It stays on this machine.');
-        main.querySelector('.lead')!.after(element('section', {id: 'light', ariaLabel: 'Environment'}, this.select, open, this.note));
-        const neighbour = (k: number, word: string) => (lessons[k] ? [element('a', {href: `../${lessons[k].name}/index.html`}, `${word}: ${lessons[k].title}`)] : []);
-        main.after(element('footer', {}, element('nav', {ariaLabel: 'Neighbouring pages'}, ...neighbour(at - 1, 'Before'), ...neighbour(at + 1, 'Next'))));
+        document.querySelector('.lead')!.after(element('section', {id: 'light', ariaLabel: 'Environment'}, this.select, open, this.note));
         const drop = element('div', {id: 'drop', hidden: true}, element('p', {}, 'Drop an environment anywhere'));
         bindDrops(drop, files => void this.openFile(files[0]!));
         document.body.append(this.alert, drop);

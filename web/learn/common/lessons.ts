@@ -16,3 +16,6 @@ export const lessons: readonly LessonEntry[] = [
     {name: 'mis', title: 'BRDF, environment, or both', about: 'Three ways to choose directions, the noise of each by roughness, and multiple importance sampling.'},
     {name: 'probes', title: 'Probes: the light at many points', about: 'The light of a point from the eight probes around it: each factor of the weights, the leak through a wall, and parallax.'},
 ];
+
+/// Of the page that lists them.
+export const listTitle = {title: 'Light from every direction', about: 'Image-based lighting in short interactive pages, each computed live from an environment that you may bring.'};

@@ -14,7 +14,7 @@ import {Plot} from '../common/plot';
 import follow from './follow.glsl?raw';
 
 const usual = {environment: 'studio', u: 0.6, v: 0.3, count: 128};
-const lesson = new Lesson('importance', usual), {light, painter, values, numbers} = lesson;
+const lesson = new Lesson(usual), {light, painter, values, numbers} = lesson;
 const k_doublings = 10;
 
 const source = mapPass(light);

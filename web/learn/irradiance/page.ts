@@ -12,7 +12,7 @@ import {Plot} from '../common/plot';
 import riemann from './riemann.glsl?raw';
 
 const usual = {environment: 'studio', k: 16, j: 4, azimuth: 60, elevation: 30};
-const lesson = new Lesson('irradiance', usual), {light, painter, values, numbers} = lesson;
+const lesson = new Lesson(usual), {light, painter, values, numbers} = lesson;
 const k_height = 32, k_doublings = 7;
 
 const sum = new Pass(fullscreen(...mapParts, riemann), {...light.uniforms, u_normal: {value: new THREE.Vector3()}, u_k: {value: 1}, u_j: {value: 1}, u_what: {value: 0}});

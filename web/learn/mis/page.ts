@@ -11,7 +11,7 @@ import {digits} from '../common/maps';
 import {Plot} from '../common/plot';
 
 const usual = {environment: 'studio', roughness: 0.3, directions: 8, NdotV: 0.7, around: 60};
-const lesson = new Lesson('mis', usual), {light, painter, values, numbers} = lesson;
+const lesson = new Lesson(usual), {light, painter, values, numbers} = lesson;
 const k_columns = 16, k_estimates = 512, k_size = 220;
 
 const shared = ballUniforms(), show = showPass(light), target = floatTarget(k_size, k_size);

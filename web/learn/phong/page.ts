@@ -20,7 +20,7 @@ import {Plot} from '../common/plot';
 import filtered from './filtered.glsl?raw';
 
 const usual = {environment: 'studio', exponentLog2: 6, azimuth: 30, elevation: 20};
-const lesson = new Lesson('phong', usual), {light, painter, values, numbers} = lesson;
+const lesson = new Lesson(usual), {light, painter, values, numbers} = lesson;
 const k_height = 32, k_size = 256;
 
 const pass = new Pass(fullscreen(...mapParts, generic, diffuse, material, phongChain, phong, filtered), {

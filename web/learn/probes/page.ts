@@ -14,11 +14,12 @@ import {drawMark, onDrag} from '../common/direction';
 import {Facts, figure, fill, Lesson, picture} from '../common/lesson';
 import {digits, luminance, mapParts} from '../common/maps';
 import {k_half_wall, k_probes, k_size, placedProbes, rooms, setOf, windowLight} from './capture';
+import './probes.css';
 import room from './room.glsl?raw';
 
 const normals = {up: [0, 1, 0], left: [-1, 0, 0], right: [1, 0, 0]} as const;
 const usual = {environment: 'studio', x: 3.35, z: 1.8, height: 0.9, wall: 3, normal: 'up' as keyof typeof normals, blend: 8, visibility: true, parallax: true};
-const lesson = new Lesson('probes', usual, {normal: Object.keys(normals)}), {light, painter, values, numbers} = lesson;
+const lesson = new Lesson(usual, {normal: Object.keys(normals)}), {light, painter, values, numbers} = lesson;
 /// A plan is computed with half as many points along each side as it is shown with.
 const k_width = 480, k_computed = 240, k_ball = 144;
 const k_exposure = 0.9;

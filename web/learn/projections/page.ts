@@ -12,7 +12,7 @@ import {mapParts} from '../common/maps';
 import locate from './locate.glsl?raw';
 
 const usual = {environment: 'studio', azimuth: 48, elevation: 38};
-const lesson = new Lesson('projections', usual), {light, painter, values, numbers} = lesson;
+const lesson = new Lesson(usual), {light, painter, values, numbers} = lesson;
 const maps = [
     {name: 'Lat-long', width: 720, height: 360}, {name: 'Cube: +X −X +Y above, −Y +Z −Z below', width: 600, height: 400}, {name: 'Sphere map, centre +Z', width: 400, height: 400},
     {name: 'Dual paraboloid: front +Z, back −Z', width: 720, height: 360}, {name: 'Octahedral, centre +Y', width: 400, height: 400},

@@ -19,7 +19,7 @@ import {digits, luminance, percent} from '../common/maps';
 import table from './table.glsl?raw';
 
 const usual = {environment: 'studio', roughness: 0.4, NdotV: 0.2, around: 75, count: 64};
-const lesson = new Lesson('split-sum', usual), {light, painter, values, numbers} = lesson;
+const lesson = new Lesson(usual), {light, painter, values, numbers} = lesson;
 const k_size = 220, k_table = 128, k_frames = 32, k_samples = 8;
 
 const shared = ballUniforms(), show = showPass(light), bySplit = floatTarget(k_size, k_size), pane = new Pane(painter.renderer);
