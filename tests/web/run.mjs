@@ -5,8 +5,9 @@
 import fs from 'node:fs';
 import path from 'node:path';
 import {fileURLToPath} from 'node:url';
-import {launch, serve} from '../engines/browser/browser.mjs';
+import {launch, serve, webGpu} from '../engines/browser/browser.mjs';
 import {testFrames} from './frames.mjs';
+import {testHdr} from './hdr.mjs';
 import {testInterface} from './interface.mjs';
 import {testLearn} from './learn.mjs';
 import {testMonteCarlo} from './monte_carlo.mjs';
@@ -40,16 +41,18 @@ function watch(page) {
     return page;
 }
 
-/// Opens the app. `hash`: its state.
-async function open(hash = '', options = {}) {
-    const page = watch(await browser.newPage({viewport: {width: 640, height: 360}, ...options}));
+/// Opens the app. `hash`: its state. prepare: is run in the page before anything else.
+async function open(hash = '', options = {}, prepare = () => {}, inBrowser = browser) {
+    const page = watch(await inBrowser.newPage({viewport: {width: 640, height: 360}, ...options}));
+    await page.addInitScript(prepare);
     await page.goto(`${server.url}/app/index.html${hash}`);
     await page.waitForFunction(() => window.domelight?.ready, undefined, {timeout: 30_000});
     return page;
 }
 
-const tests = {interface: testInterface, frames: testFrames, 'monte-carlo': testMonteCarlo, probes: testProbes, learn: testLearn};
-const app = {all, program, root, work, server, browser, open, watch, claim, skip, data: process.env.DOMELIGHT_DATA};
+const tests = {interface: testInterface, hdr: testHdr, frames: testFrames, 'monte-carlo': testMonteCarlo, probes: testProbes, learn: testLearn};
+const withWebGpu = () => launch(path.join(root, 'web/node_modules'), chromium, webGpu);
+const app = {all, program, root, work, server, browser, withWebGpu, open, watch, claim, skip, data: process.env.DOMELIGHT_DATA};
 for (const [name, test] of Object.entries(tests)) {
     if (names.length && !names.some(n => name.includes(n))) continue;
     try {

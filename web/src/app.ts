@@ -37,6 +37,8 @@ export class App {
     readonly stage: Stage;
     model!: Model;
     environmentName = '';
+    /// What the picture is shown with.
+    dynamicRange: 'SDR' | 'HDR' = 'SDR';
     /// What was repaired in the environment, and what its file leaves open.
     warnings: readonly string[] = [];
     bake?: Bake;
@@ -246,7 +248,7 @@ export class App {
         else if (this.bake && this.lacking) void this.work('filtering the environment', () => this.provide());
         if ([...changed].some(key => seenByObjects.has(key))) this.liveCubes.invalidate();
         if (changed.has('live') && !state.live) this.liveCubes.clear();
-        const onlyShown = new Set<keyof State>(['exposure', 'tonemap', 'divider', 'panel', 'view', 'other']);
+        const onlyShown = new Set<keyof State>(['exposure', 'tonemap', 'hdr', 'peak', 'divider', 'panel', 'view', 'other']);
         // The rims of the balls have the brightness of the screen.
         if ([...changed].some(key => !onlyShown.has(key)) || (changed.has('exposure') && state.probeBalls)) {
             this.stage.restart();

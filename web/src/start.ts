@@ -19,6 +19,7 @@ import {materialSection, methodSection, pictureSection, sceneSection} from './ui
 import {probesSection} from './ui/probes_section';
 import {bindPointer} from './ui/pointer';
 import {Hover} from './ui/hover';
+import {ScreenSection} from './ui/screen_section';
 import {Status} from './ui/status';
 import {whatIsMissing} from './ui/missing';
 import {bindDrops, chooser} from './ui/files';
@@ -38,8 +39,9 @@ function start(served: Session | null): void {
     const choose = chooser('Environments, models and sets of probes', [...environmentEndings, ...modelEndings, ...partEndings, ...probeEndings], openFiles);
     const choosePicture = chooser('A picture to compare with', pictureEndings, ([file]) => file && void app.openPicture(file));
     const screenshot = () => {
-        app.stage.show(app.state);
+        app.stage.showWhite(app.state);
         layout.canvas.toBlob(blob => blob && save(`domelight-${app.state.mode}.png`, blob, 'image/png'));
+        app.redraw();
     };
     const keys = keyTable(store, {open: choose, help: () => help.showModal(), screenshot, resetView: () => app.resetView(), truth: () => truth.compare()});
     const help = helpDialog(keys);
@@ -50,7 +52,7 @@ function start(served: Session | null): void {
     const levelOf = (exponent: number) => phongLevel(exponent, sizesDownTo(store.state.size, 8).length).toFixed(1);
     layout.tools.append(button('Open…', choose, 'Open files (O)'), button('Fit', () => app.resetView(), 'Show the whole model (R)'), button('Save', screenshot, 'Save a screenshot (P)'),
                         button('Help', () => help.showModal(), '?'), button('Fold', () => store.set({panel: false}), 'Fold the panel away (H)'));
-    layout.panel.append(sceneSection(app), pictureSection(app), methodSection(app), probesSection(app), noise.root, materialSection(app, levelOf), truth.root, compare.root, map.root, levelsSection(app), exportSection(app));
+    layout.panel.append(sceneSection(app), pictureSection(app, new ScreenSection(app, layout.canvas).parts), methodSection(app), probesSection(app), noise.root, materialSection(app, levelOf), truth.root, compare.root, map.root, levelsSection(app), exportSection(app));
 
     const status = new Status(app, layout.status), hover = new Hover(app, status, map);
     bindPointer(layout.canvas, store, (x, y) => hover.at(x, y));

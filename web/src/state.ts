@@ -25,6 +25,9 @@ export interface State {
     projection: (typeof projections)[number];
     exposure: number;
     tonemap: (typeof tonemaps)[number];
+    /// On a screen that shows more than white: whether it does, and how many times white the brightest is.
+    hdr: boolean;
+    peak: number;
     background: (typeof backgrounds)[number];
     blur: number;
     turn: number;
@@ -79,7 +82,7 @@ export interface State {
 export const defaults: State = {
     mode: 'split-sum', other: 'monte-carlo', view: 'one', divider: 0.5,
     model: 'spheres', environment: 'studio', projection: 'auto',
-    exposure: 0, tonemap: 'agx', background: 'environment', blur: 0.35, turn: 0, size: 256,
+    exposure: 0, tonemap: 'agx', hdr: true, peak: 4, background: 'environment', blur: 0.35, turn: 0, size: 256,
     multipleScattering: false, irradiance: 'cube', occlusion: true, bentLookup: false, diffuseWeight: 'energy',
     lookup: 'environment', ior: 1.5, iorOutside: 1, iorOverride: false,
     override: false, color: '#ffffff', metalness: 1, roughness: 0.3, exponentLog2: 6,

@@ -27,12 +27,15 @@ export function serve(folders, headers = {}) {
     })));
 }
 
-/// Chromium, headless, on the CPU alone. modules: the node_modules that playwright-core is in.
-export async function launch(modules, executablePath) {
+/// What Chromium needs besides for WebGPU on the CPU.
+export const webGpu = ['--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--enable-gpu', '--enable-features=Vulkan', '--use-vulkan=swiftshader'];
+
+/// Chromium, headless, on the CPU alone. modules: the node_modules that playwright-core is in. more: flags.
+export async function launch(modules, executablePath, more = []) {
     const {chromium} = createRequire(path.join(modules, 'x.js'))('playwright-core');
     return chromium.launch({
         executablePath, headless: true,
-        args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
+        args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', ...more],
     });
 }
 

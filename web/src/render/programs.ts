@@ -24,6 +24,8 @@ import phong from '../shading/phong.glsl?raw';
 import phongChain from '../shading/phong_chain.glsl?raw';
 import phongProbes from '../shading/phong_probes.glsl?raw';
 import present from '../shading/present.glsl?raw';
+import presentExtended from '../shading/present_extended.glsl?raw';
+import presentWhite from '../shading/present_white.glsl?raw';
 import probe from '../shading/probe.glsl?raw';
 import probeBallFragment from '../shading/probe_ball_fragment.glsl?raw';
 import probeBallVertex from '../shading/probe_ball_vertex.glsl?raw';
@@ -82,4 +84,5 @@ export const probeBallProgram: Program = {vertexShader: join(probeBallVertex), f
 export const projectProgram = fullscreen(environment, projections, projectEnvironment);
 export const accumulateProgram = fullscreen(accumulate);
 export const levelProgram = fullscreen(environment, generic, projections, tonemap, level);
-export const presentProgram = fullscreen(tonemap, present);
+export const presentProgram = fullscreen(tonemap, present, presentWhite);
+export const presentExtendedProgram = fullscreen(tonemap, present, presentExtended);

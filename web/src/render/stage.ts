@@ -13,7 +13,8 @@ import {LookupMaps} from './lookup_maps';
 import {brdfTexture, chainTexture, cubeTexture, latlongTexture, tableTexture} from './maps';
 import {Pane} from './pane';
 import {compile, Pass, triangle} from './passes';
-import {backgroundProgram, presentProgram, type Purpose} from './programs';
+import type {HdrScreen} from './hdr_screen';
+import {backgroundProgram, presentExtendedProgram, presentProgram, type Purpose} from './programs';
 import {litMeshes, type LitMesh, type Uniforms} from './surfaces';
 import {uploadInSlices} from './upload';
 
@@ -49,6 +50,8 @@ export class Stage {
     };
     private readonly scene = new THREE.Scene();
     readonly present: Pass;
+    /// On a screen that shows more than white; otherwise null.
+    private extended: {screen: HdrScreen; pass: Pass} | null = null;
     private readonly lookups: LookupMaps;
     private meshes: LitMesh[] = [];
     private model?: THREE.Object3D;
@@ -90,10 +93,14 @@ export class Stage {
         this.inset = inset;
     }
     private fit(): void {
-        const {width, height} = this.size;
-        if (this.panes[0].width === width && this.panes[0].height === height) return;
-        this.renderer.setSize(width, height, false);
-        for (const pane of this.panes) pane.resize(width, height);
+        const {width, height} = this.size, drawn = this.renderer.domElement, high = this.extended ? 2 * height : height;
+        if (drawn.width !== width || drawn.height !== high) this.renderer.setSize(width, high, false);
+        if (this.panes[0].width !== width || this.panes[0].height !== height) for (const pane of this.panes) pane.resize(width, height);
+    }
+    /// What the picture is shown by, besides the canvas of WebGL2; null: by that alone.
+    useScreen(screen: HdrScreen | null): void {
+        this.extended = screen && {screen, pass: new Pass(presentExtendedProgram, {...this.present.uniforms, u_peak: uniform(4)})};
+        this.prepared.clear();
     }
 
     /// Whether a frame can be drawn now without waiting for the graphics card: it has done the last one, and has the textures of the model and
@@ -114,7 +121,7 @@ export class Stage {
             renderer.initTexture(texture);
             backlog.mark();
         }
-        await Promise.all([add.compile(renderer), this.present.compile(renderer)]);
+        await Promise.all([add, ...this.presents].map(pass => pass.compile(renderer)));
         for (const purpose of purposes) {
             for (const mesh of meshes) mesh.use(purpose);
             await compile(renderer, this.scene, this.camera);
@@ -128,7 +135,7 @@ export class Stage {
         for (const mesh of this.meshes) mesh.use(purpose);
         this.renderer.setRenderTarget(this.tiny);
         this.renderer.render(this.scene, this.camera);
-        for (const pass of [this.panes[0].add, this.present]) pass.run(this.renderer, this.tiny);
+        for (const pass of [this.panes[0].add, ...this.presents]) pass.run(this.renderer, this.tiny);
         this.backlog.mark();
         this.prepared.add(purpose);
     }
@@ -320,6 +327,9 @@ export class Stage {
         return index === 1 && (state.other === 'picture' || state.other === 'truth') && this.picture ? this.picture : this.panes[index]!.target.texture;
     }
 
+    private get presents(): Pass[] {
+        return this.extended ? [this.present, this.extended.pass] : [this.present];
+    }
     show(state: State): void {
         const u = this.present.uniforms, mapped = (state.view === 'difference' || state.view === 'flip') && u.u_map!.value !== null;
         u.u_left!.value = this.side(state, 0);
@@ -327,8 +337,21 @@ export class Stage {
         u.u_divider!.value = state.view === 'split' ? state.divider : 2;
         u.u_view!.value = mapped ? 1 : 0;
         this.setDisplay(u, state);
-        this.present.run(this.renderer, null);
+        const {extended, renderer: {domElement: {width, height}}} = this;
+        if (extended) {
+            extended.pass.uniforms.u_peak!.value = state.peak;
+            extended.pass.run(this.renderer, null);
+            extended.screen.show(width, height / 2);
+        } else this.present.run(this.renderer, null);
         this.backlog.mark();
+    }
+    /// Draws the picture as an ordinary screen shows it into the canvas of WebGL2, where it stays until the next frame.
+    showWhite(state: State): void {
+        const {extended} = this;
+        this.extended = null;
+        this.fit();
+        this.show(state);
+        this.extended = extended;
     }
     setDisplay(u: Uniforms, state: State): void {
         u.u_tonemap!.value = tonemaps.indexOf(state.tonemap);

@@ -55,13 +55,17 @@ vec3 srgb_encode(vec3 c) {
     return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, vec3(lessThanEqual(c, vec3(0.0031308))));
 }
 
+/// The chosen curve: linear radiance times the exposure to linear light of the screen, of which 1 is white. Without a curve and by Reinhard's,
+/// more than 1 is possible.
+vec3 tonemapped(vec3 v) {
+    return u_tonemap == 1   ? tonemap_reinhard(v)
+           : u_tonemap == 2 ? tonemap_aces(v)
+           : u_tonemap == 3 ? tonemap_agx(v)
+           : u_tonemap == 4 ? tonemap_neutral(v)
+                            : v;
+}
+
 /// Linear radiance to sRGB values, 0 to 1.
 vec3 displayed(vec3 radiance) {
-    vec3 v = max(radiance * u_exposure, 0.0);
-    vec3 c = u_tonemap == 1   ? tonemap_reinhard(v)
-             : u_tonemap == 2 ? tonemap_aces(v)
-             : u_tonemap == 3 ? tonemap_agx(v)
-             : u_tonemap == 4 ? tonemap_neutral(v)
-                              : v;
-    return srgb_encode(clamp(c, 0.0, 1.0));
+    return srgb_encode(clamp(tonemapped(max(radiance * u_exposure, 0.0)), 0.0, 1.0));
 }

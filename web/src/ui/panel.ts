@@ -39,11 +39,12 @@ export function sceneSection(app: App): HTMLElement {
         lights, new CheckControl(store, 'motion', 'Let it move', 'Balls to and fro, models about the vertical axis (M)'));
 }
 
-export function pictureSection({store}: App): HTMLElement {
+export function pictureSection({store}: App, screen: HTMLElement[]): HTMLElement {
     return section('Light and picture', true,
         new RangeControl(store, 'exposure', 'Exposure', {min: -8, max: 8, step: 0.1, text: v => `${signed(1)(v)} EV`}),
         new RangeControl(store, 'turn', 'Turn of the light', {min: -180, max: 180, step: 1, text: v => `${v.toFixed(0)}°`, title: 'Shift and drag'}),
         new SelectControl(store, 'tonemap', 'Tone map', tonemaps.map(name => [name, tonemapNames[name]] as const)),
+        ...screen,
         new ChoiceControl(store, 'background', 'Background', [['environment', 'Sharp'], ['blurred', 'Blurred'], ['colour', 'White']]),
         onlyWhere(store, new RangeControl(store, 'blur', 'Blur', {min: 0.05, max: 1, step: 0.01, text: fixed(2)}), s => s.background === 'blurred'),
         new CheckControl(store, 'fullResolution', 'Full resolution always', 'Otherwise fewer pixels are drawn while something moves, where frames take longer than a tenth of a second'));

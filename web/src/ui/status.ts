@@ -6,17 +6,19 @@ import {element} from './controls';
 export class Status {
     private readonly left = element('span');
     private readonly value = element('span');
+    private readonly range = element('span', {title: 'Whether highlights are brighter than white: see Light and picture'});
 
     constructor(
         private readonly app: App,
         root: HTMLElement,
     ) {
-        root.append(this.left, this.value);
+        root.append(this.left, this.value, this.range);
     }
 
     /// Called after each frame.
     update(): void {
         const {state, stage} = this.app, {count} = stage.panes[0];
+        this.range.textContent = this.app.dynamicRange;
         const noisy = state.mode === 'monte-carlo';
         const n = noisy ? count * state.samples : count;
         this.left.replaceChildren(element('b', {}, `${n}`), noisy ? ' samples a pixel' : count < 64 ? ' frames averaged' : ' frames averaged: done', this.app.reduced < 1 ? `, at ${this.app.reduced} of the resolution while it moves` : '');
