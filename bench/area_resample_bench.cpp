@@ -1,8 +1,9 @@
 // Level 0: milliseconds (CPU and wall clock) and the relative error of the total light, by source size, face size and
-// orientation.
+// orientation; and a cube as a lat-long image.
 #include "domelight/filtering/resample/area_resample.h"
 #include "domelight/projection/projection.h"
 
+#include "filtering/resample/area_resample_cube.h"
 #include "filtering/resample/area_resample_plain.h"
 
 #include <benchmark/benchmark.h>
@@ -73,11 +74,28 @@ void to_cube(benchmark::State& state, Maker make) {
     state.counters["energy_error"] = std::abs(cube_light(out) - truth) / truth;
 }
 
+using LatlongMaker = ImageF (*)(const Cubemap&, int, const Mat3&, int);
+
+/// Arguments: face size, height of the lat-long image, rotation about Y (degrees), threads.
+void to_latlong(benchmark::State& state, LatlongMaker make) {
+    const int size = int(state.range(0)), height = int(state.range(1));
+    auto faces = area_resample_to_cube(4 * size, 2 * size, size, {}, 0);
+    faces->add_rows(environment(4 * size, 2 * size));
+    const Cubemap cube(faces->finish());
+    for (auto _ : state)
+        benchmark::DoNotOptimize(
+            make(cube, height, rotation_y(double(state.range(2)) * k_pi / 180), int(state.range(3))));
+}
+
 void common(benchmark::internal::Benchmark* b) {
     b->ArgNames({"w", "h", "n", "deg", "threads"})
         ->Unit(benchmark::kMillisecond)
         ->MeasureProcessCPUTime()
         ->UseRealTime();
+}
+
+void common_latlong(benchmark::internal::Benchmark* b) {
+    b->ArgNames({"n", "h", "deg", "threads"})->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 }
 
 }  // namespace
@@ -97,5 +115,16 @@ BENCHMARK_CAPTURE(to_cube, best, domelight::area_resample_to_cube)
 BENCHMARK_CAPTURE(to_cube, plain, domelight::area::plain_to_cube)
     ->Apply(common)
     ->Args({1024, 512, 256, 30, 1})
+    ->Iterations(1);
+
+BENCHMARK_CAPTURE(to_latlong, best, domelight::area_resample_cube_to_latlong)
+    ->Apply(common_latlong)
+    ->Args({512, 1024, 0, 1})
+    ->Args({512, 1024, 30, 1})
+    ->Args({512, 256, 0, 1})
+    ->Args({2048, 4096, 0, 1});
+BENCHMARK_CAPTURE(to_latlong, plain, domelight::area::plain_cube_to_latlong)
+    ->Apply(common_latlong)
+    ->Args({128, 256, 0, 1})
     ->Iterations(1);
 BENCHMARK_MAIN();

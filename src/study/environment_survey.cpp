@@ -2,7 +2,6 @@
 
 #include "domelight/filtering/prefilter.h"
 #include "domelight/filtering/resample/area_resample.h"
-#include "domelight/filtering/resample/reproject.h"
 #include "domelight/image/colour.h"
 #include "domelight/projection/projections.h"
 
@@ -118,13 +117,9 @@ Result<EnvironmentSurvey> survey_environment(const Environment& environment, int
     if (const Cubemap* cube = environment.cube()) {
         note_range(survey, cube->pixels());
         result = prefilter(*cube, filter);
-        // Conservative, which is enough for finding lights: averaging exactly over texels takes ten times as long.
-        if (result) {
-            const int height = std::min(2 * cube->size(), 512);
-            world = reproject(projected_cube(*cube, environment.world_to_source), *projection_from_name("latlong"),
-                              2 * height, height, threads)
-                        .pixels;
-        }
+        if (result)
+            world = area_resample_cube_to_latlong(*cube, std::min(2 * cube->size(), 512), environment.world_to_source,
+                                                  threads);
     } else {
         const auto rows = environment.rows();
         if (!rows) return rows.error();

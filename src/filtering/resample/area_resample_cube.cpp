@@ -3,6 +3,8 @@
 #include "domelight/base/parallel.h"
 #include "domelight/projection/projection.h"
 
+#include "filtering/resample/cube_to_latlong.h"
+
 #include <algorithm>
 #include <array>
 
@@ -191,6 +193,29 @@ std::pair<double, double> range_of(const Cubemap& source) {
 
 }  // namespace
 
+ImageF plain_cube_to_latlong(const Cubemap& source, int out_height, const Mat3& world_to_source, int threads) {
+    assert(source.channels() == 3);
+    const int width = 2 * out_height;
+    ImageF out(width, out_height, 3);
+    const CubeIntegrator integrator(source);
+    const auto range = range_of(source);
+    // Texels wider than an eighth of a turn are divided, because a border must be small compared with a half sphere.
+    const int across = (8 + width - 1) / width, down = (4 + out_height - 1) / out_height;
+    parallel_for(out_height, threads, [&](int y) {
+        for (int x = 0; x < width; ++x) {
+            Vec3d flux;
+            for (int j = 0; j < down; ++j)
+                for (int i = 0; i < across; ++i) {
+                    const double u0 = (x + double(i) / across) / width, u1 = (x + double(i + 1) / across) / width;
+                    const double v0 = (y + double(j) / down) / out_height, v1 = (y + double(j + 1) / down) / out_height;
+                    flux += integrator.integrate(latlong_border(u0, u1, v0, v1, world_to_source));
+                }
+            store(out.at(x, y), flux / latlong_solid_angle(y, width, out_height), range);
+        }
+    });
+    return out;
+}
+
 }  // namespace domelight::area
 
 namespace domelight {
@@ -223,26 +248,9 @@ Cubemap area_resample_cube(const Cubemap& source, int size, const Mat3& world_to
 }
 
 ImageF area_resample_cube_to_latlong(const Cubemap& source, int out_height, const Mat3& world_to_source, int threads) {
-    assert(source.channels() == 3);
-    const int width = 2 * out_height;
-    ImageF out(width, out_height, 3);
-    const area::CubeIntegrator integrator(source);
-    const auto range = area::range_of(source);
-    // Texels wider than an eighth of a turn are divided, because a border must be small compared with a half sphere.
-    const int across = (8 + width - 1) / width, down = (4 + out_height - 1) / out_height;
-    parallel_for(out_height, threads, [&](int y) {
-        for (int x = 0; x < width; ++x) {
-            Vec3d flux;
-            for (int j = 0; j < down; ++j)
-                for (int i = 0; i < across; ++i) {
-                    const double u0 = (x + double(i) / across) / width, u1 = (x + double(i + 1) / across) / width;
-                    const double v0 = (y + double(j) / down) / out_height, v1 = (y + double(j + 1) / down) / out_height;
-                    flux += integrator.integrate(area::latlong_border(u0, u1, v0, v1, world_to_source));
-                }
-            area::store(out.at(x, y), flux / latlong_solid_angle(y, width, out_height), range);
-        }
-    });
-    return out;
+    if (const auto aligned = area::align(world_to_source.transposed()))
+        return area::aligned_cube_to_latlong(source, out_height, *aligned, threads);
+    return area::plain_cube_to_latlong(source, out_height, world_to_source, threads);
 }
 
 }  // namespace domelight

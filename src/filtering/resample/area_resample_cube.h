@@ -41,4 +41,7 @@ class CubeIntegrator {
     BorderedCube source_;
 };
 
+/// area_resample_cube_to_latlong in any orientation, texel by texel: what the fast version is tested against.
+ImageF plain_cube_to_latlong(const Cubemap& source, int out_height, const Mat3& world_to_source, int threads);
+
 }  // namespace domelight::area
