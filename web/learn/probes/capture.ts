@@ -40,7 +40,7 @@ export function setOf(probes: Probe[], radiance: Float32Array, moments: Float32A
         },
         maps: {
             specular: makeAtlas(arrayOf(rgba, k_size, radiance)), irradiance: makeAtlas(arrayOf(rgba, k_irradiance_size, irradianceOverPi(radiance))),
-            distances: makeDistances(arrayOf(rg, k_size, distances)),
+            distances: makeDistances(arrayOf(rg, k_size, distances)), cells: null,
         },
     };
 }

@@ -5,6 +5,7 @@ import {setProbeUniforms, probeUniforms} from '../../src/probes/textures';
 import {Pass} from '../../src/render/passes';
 import {fullscreen} from '../../src/render/program';
 import probeBlend from '../../src/shading/probe_blend.glsl?raw';
+import probeCells from '../../src/shading/probe_cells.glsl?raw';
 import probeLight from '../../src/shading/probe_light.glsl?raw';
 import probeRecords from '../../src/shading/probe_records.glsl?raw';
 import probeVisibility from '../../src/shading/probe_visibility.glsl?raw';
@@ -28,7 +29,7 @@ const set = probeUniforms(), u = {
     ...light.uniforms, ...set, u_exposure: {value: k_exposure}, u_brdf: {value: null}, u_wall: {value: 3}, u_window: {value: new THREE.Vector3()}, u_what: {value: 0}, u_face_size: {value: k_size},
     u_point: {value: new THREE.Vector3()}, u_facing: {value: new THREE.Vector3()},
 };
-const pass = new Pass(fullscreen(...mapParts, probeRecords, probeVisibility, probeBlend, probeLight, room), u);
+const pass = new Pass(fullscreen(...mapParts, probeRecords, probeVisibility, probeCells, probeBlend, probeLight, room), u);
 
 const plans = [picture('The rooms from above, lit by the probes'), picture('The rooms from above, the truth')] as const;
 for (const canvas of plans) {

@@ -3,6 +3,7 @@
 import * as THREE from 'three';
 import type {Uniforms} from '../render/surfaces';
 import type {Atlas} from './atlas';
+import {k_cells_width} from './cells';
 import type {ProbeSet} from './load';
 import type {Probe} from './record';
 
@@ -16,7 +17,7 @@ const cosineFactors = [1, 2 / 3, 2 / 3, 2 / 3, 1 / 4, 1 / 4, 1 / 4, 1 / 4, 1 / 4
 export const probeUniforms = (): Uniforms => ({
     u_probe_records: {value: null}, u_probe_count: {value: 0}, u_probe_grid: {value: false}, u_probe_origin: {value: new THREE.Vector3()},
     u_probe_spacing: {value: new THREE.Vector3(1, 1, 1)}, u_probe_counts: {value: new THREE.Vector3(1, 1, 1)},
-    u_probe_distances: {value: null}, u_probe_distance_size: {value: 0}, u_probe_specular: {value: null}, u_probe_irradiance: {value: null},
+    u_probe_distances: {value: null}, u_probe_cells: {value: null}, u_probe_distance_size: {value: 0}, u_probe_specular: {value: null}, u_probe_irradiance: {value: null},
     u_probe_irradiance_size: {value: 1}, u_probe_levels: {value: Array.from({length: k_most_levels}, () => new THREE.Vector3())}, u_probe_last_level: {value: 0},
     u_probe_most: {value: 8}, u_probe_use_visibility: {value: true}, u_probe_use_all: {value: false}, u_probe_parallax: {value: true},
 });
@@ -33,12 +34,9 @@ export function setProbeUniforms(uniforms: Uniforms, {record, maps}: ProbeSet, m
     replace('u_probe_specular', atlasTexture(maps.specular));
     replace('u_probe_irradiance', atlasTexture(maps.irradiance));
     replace('u_probe_records', recordTexture(probes));
-    const {distances} = maps, one = new THREE.DataArrayTexture(new Float32Array(4), 1, 1, 1);
-    const far = distances ? new THREE.DataArrayTexture(distances.texels, distances.width, distances.height, distances.layers) : one;
-    far.format = THREE.RGBAFormat;
-    far.type = THREE.FloatType;
-    far.needsUpdate = true;
-    replace('u_probe_distances', far);
+    const {distances, cells} = maps;
+    replace('u_probe_distances', distances ? floatLayers(distances.texels, distances.width, distances.height, distances.layers) : floatLayers(new Float32Array(4), 1, 1, 1));
+    replace('u_probe_cells', cells ? floatLayers(cells.texels, k_cells_width, cells.height, cells.layers) : floatLayers(new Float32Array(4), 1, 1, 1));
     maps.specular.levels.forEach(({size, top}, l) => (uniforms.u_probe_levels!.value as THREE.Vector3[])[l]!.set(size, top, roughness[l]!));
     const values = {
         u_probe_count: probes.length, u_probe_grid: grid !== null, u_probe_distance_size: distances?.size ?? 0, u_probe_irradiance_size: record.irradiance.size, u_probe_last_level: roughness.length - 1,
@@ -48,6 +46,14 @@ export function setProbeUniforms(uniforms: Uniforms, {record, maps}: ProbeSet, m
     (uniforms.u_probe_origin!.value as THREE.Vector3).fromArray(grid.origin);
     (uniforms.u_probe_spacing!.value as THREE.Vector3).fromArray(grid.spacing);
     (uniforms.u_probe_counts!.value as THREE.Vector3).fromArray(grid.counts);
+}
+
+function floatLayers(texels: Float32Array, width: number, height: number, layers: number): THREE.DataArrayTexture {
+    const texture = new THREE.DataArrayTexture(texels as Float32Array<ArrayBuffer>, width, height, layers);
+    texture.format = THREE.RGBAFormat;
+    texture.type = THREE.FloatType;
+    texture.needsUpdate = true;
+    return texture;
 }
 
 function atlasTexture({texels, width, height, layers}: Atlas): THREE.DataArrayTexture {

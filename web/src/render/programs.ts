@@ -30,6 +30,7 @@ import probe from '../shading/probe.glsl?raw';
 import probeBallFragment from '../shading/probe_ball_fragment.glsl?raw';
 import probeBallVertex from '../shading/probe_ball_vertex.glsl?raw';
 import probeBlend from '../shading/probe_blend.glsl?raw';
+import probeCells from '../shading/probe_cells.glsl?raw';
 import probeLight from '../shading/probe_light.glsl?raw';
 import probeRecords from '../shading/probe_records.glsl?raw';
 import probeVisibility from '../shading/probe_visibility.glsl?raw';
@@ -62,7 +63,7 @@ export const probeModes = ['split-sum', 'stretched', 'phong'] as const;
 type ProbeMode = (typeof probeModes)[number];
 const byProbes = (mode: ProbeMode): string[] => {
     const own: Record<ProbeMode, string[]> = {'split-sum': [metallicRoughness, splitSum], stretched: [metallicRoughness, stretchedFit(), stretched], phong: [phongProbes, phong]};
-    return ['#define LIGHT_BY_PROBES', probeRecords, probeVisibility, probeBlend, probeLight, diffuse, ...own[mode], brdf];
+    return ['#define LIGHT_BY_PROBES', probeRecords, probeVisibility, probeCells, probeBlend, probeLight, diffuse, ...own[mode], brdf];
 };
 
 /// What a model is drawn with: a method of shading, or what the page wants to know of a pixel.

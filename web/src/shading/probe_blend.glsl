@@ -1,11 +1,8 @@
 // The probes around a point and their weights: include/domelight/probe/probe_blend.h says what each factor is; the C++ is src/probe/probe_blend.cpp. Behind
-// probe_visibility.glsl.
-//
-// Where the places are no grid, the nearest eight probes are blended, and not the corners of a tetrahedron.
+// probe_visibility.glsl and probe_cells.glsl.
 
 uniform int u_probe_most;            // how many are blended, 1 to 8
 uniform bool u_probe_use_visibility;  // off: all probes of a cell count, as in engines that know no visibility
-uniform bool u_probe_use_all;        // whether invalid ones count as well
 
 const int k_most_parts = 16;
 const int k_nearest = 8;
@@ -61,6 +58,35 @@ void add_grid_cell(vec3 point, vec3 normal) {
         float weight = along.x * along.y * along.z;
         int probe = place.x + u_probe_counts.x * (place.y + u_probe_counts.y * place.z);
         if (weight > 0.0) add_part(probe, weight * importance(probe, point, normal));
+    }
+}
+
+/// The distance of the second nearest probe that counts; 0 if fewer than three do.
+float second_distance(vec3 point) {
+    float nearest = 1e30, second = 1e30;
+    int count = 0;
+    for (int probe = 0; probe < u_probe_count; ++probe) {
+        vec4 place = probe_record(probe, 0);
+        if (!(place.w > 0.0 || u_probe_use_all)) continue;
+        vec3 d = place.xyz - point;
+        float square = dot(d, d);
+        second = min(second, max(nearest, square));
+        nearest = min(nearest, square);
+        ++count;
+    }
+    return count > 2 ? sqrt(second) : 0.0;
+}
+
+void add_tetrahedron(vec3 point, vec3 normal) {
+    ivec4 probes;
+    vec4 weights;
+    find_cell(point, probes, weights);
+    // Tetrahedra at the hull can be long. Probes at more than twice the distance of the second nearest are too far.
+    float second = second_distance(point), radius = 2.0 * second + 1e-6;
+    for (int i = 0; i < 4; ++i) {
+        if (!(weights[i] > 0.0)) continue;
+        float part = second > 0.0 ? length(probe_position(probes[i]) - point) / radius : 0.0, closeness = part < 1.0 ? (1.0 - part * part) * (1.0 - part * part) : 0.0;
+        if (closeness > 0.0) add_part(probes[i], weights[i] * closeness * importance(probes[i], point, normal));
     }
 }
 
@@ -123,6 +149,7 @@ void keep_most() {
 void blend_at(vec3 point, vec3 normal) {
     blend_point = point;
     if (u_probe_grid) add_grid_cell(point, normal);
+    else add_tetrahedron(point, normal);
     if (blend_sum < k_enough) add_nearest(point, normal);
     keep_most();
     float total = 0.0;
