@@ -68,6 +68,18 @@ bool flag(const Json& request, const char* key, bool fallback) {
     return value && value->is_boolean() ? value->get<bool>() : fallback;
 }
 
+/// The camera of a picture of height x width pixels in whose upper left corner lies that of `camera`, which is view_width x
+/// view_height: with the same steps from pixel to pixel, and its middle where `camera` looks. A view off the middle is a
+/// shear: u right + v up - back, with u and v moved, is a sum of the moved `back`.
+Camera continued(Camera camera, int view_width, int view_height, int width, int height) {
+    const float step = 2 * std::tan(0.5f * camera.fov_y) / float(view_height);
+    const float right = 0.5f * step * float(width - view_width), down = 0.5f * step * float(height - view_height);
+    Affine& m = camera.to_world;
+    m.z = m.z - m.x * right + m.y * down;
+    camera.fov_y = 2 * std::atan(0.5f * step * float(height));
+    return camera;
+}
+
 Result<TruthRequest> parse(std::string_view text) {
     const auto json = parse_json(text);
     if (!json) return json.error();
@@ -79,6 +91,10 @@ Result<TruthRequest> parse(std::string_view text) {
         if (!*number) return number->error();
     if (std::int64_t(*width) * *height > k_most_pixels)
         return Error{fmt::format("{} x {} is more than 2^23 pixels", *width, *height), field_place("width"), ""};
+    const auto view_width = whole(*json, "view_width", *width, 1, *width),
+               view_height = whole(*json, "view_height", *height, 1, *height);
+    for (const auto* number : {&view_width, &view_height})
+        if (!*number) return number->error();
     const auto position = point(*json, "position"), target = point(*json, "target");
     for (const auto* place : {&position, &target})
         if (!*place) return place->error();
@@ -94,7 +110,8 @@ Result<TruthRequest> parse(std::string_view text) {
     o.occlusion = flag(*json, "occlusion", true);
     o.multiple_scattering = flag(*json, "multiple_scattering", false);
     o.background = flag(*json, "transparent", false) ? Background::transparent : Background::environment;
-    o.camera = look_at(*position, *target, float(*fov * k_pi / 180));
+    o.camera =
+        continued(look_at(*position, *target, float(*fov * k_pi / 180)), *view_width, *view_height, *width, *height);
     return request;
 }
 

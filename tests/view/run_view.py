@@ -206,9 +206,23 @@ def test_the_truth_is_the_picture_of_render(folder):
             assert max(abs(a - b) for a, b in zip(streamed, written)) <= max(streamed) / 120 + 1e-6, (pixel, streamed, written)
 
 
+def test_a_picture_goes_on_beyond_the_view(folder):
+    with serving(folder, "tri angle.gltf", "sky.hdr") as port:
+        view = frames(truth(port, samples=512, occlusion=False))[0][-1]
+        whole = frames(truth(port, samples=512, occlusion=False, width=64, height=44, view_width=48, view_height=32))[0][-1]
+        assert whole[:2] == (64, 44)
+        def row(picture, y):
+            return picture[4][3 * picture[0] * y:3 * (picture[0] * y + 48)]
+        # Two pictures of other random numbers: their noise, which the edges of the triangle have most of.
+        differences = [abs(a - b) / (1 + b) for y in range(32) for a, b in zip(row(view, y), row(whole, y))]
+        assert max(differences) < 0.1 and sum(differences) / len(differences) < 0.004, (max(differences), sum(differences) / len(differences))
+        # What is beyond is more of the scene, and not black.
+        assert all(v > 0 for v in whole[4][3 * 64 * 43:])
+
+
 def test_a_wrong_request_for_a_picture_is_one_sentence(folder):
     with serving(folder, "tri angle.gltf", "sky.hdr") as port:
-        for changed, what in [({"width": 0}, "`width`: 0 is not a whole number from 1 to 8192"), ({"samples": 1.5}, "`samples`: 1.5 is not"),
+        for changed, what in [({"width": 0}, "`width`: 0 is not a whole number from 1 to 8192"), ({"samples": 1.5}, "`samples`: 1.5 is not"), ({"view_width": 49}, "`view_width`: 49 is not a whole number from 1 to 48"),
                               ({"target": [0, 0]}, "`target`: is not three numbers"), ({"position": [0, 0, 1e99]}, "`position`"),
                               ({"fov_y_deg": "wide"}, "`fov_y_deg`"), ({"width": 8192, "height": 8192}, "more than 2^23 pixels")]:
             found, error = frames(truth(port, **changed))

@@ -16,7 +16,7 @@ import {viewOf} from './scene/framing';
 import {Resolution} from './resolution';
 import {loadModel} from './scene/load_model';
 import {fetchFile, type Session} from './served';
-import {Store, type Mode, type State} from './state';
+import {isPicture, Store, type Mode, type State} from './state';
 
 /// Frames that are averaged until nothing would be seen to change.
 const k_frames = 64;
@@ -55,7 +55,8 @@ export class App {
     private light = 0;
     private readonly resolution = new Resolution();
     private drawnScale = 1;
-    private screen = {width: 1, height: 1, inset: {right: 0, bottom: 0}};
+    /// Pixels of the screen, and what of them the panel covers.
+    screen = {width: 1, height: 1, inset: {right: 0, bottom: 0}};
     private scheduled = false;
     private readonly openedListeners: (() => void)[] = [];
     private readonly phongListeners: (() => void)[] = [];
@@ -103,7 +104,7 @@ export class App {
     /// Modes that are on the screen, the left one first.
     get shown(): Mode[] {
         const {view, mode, other} = this.state;
-        return view === 'one' || other === 'picture' || other === 'truth' ? [mode] : [mode, other];
+        return view === 'one' || isPicture(other) ? [mode] : [mode, other];
     }
     /// Calls back whenever another model or environment is shown.
     onOpened(listener: () => void): void {
@@ -156,7 +157,7 @@ export class App {
     /// A picture of the truth, to compare with.
     openPicture(file: File): Promise<boolean> {
         return this.work(`reading ${file.name}`, async () => {
-            this.stage.setPicture(await this.baker.picture(file.name, await file.arrayBuffer()));
+            this.stage.setPicture('picture', await this.baker.picture(file.name, await file.arrayBuffer()));
             this.store.set({other: 'picture', view: this.state.view === 'one' ? 'split' : this.state.view});
         });
     }

@@ -38,6 +38,9 @@ export interface TruthRequest {
     fov_y_deg: number;
     width: number;
     height: number;
+    /// The part of it, in the upper left corner, in whose middle the target is.
+    view_width: number;
+    view_height: number;
     samples: number;
     bounces: number;
     occlusion: boolean;

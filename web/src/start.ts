@@ -10,7 +10,6 @@ import {CompareSection} from './ui/compare_section';
 import {button, element} from './ui/controls';
 import {exportSection, save} from './ui/export_section';
 import {bindKeys, keyTable} from './ui/keys';
-import {modeNames, otherNames} from './ui/labels';
 import {helpDialog, layOut} from './ui/layout';
 import {levelsSection} from './ui/levels_section';
 import {MapSection} from './ui/map_section';
@@ -55,9 +54,11 @@ function start(served: Session | null): void {
     layout.panel.append(sceneSection(app), pictureSection(app, new ScreenSection(app, layout.canvas).parts), methodSection(app), probesSection(app), noise.root, materialSection(app, levelOf), truth.root, compare.root, map.root, levelsSection(app), exportSection(app));
 
     const status = new Status(app, layout.status), hover = new Hover(app, status, map);
-    bindPointer(layout.canvas, store, (x, y) => hover.at(x, y));
+    bindPointer(layout.canvas, store, (x, y) => hover.at(x, y), () => hover.leave());
     bindDrops(layout.drop, openFiles);
+    const name = () => layout.name(store.state, store.state.other === 'truth' ? truth.progress || 'on its way' : '', app.stage.mapped);
     const drawn = () => {
+        name();
         status.update();
         noise.update();
         compare.update();
@@ -69,7 +70,10 @@ function start(served: Session | null): void {
         app.resize(innerWidth * scale, innerHeight * scale, {right: panel && !narrow ? 328 * scale : 0, bottom: panel && narrow ? 0.52 * innerHeight * scale : 0});
     };
     resize();
-    addEventListener('resize', resize);
+    addEventListener('resize', () => {
+        resize();
+        truth.resized();
+    });
     store.listen(changed => changed.has('panel') && resize());
     app.onOpened(() => {
         layout.caption.textContent = `${app.model.name} · ${app.environmentName}`;
@@ -77,12 +81,7 @@ function start(served: Session | null): void {
     });
     let timer = 0;
     store.listen(() => {
-        const {view, mode, other} = store.state, [left, right] = layout.tags;
-        left.hidden = right.hidden = view !== 'split';
-        left.textContent = modeNames[mode];
-        right.textContent = otherNames[other];
-        left.style.right = `${100 - 100 * store.state.divider}%`;
-        right.style.left = `${100 * store.state.divider}%`;
+        name();
         clearTimeout(timer);
         timer = setTimeout(() => history.replaceState(null, '', writeHash(store.state) || location.pathname), 300);
     });

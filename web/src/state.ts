@@ -5,12 +5,14 @@ export type Mode = (typeof modes)[number];
 /// What a mode is compared with: another, a picture from a file, or one that the program renders.
 export const others = [...modes, 'picture', 'truth'] as const;
 export type Other = (typeof others)[number];
+/// Whether it is a picture, and not drawn by the page.
+export const isPicture = (other: Other): other is 'picture' | 'truth' => other === 'picture' || other === 'truth';
 export const tonemaps = ['none', 'reinhard', 'aces', 'agx', 'neutral'] as const;
 export const lookups = ['environment', 'cube', 'latlong', 'sphere-map', 'dual-paraboloid'] as const;
 /// What an environment file is, where it does not say it: words of the library.
 export const projections = ['auto', 'latlong', 'cube', 'cube-cross', 'cube-strip', 'sphere-map', 'mirror-ball', 'angular', 'dual-paraboloid', 'octahedral', 'equal-area-octahedral'] as const;
 export const backgrounds = ['environment', 'blurred', 'colour'] as const;
-export const views = ['one', 'split', 'difference', 'flip'] as const;
+export const views = ['one', 'other', 'split', 'difference', 'flip'] as const;
 export const strategies = ['mis', 'env', 'brdf'] as const;
 export const tables = ['walk', 'guided'] as const;
 

@@ -11,7 +11,6 @@ export interface Pictures {
     reference: Uint8Array<ArrayBuffer>;
     /// The number of the object in each pixel, 0 for the background.
     objects: Uint16Array<ArrayBuffer>;
-    map: 'difference' | 'flip';
 }
 export interface ObjectError {
     object: number;
@@ -23,11 +22,11 @@ export interface ObjectError {
 export interface Comparison {
     all: ObjectError;
     objects: ObjectError[];
-    /// RGBA bytes: the map in colours.
+    /// RGBA bytes: FLIP in colours.
     map: Uint8Array;
 }
 
-function compare({width, height, test, reference, objects, map}: Pictures): Comparison {
+function compare({width, height, test, reference, objects}: Pictures): Comparison {
     const n = width * height, flips = flip(test, reference, width, height), squares = new Float32Array(n);
     for (let k = 0; k < n; ++k) for (let c = 0; c < 3; ++c) squares[k]! += (test[4 * k + c]! - reference[4 * k + c]!) ** 2 / 3;
     const errors = new Map<number, ObjectError>();
@@ -46,11 +45,9 @@ function compare({width, height, test, reference, objects, map}: Pictures): Comp
         error.rmse = Math.sqrt(error.rmse / error.pixels);
         error.flip /= error.pixels;
     }
-    // A difference of 64 of 255 has the map's brightest colour.
-    const colours = heat(map === 'flip' ? flips : squares.map(v => Math.sqrt(v) / 64));
     const all = errors.get(-1)!;
     errors.delete(-1);
-    return {all, objects: [...errors.values()].sort((a, b) => b.flip - a.flip), map: colours};
+    return {all, objects: [...errors.values()].sort((a, b) => b.flip - a.flip), map: heat(flips)};
 }
 
 addEventListener('message', ({data}: MessageEvent<Pictures>) => {

@@ -23,7 +23,8 @@ export class Comparer {
             return;
         }
         this.busy = true;
-        const pictures = await read();
-        this.worker.postMessage(pictures, [pictures.test.buffer, pictures.reference.buffer, pictures.objects.buffer]);
+        const pictures = await read().catch(() => null);  // the graphics card may be lost
+        this.busy = pictures !== null;
+        if (pictures) this.worker.postMessage(pictures, [pictures.test.buffer, pictures.reference.buffer, pictures.objects.buffer]);
     }
 }

@@ -7,6 +7,15 @@ export function heatColour(value: number): [number, number, number] {
     return stops[i]!.map((v, c) => Math.round(v + t * (stops[i + 1]![c]! - v))) as [number, number, number];
 }
 
+/// The same in GLSL: vec3 heat(float value).
+export const heatShader = (): string => `const vec3 k_heat[${stops.length}] = vec3[](${stops.map(stop => `vec3(${stop.join()}) / 255.0`).join()});
+vec3 heat(float value) {
+    float x = clamp(value, 0.0, 1.0) * ${stops.length - 1}.0;
+    int i = min(${stops.length - 2}, int(x));
+    return mix(k_heat[i], k_heat[i + 1], x - float(i));
+}
+`;
+
 /// Values of 0 to 1 as RGBA bytes.
 export function heat(values: Float32Array): Uint8Array {
     const table = Array.from({length: 256}, (_, i) => heatColour(i / 255)), out = new Uint8Array(4 * values.length);

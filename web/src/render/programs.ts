@@ -41,6 +41,7 @@ import splitSum from '../shading/split_sum.glsl?raw';
 import stretched from '../shading/stretched.glsl?raw';
 import surface from '../shading/surface.glsl?raw';
 import tonemap from '../shading/tonemap.glsl?raw';
+import {heatShader} from '../compare/heat';
 import type {Mode} from '../state';
 import {fullscreen, join, ownFrame, type Program} from './program';
 import {stretchedFit} from './stretched_fit';
@@ -85,5 +86,5 @@ export const probeBallProgram: Program = {vertexShader: join(probeBallVertex), f
 export const projectProgram = fullscreen(environment, projections, projectEnvironment);
 export const accumulateProgram = fullscreen(accumulate);
 export const levelProgram = fullscreen(environment, generic, projections, tonemap, level);
-export const presentProgram = fullscreen(tonemap, present, presentWhite);
-export const presentExtendedProgram = fullscreen(tonemap, present, presentExtended);
+export const presentProgram = fullscreen(tonemap, heatShader(), present, presentWhite);
+export const presentExtendedProgram = fullscreen(tonemap, heatShader(), present, presentExtended);

@@ -7,7 +7,7 @@ import type {ProbeSet} from '../probes/load';
 import {StageProbes} from '../probes/stage_probes';
 import {radians} from '../scene/framing';
 import {k_most_lights, lightVectors} from '../scene/lights';
-import {backgrounds, lookups, strategies, tables, tonemaps, type Mode, type State} from '../state';
+import {backgrounds, isPicture, lookups, strategies, tables, tonemaps, type Mode, type State} from '../state';
 import {Backlog} from './backlog';
 import {LookupMaps} from './lookup_maps';
 import {brdfTexture, chainTexture, cubeTexture, latlongTexture, tableTexture} from './maps';
@@ -55,9 +55,9 @@ export class Stage {
     private readonly lookups: LookupMaps;
     private meshes: LitMesh[] = [];
     private model?: THREE.Object3D;
-    private picture?: THREE.DataTexture;
-    /// How many pictures there have been: a comparison with an earlier one is out of date.
-    pictures = 0;
+    private readonly pictures: Partial<Record<'picture' | 'truth', THREE.DataTexture>> = {};
+    /// How often they have changed: a comparison with an earlier one is out of date.
+    pictureChanges = 0;
     private readonly sky: THREE.Mesh;
     /// What the model can be drawn for without waiting.
     private readonly prepared = new Set<Purpose>();
@@ -322,20 +322,25 @@ export class Stage {
         this.sky.visible = object.mesh.visible = true;
     }
 
-    /// What stands on the right: the second pane, or a picture from a file.
+    /// What stands on the right: the second pane, or a picture. Until there is one, it is what stands on the left.
     side(state: State, index: number): THREE.Texture {
-        return index === 1 && (state.other === 'picture' || state.other === 'truth') && this.picture ? this.picture : this.panes[index]!.target.texture;
+        const {other} = state;
+        return index === 1 && isPicture(other) ? (this.pictures[other] ?? this.panes[0].target.texture) : this.panes[index]!.target.texture;
+    }
+    /// Whether there is something to compare with.
+    hasOther({other}: State): boolean {
+        return !isPicture(other) || this.pictures[other] !== undefined;
     }
 
     private get presents(): Pass[] {
         return this.extended ? [this.present, this.extended.pass] : [this.present];
     }
     show(state: State): void {
-        const u = this.present.uniforms, mapped = (state.view === 'difference' || state.view === 'flip') && u.u_map!.value !== null;
+        const u = this.present.uniforms;
         u.u_left!.value = this.side(state, 0);
         u.u_right!.value = this.side(state, 1);
-        u.u_divider!.value = state.view === 'split' ? state.divider : 2;
-        u.u_view!.value = mapped ? 1 : 0;
+        u.u_divider!.value = state.view === 'split' ? state.divider : state.view === 'other' ? -1 : 2;
+        u.u_view!.value = state.view === 'flip' && this.mapped ? 1 : state.view === 'flip' || state.view === 'difference' ? 2 : 0;  // until FLIP is known, the difference
         this.setDisplay(u, state);
         const {extended, renderer: {domElement: {width, height}}} = this;
         if (extended) {
@@ -373,19 +378,39 @@ export class Stage {
     get objectNames(): string[] {
         return this.meshes.map(({mesh}, k) => mesh.name || `object ${k + 1}`);
     }
-    setMap(bytes: Uint8Array, width: number, height: number): void {
-        const texture = new THREE.DataTexture(bytes, width, height);
-        texture.needsUpdate = true;
-        this.present.uniforms.u_map!.value?.dispose();
-        this.present.uniforms.u_map!.value = texture;
+    /// Whether FLIP is known.
+    get mapped(): boolean {
+        return this.present.uniforms.u_map!.value !== null;
+    }
+    /// FLIP in colours, RGBA; null: it is not known.
+    setMap(map: {bytes: Uint8Array; width: number; height: number} | null): void {
+        const u = this.present.uniforms, texture = map && new THREE.DataTexture(map.bytes, map.width, map.height);
+        if (texture) texture.needsUpdate = true;
+        u.u_map!.value?.dispose();
+        u.u_map!.value = texture;
     }
     /// A picture from a file or of the path tracer, which is compared with what is drawn.
-    setPicture(pixels: Latlong): void {
-        ++this.pictures;
-        const {width, height} = pixels, rgba = new Float32Array(4 * width * height);
-        for (let y = 0; y < height; ++y)
-            for (let x = 0; x < width; ++x) rgba.set(pixels.pixels.subarray(3 * (y * width + x), 3 * (y * width + x) + 3), 4 * ((height - 1 - y) * width + x));
-        this.picture?.dispose();
-        this.picture = tableTexture(rgba, width, height);
+    setPicture(kind: 'picture' | 'truth', picture: Latlong): void {
+        this.dropPicture(kind);
+        const {width, height, pixels: rgb} = picture, rgba = new Float32Array(4 * width * height);
+        for (let y = 0, from = 0; y < height; ++y)
+            for (let x = 0, to = 4 * (height - 1 - y) * width; x < width; ++x, from += 3, to += 4) {
+                rgba[to] = rgb[from]!;
+                rgba[to + 1] = rgb[from + 1]!;
+                rgba[to + 2] = rgb[from + 2]!;
+            }
+        this.pictures[kind] = tableTexture(rgba, width, height);
+    }
+    dropPicture(kind: 'picture' | 'truth'): void {
+        ++this.pictureChanges;
+        this.pictures[kind]?.dispose();
+        delete this.pictures[kind];
+    }
+    /// RGB of a picture at a pixel of the pane, from the upper left corner; null where there is none.
+    pictureAt(kind: 'picture' | 'truth', x: number, y: number): [number, number, number] | null {
+        const image = this.pictures[kind]?.image as {width: number; height: number; data: Float32Array} | undefined, {width, height} = this.panes[0];
+        if (!image) return null;
+        const at = 4 * ((image.height - 1 - Math.floor((y / height) * image.height)) * image.width + Math.floor((x / width) * image.width));
+        return [image.data[at]!, image.data[at + 1]!, image.data[at + 2]!];
     }
 }

@@ -2,6 +2,7 @@
 
 import * as THREE from 'three';
 import type {App} from '../app';
+import {isPicture} from '../state';
 import {Inspector} from '../render/inspector';
 import type {MapSection} from './map_section';
 import type {Status} from './status';
@@ -28,15 +29,25 @@ export class Hover {
         if (this.map.wantsLobe && !this.probing) void this.showLobe();
     }
 
+    /// The pointer is elsewhere.
+    leave(): void {
+        this.place = null;
+        this.status.showPixel(null);
+    }
     /// Reads the pixel again, because the picture has become better.
     async refresh(): Promise<void> {
         if (!this.place || this.reading || !this.app.ready) return;
         this.reading = true;
-        const [x, y] = this.place, {stage, state} = this.app, split = state.view === 'split' && x / stage.panes[0].width > state.divider && state.other !== 'picture' && state.other !== 'truth';
-        const {target, height} = stage.panes[split ? 1 : 0]!, values = new Float32Array(4);
-        await stage.renderer.readRenderTargetPixelsAsync(target, x, height - 1 - y, 1, 1, values).catch(() => {});
-        this.status.showPixel(x, y, [values[0]!, values[1]!, values[2]!]);
+        const [x, y] = this.place, {stage, state} = this.app, {view, divider, other} = state;
+        const right = view === 'other' || (view === 'split' && x / stage.panes[0].width > divider), picture = right && isPicture(other) ? stage.pictureAt(other, x, y) : null;
+        if (picture) this.status.showPixel({x, y, rgb: picture});
+        else await this.read(x, y, right && !isPicture(other) ? 1 : 0);
         this.reading = false;
+    }
+    private async read(x: number, y: number, pane: number): Promise<void> {
+        const {stage} = this.app, {target, height} = stage.panes[pane]!, values = new Float32Array(4);
+        await stage.renderer.readRenderTargetPixelsAsync(target, x, height - 1 - y, 1, 1, values).catch(() => {});
+        if (this.place) this.status.showPixel({x, y, rgb: [values[0]!, values[1]!, values[2]!]});
     }
 
     private async showLobe(): Promise<void> {

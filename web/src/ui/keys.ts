@@ -1,6 +1,6 @@
 // Keys, and what the help says of them.
 
-import {modes, type Store} from '../state';
+import {isPicture, modes, type Store} from '../state';
 import {orbit, turnLight, zoom} from './pointer';
 
 interface Key {
@@ -45,7 +45,7 @@ export function keyTable(store: Store, actions: Actions): Key[] {
         {keys: ['m'], shown: ['M'], what: 'let the model move', act: () => store.set({motion: !store.state.motion})},
         {keys: ['i'], shown: ['I'], what: 'light by the probes, where a set is open, or by the environment', act: () => store.set({probes: !store.state.probes})},
         {keys: ['g'], shown: ['G'], what: 'show where the probes stand', act: () => store.set({probeBalls: !store.state.probeBalls})},
-        {keys: ['t'], shown: ['T'], what: 'the path-traced truth beside it, where domelight view serves the page', act: actions.truth},
+        {keys: ['t'], shown: ['T'], what: 'the path-traced truth beside it, then over the whole picture, where domelight view serves the page', act: actions.truth},
         {keys: ['o'], shown: ['O'], what: 'open files', act: actions.open},
         {keys: ['p'], shown: ['P'], what: 'save a screenshot', act: actions.screenshot},
         {keys: ['h'], shown: ['H'], what: 'fold the panel away', act: () => store.set({panel: !store.state.panel})},
@@ -55,10 +55,10 @@ export function keyTable(store: Store, actions: Actions): Key[] {
 
 const limit = (v: number, most: number) => Math.round(Math.min(most, Math.max(-most, v)) * 1000) / 1000;
 
-/// A becomes B: the other method takes the place of this one. A picture from a file stays on its side.
+/// A becomes B: the other method takes the place of this one. A picture stays what this one is compared with: it is shown over the whole pane, or not.
 function flipSides(store: Store): void {
     const {mode, other} = store.state;
-    if (other === 'picture' || other === 'truth') store.set({view: 'split', divider: store.state.divider < 0.5 ? 1 : 0});
+    if (isPicture(other)) store.set({view: store.state.view === 'other' ? 'one' : 'other'});
     else store.set({mode: other, other: mode});
 }
 

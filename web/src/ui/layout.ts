@@ -1,9 +1,9 @@
 // The parts of the page.
 
-import {modes, type Store} from '../state';
+import {modes, type State, type Store} from '../state';
 import {button, ChoiceControl, element} from './controls';
 import type {keyTable} from './keys';
-import {modeNames, modeNotes} from './labels';
+import {modeNames, modeNotes, otherNames} from './labels';
 
 /// A hint that can be read again in the panel stays so long.
 const k_hint_ms = 10_000;
@@ -24,7 +24,8 @@ export interface Layout {
     /// Takes all sentences away.
     clear: () => void;
     drop: HTMLElement;
-    tags: [HTMLElement, HTMLElement];
+    /// Says what stands where. progress: of a picture that is on its way; mapped: whether FLIP is known.
+    name: (state: State, progress: string, mapped: boolean) => void;
 }
 
 export function layOut(store: Store): Layout {
@@ -67,7 +68,16 @@ export function layOut(store: Store): Layout {
     fold();
     store.listen(changed => changed.has('panel') && fold());
     return {
-        canvas, caption, status, panel, tools, divider, drop, tags,
+        canvas, caption, status, panel, tools, divider, drop,
+        name: ({view, mode, other, divider}, progress, mapped) => {
+            const [left, right] = tags;
+            left.hidden = view !== 'split';
+            right.hidden = view === 'one';
+            left.textContent = modeNames[mode];
+            right.textContent = (view === 'difference' || (view === 'flip' && !mapped) ? `Difference: ${modeNames[mode]}, ` : view === 'flip' ? `FLIP: ${modeNames[mode]}, ` : '') + otherNames[other] + (progress && ` · ${progress}`);
+            left.style.right = `${100 - 100 * divider}%`;
+            right.style.left = view === 'split' ? `${100 * divider}%` : 'var(--gap)';
+        },
         work: what => {
             progress.hidden = what === '';
             spoken.textContent = what;

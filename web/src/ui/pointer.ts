@@ -31,7 +31,7 @@ function pan(store: Store, right: number, up: number): void {
     store.set({eye: e.add(move).toArray(), target: t.add(move).toArray()});
 }
 
-export function bindPointer(canvas: HTMLCanvasElement, store: Store, hover: (x: number, y: number) => void): void {
+export function bindPointer(canvas: HTMLCanvasElement, store: Store, hover: (x: number, y: number) => void, leave: () => void): void {
     const pointers = new Map<number, {x: number; y: number}>();
     canvas.addEventListener('pointerdown', event => {
         canvas.setPointerCapture(event.pointerId);
@@ -54,6 +54,8 @@ export function bindPointer(canvas: HTMLCanvasElement, store: Store, hover: (x: 
         else orbit(store, (dx / height) * Math.PI, (dy / height) * Math.PI);
         Object.assign(last, {x: event.clientX, y: event.clientY});
     });
+    canvas.addEventListener('pointerleave', leave);
+    canvas.addEventListener('pointerover', event => hover(event.clientX, event.clientY));  // after a change of the page also without a move
     canvas.addEventListener('wheel', event => {
         event.preventDefault();
         zoom(store, Math.exp(Math.min(0.5, Math.max(-0.5, event.deltaY * 0.0012))));
