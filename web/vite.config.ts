@@ -5,6 +5,7 @@ import {defineConfig} from 'vite';
 import {makeBrdfTable} from './build_steps/brdf_table';
 import {fewerDecoders, makeBasisTranscoder} from './build_steps/decoders';
 import {commonParts} from './build_steps/pages';
+import {preload} from './build_steps/preload';
 
 const here = (name: string) => fileURLToPath(new URL(name, import.meta.url));
 
@@ -26,7 +27,7 @@ export default defineConfig(async () => {
     makeBasisTranscoder(here('node_modules/three/examples/jsm/libs/basis/basis_transcoder.js'), transcoder);
     return {
         base: './',
-        plugins: [commonParts(), fewerDecoders()],
+        plugins: [commonParts(), preload('start'), fewerDecoders()],
         resolve: {alias: Object.entries(alias).map(([name, replacement]) => ({find: new RegExp(`^${name.replace('.', '\\.')}(?=\\?)`), replacement}))},
         build: {outDir: '../build/web', emptyOutDir: true, target: 'es2022', assetsInlineLimit: 0, chunkSizeWarningLimit: 1200, rollupOptions: {input}},
         worker: {format: 'es'},

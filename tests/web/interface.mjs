@@ -46,6 +46,32 @@ async function testKeys({open, claim}) {
     await page.close();
 }
 
+/// The page is there before its program, and keeps what is dropped meanwhile.
+async function testStart({browser, watch, server, claim, work, program}) {
+    execFileSync(program, ['sky', '-o', path.join(work, 'early.hdr'), '--height', '64', '--no-sun-disc', '--quiet']);
+    const page = watch(await browser.newPage({viewport: {width: 720, height: 400}}));
+    let release;
+    const held = new Promise(done => (release = done));
+    await page.route(/\/start-[^/]*\.js$/, async route => {
+        await held;
+        await route.continue();
+    });
+    await page.goto(`${server.url}/app/index.html`, {waitUntil: 'commit'});
+    await page.waitForFunction(() => performance.getEntriesByName('first-paint').length && performance.getEntriesByName('laid out').length, undefined, {timeout: 20_000});
+    const boxes = await page.evaluate(() => ['#panel', '#modes', '#view canvas'].map(selector => document.querySelector(selector)?.getBoundingClientRect().width ?? 0));
+    claim('start: panel, methods and canvas are there before the program', boxes.every(width => width > 200) ? [] : [String(boxes)]);
+    await page.evaluate(async () => {
+        const transfer = new DataTransfer();
+        transfer.items.add(new File([await (await fetch('/work/early.hdr')).arrayBuffer()], 'early.hdr'));
+        dispatchEvent(new DragEvent('drop', {dataTransfer: transfer, cancelable: true}));
+    });
+    release();
+    await page.waitForFunction(() => window.domelight?.app.environmentName === 'early.hdr', undefined, {timeout: 30_000});
+    claim('start: a file that was dropped before is opened', []);
+    claim('start: the console is silent', page.complaints);
+    await page.close();
+}
+
 async function testAddress({open, claim}) {
     const page = await open('#mode=refract&lookup=sphere-map&exposure=1.5&eye=1,2,3&size=nonsense&unknown=7&tonemap=wrong');
     const wrong = [];
@@ -273,7 +299,7 @@ async function testTab({open, claim}) {
 }
 
 export async function testInterface(app) {
-    for (const test of [testKeys, testAddress, testBadFiles, testModels, testProjections, testFlip, testExport, testLive, testLostContext, testPhone, testAccessibility, testTab]) {
+    for (const test of [testStart, testKeys, testAddress, testBadFiles, testModels, testProjections, testFlip, testExport, testLive, testLostContext, testPhone, testAccessibility, testTab]) {
         const start = performance.now();
         try {
             await test(app);

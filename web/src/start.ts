@@ -1,16 +1,16 @@
-// Builds the page and starts the app.
+// Fills the page that main.ts has laid out, and starts the app.
 
 import {App} from './app';
-import {Baker} from './bake/baker';
+import type {Baker} from './bake/baker';
 import {phongLevel, sizesDownTo} from './bake/chain';
 import {environmentEndings, modelEndings, partEndings, pictureEndings, probeEndings} from './endings';
-import {readSession, type Session} from './served';
-import {Store, writeHash} from './state';
+import type {Session} from './served';
+import {writeHash, type Store} from './state';
 import {CompareSection} from './ui/compare_section';
 import {button, element} from './ui/controls';
 import {exportSection, save} from './ui/export_section';
 import {bindKeys, keyTable} from './ui/keys';
-import {helpDialog, layOut} from './ui/layout';
+import {helpDialog, type Layout} from './ui/layout';
 import {levelsSection} from './ui/levels_section';
 import {MapSection} from './ui/map_section';
 import {NoiseSection} from './ui/noise_section';
@@ -21,15 +21,25 @@ import {Hover} from './ui/hover';
 import {ScreenSection} from './ui/screen_section';
 import {Status} from './ui/status';
 import {whatIsMissing} from './ui/missing';
-import {bindDrops, chooser} from './ui/files';
+import {chooser} from './ui/files';
 import {TruthSection} from './ui/truth_section';
 
-const baker = new Baker();  // first: the module is compiled while the page is built
-const store = new Store(location.hash);
-if (innerWidth < 700 && !location.hash.includes('panel')) store.state.panel = false;
-const layout = layOut(store);
+export interface Beginning {
+    store: Store;
+    layout: Layout;
+    baker: Baker;
+    session: Promise<Session | null>;
+}
 
-function start(served: Session | null): void {
+/// Resolves to what opens files; to null where the browser lacks something, which the page then says.
+export async function start({store, layout, baker, session}: Beginning): Promise<((files: File[]) => void) | null> {
+    const lack = whatIsMissing(layout.canvas);
+    if (lack) {
+        layout.caption.textContent = '';
+        document.body.append(element('p', {className: 'surface', id: 'unable', role: 'alert'}, lack));
+        return null;
+    }
+    const served = await session;
     const app = new App(layout.canvas, store, {working: layout.work, failed: layout.complain, told: layout.tell, drawn: () => drawn()}, baker, served);
     const openFiles = (files: File[]) => {
         layout.clear();
@@ -55,7 +65,6 @@ function start(served: Session | null): void {
 
     const status = new Status(app, layout.status), hover = new Hover(app, status, map);
     bindPointer(layout.canvas, store, (x, y) => hover.at(x, y), () => hover.leave());
-    bindDrops(layout.drop, openFiles);
     const name = () => layout.name(store.state, store.state.other === 'truth' ? truth.progress || 'on its way' : '', app.stage.mapped);
     const drawn = () => {
         name();
@@ -95,9 +104,5 @@ function start(served: Session | null): void {
     });
     store.touch('panel');
     void app.start();
+    return openFiles;
 }
-
-const session = readSession();
-const lack = whatIsMissing(layout.canvas);
-if (lack) document.body.append(element('p', {className: 'surface', id: 'unable', role: 'alert'}, lack));
-else start(await session);
