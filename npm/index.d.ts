@@ -17,6 +17,8 @@ export function configure(settings?: {
     module?: string | URL | ArrayBuffer | ArrayBufferView | WebAssembly.Module;
     /** The same of the module that read() uses, which has the decoders. Default: domelight-files.wasm beside index.js. */
     files?: string | URL | ArrayBuffer | ArrayBufferView | WebAssembly.Module;
+    /** The same of the module that bakeFiles() and write() use, which also writes files. Default: domelight-bake.wasm beside index.js. */
+    bake?: string | URL | ArrayBuffer | ArrayBufferView | WebAssembly.Module;
     /** The URL of worker.js. Default: beside index.js. */
     worker?: string | URL;
 }): void;
@@ -172,8 +174,16 @@ export interface Texture {
     levels: {data: Uint8Array; width: number; height: number; clippedTexels: number; clippedEnergy: number; rmsError: number}[];
 }
 
+export interface Baked extends Texture, Extras {
+    engine: Engine;
+    /** What each level holds. */
+    specs: LevelSpec[];
+    /** Whether the cube is looked up by (-x, y, z) for the light from direction (x, y, z). `sh` is then that of the mirrored light. */
+    mirrored: boolean;
+}
+
 /** What an engine loads: the levels that it reads, encoded. */
-export function bake(environment: Environment, options?: BakeOptions): Promise<Texture & Extras & {engine: Engine; specs: LevelSpec[]}>;
+export function bake(environment: Environment, options?: BakeOptions): Promise<Baked>;
 
 /** Bakes many cubes of one size, such as the probes of a scene that moves: what depends on the size alone is computed once. */
 export class ProbeFilter {
@@ -181,10 +191,63 @@ export class ProbeFilter {
     /** Options of bake(), and cubeSize: the width of the cubes' faces, 16 to 256; default: that of level 0. */
     static make(options?: Omit<BakeOptions, 'progress' | 'signal'> & {cubeSize?: number; signal?: AbortSignal}): Promise<ProbeFilter>;
     /** What bake() gives of a cube's pixels, six faces of floats or half floats; they are copied. */
-    bake(cube: Pixels, options?: {signal?: AbortSignal}): Promise<Texture & Extras & {engine: Engine; specs: LevelSpec[]}>;
+    bake(cube: Pixels, options?: {signal?: AbortSignal}): Promise<Baked>;
     /** Frees its memory. */
     close(): void;
 }
+
+/** The options of `domelight bake`, by the same words; what is left out is the engine's own. */
+export interface BakeFilesOptions extends Work {
+    /** generic (default), three, three-latlong, babylon, playcanvas, filament, khronos, bevy, gltf, godot, unity, unreal, blender, mitsuba, pbrt, usd, materialx. Several: each in a folder. */
+    engines?: string | string[];
+    /** Of level 0: width of a cube's face, or height of a lat-long map; 1 to 16384. */
+    size?: number;
+    levels?: number;
+    layout?: 'cube' | 'latlong';
+    lobe?: Lobe;
+    texels?: 'centre' | 'read';
+    /** Of each level, 0 to 1. */
+    roughness?: ArrayLike<number>;
+    /** Of each level of a Phong lobe; Infinity: the environment itself. */
+    exponents?: ArrayLike<number>;
+    encoding?: Encoding | 'uastc-hdr';
+    encodingQuality?: 'fast' | 'default' | 'high' | 'exhaustive';
+    format?: 'ktx2' | 'ktx1' | 'dds' | 'dds9' | 'exr' | 'exr-mip' | 'hdr';
+    /** The convention of lat-long maps: default, usd, mitsuba, openexr, ... */
+    latlongOut?: string;
+    irradianceQuantity?: 'irradiance' | 'irradiance_over_pi';
+    /** Width of a face, to 4096. */
+    irradianceSize?: number;
+    /** 1 to 64; 3. */
+    shBands?: number;
+    shWindow?: 'none' | 'hann' | 'lanczos';
+    brdfMasking?: 'correlated' | 'smith' | 'karis';
+    brdfSize?: number;
+    /** preview.png; true. */
+    preview?: boolean;
+    /** SHA-256 of the source and of the files in manifest.json; true. */
+    hashes?: boolean;
+}
+
+/** Everything that `domelight bake` writes: specular.ktx2, manifest.json, preview.png and so on, by the names that they have in its folder. */
+export function bakeFiles(environment: Environment, options?: BakeFilesOptions): Promise<{name: string; data: Uint8Array}[]>;
+
+export interface WriteOptions {
+    /** Textures: ktx2 (default), ktx1, dds, dds9 (the header from before DX10), env (Babylon.js; rgbd, every level down to 1). Pictures: exr (half floats where they suffice), hdr. */
+    format?: 'ktx2' | 'ktx1' | 'dds' | 'dds9' | 'env' | 'exr' | 'hdr';
+    /** Of pixels that become a texture; rgba16f, in env rgbd. */
+    encoding?: Encoding | 'uastc-hdr';
+    /** Of bc6h and uastc-hdr. */
+    quality?: 'fast' | 'default' | 'high' | 'exhaustive';
+    /** Keys and values of ktx2 and ktx1. */
+    metadata?: Record<string, string>;
+    /** Of ktx2. */
+    supercompression?: 'none' | 'zstd';
+    signal?: AbortSignal;
+}
+
+/** The bytes of one file, of what bake(), encode() or prefilter() gave, of pixels (levels, each half the size of the one before), or of an environment as a lat-long map. */
+export function write(what: Texture | Filtered | Pixels | Pixels[] | Environment, options?: WriteOptions): Promise<Uint8Array>;
 
 /** Irradiance E divided by π. size: width of a face, or height; default 32. */
 export function irradiance(environment: Environment, options?: {size?: number; layout?: 'cube' | 'latlong'} & Work): Promise<Image>;

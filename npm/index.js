@@ -5,15 +5,16 @@ import {aborted, DomelightError} from './errors.js';
 export {DomelightError};
 
 const isNode = typeof process === 'object' && !!process.versions?.node && !globalThis.Deno;
-const settings = {module: undefined, files: undefined, worker: undefined};
+const settings = {module: undefined, files: undefined, bake: undefined, worker: undefined};
 
 /// What the next worker is started with. Call it before anything else.
 ///
 /// module   the WebAssembly module: a URL, its bytes, or a WebAssembly.Module; the default is domelight.wasm beside this file
 /// files    the same of the module that read() uses; the default is domelight-files.wasm beside this file
+/// bake     the same of the module that bakeFiles() and write() use; the default is domelight-bake.wasm beside this file
 /// worker   the URL of worker.js; the default is the one beside this file
-export function configure({module, files, worker} = {}) {
-    Object.assign(settings, {module, files, worker});
+export function configure({module, files, bake, worker} = {}) {
+    Object.assign(settings, {module, files, bake, worker});
 }
 
 /// A worker of browsers or of Node, by the few functions that are used of either.
@@ -111,7 +112,7 @@ class Host {
                 });
         });
         const place = module => (module instanceof URL ? module.href : module);
-        await this.#send('start', {module: place(settings.module), files: place(settings.files)}, {});
+        await this.#send('start', {module: place(settings.module), files: place(settings.files), bake: place(settings.bake)}, {});
     }
 
     /// Sends one message and waits for its answer. Also used by `prepare`, while its call has the worker.
@@ -227,10 +228,17 @@ class Remote {
 
 /// Light from every direction. read() and fromPixels() make one.
 export class Environment extends Remote {
-    constructor(make, {id, info, warnings}) {
-        super(make, {id});
+    #open;
+    constructor(open, {id, info, warnings}) {
+        super(open, {id});
+        this.#open = open;
         Object.assign(this, info);
         this.openingWarnings = warnings;
+    }
+    /// Opens it once more, in the library that writes files. Its number there; for `prepare`.
+    async forBaking(worker) {
+        await this.in(worker);
+        return (await this.#open(worker, true)).id;
     }
     /// Radiance that arrives from a direction of three numbers: [r, g, b].
     radiance(direction) {
@@ -292,13 +300,13 @@ async function loadUrl(source) {
 export async function read(source, {signal, ...options} = {}) {
     if (signal?.aborted) throw aborted(signal);
     const {bytes, name} = await load(source);
-    return made(worker => worker.send('read', {source: bytes, options: {name, ...options}}), signal);
+    return made((worker, baking) => worker.send('read', {source: bytes, options: {name, ...options}, baking}), signal);
 }
 
 export async function fromPixels(pixels, options) {
     // The worker gets a copy, and so does this object, in case that the worker ends.
     const copy = {...pixels, data: pixels?.data?.slice?.()};
-    return made(worker => worker.send('fromPixels', {pixels: copy, options}));
+    return made((worker, baking) => worker.send('fromPixels', {pixels: copy, options, baking}));
 }
 
 function check(environment, kind = Environment) {
@@ -318,6 +326,18 @@ export const bake = about('bake');
 export const irradiance = about('irradiance');
 export const sphericalHarmonics = about('sphericalHarmonics');
 export const lights = about('lights');
+
+/// Everything that `domelight bake` writes for engines: [{name, data}].
+export async function bakeFiles(environment, {progress, signal, ...options} = {}) {
+    check(environment);
+    return host.call('bakeFiles', async worker => ({id: await environment.forBaking(worker), options}), {progress, signal});
+}
+
+/// The bytes of one file: of encoded texels as bake() and encode() give them, of pixels, or of an environment as a lat-long map.
+export async function write(what, {signal, ...options} = {}) {
+    const given = what instanceof Environment ? await what.latlong() : what;
+    return host.call('write', () => ({what: given, options}), {signal});
+}
 
 export const brdfTable = ({signal, ...options} = {}) => host.call('brdfTable', () => ({options}), {signal});
 export const encode = (levels, {signal, ...options} = {}) => host.call('encode', () => ({levels, options}), {signal});

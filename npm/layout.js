@@ -76,5 +76,9 @@ export const lightStruct = struct(
 export const encodeOptionsStruct = struct(['encoding', 'pointer'], ['quality', 'pointer'], ['threads', 'i32']);
 export const textureInfoStruct = struct(['width', 'i32'], ['height', 'i32'], ['faces', 'i32'], ['levels', 'i32'], ['block', 'i32'], ['blockBytes', 'i32']);
 export const encodingReportStruct = struct(['clippedTexels', 'i64'], ['clippedEnergy', 'f64'], ['rmsError', 'f64'], ['logPsnr', 'f64']);
+export const bakeOptionsStruct = struct(
+    ...['engines', 'layout', 'lobe', 'texels', 'encoding', 'encodingQuality', 'format', 'latlongOut', 'irradianceQuantity', 'shWindow', 'brdfMasking', 'roughness',
+        'roughnessCount', 'exponents', 'exponentCount', 'progress', 'progressData'].map(name => [name, 'pointer']),
+    ...['size', 'levels', 'irradianceSize', 'brdfSize', 'shBands', 'preview', 'hashes', 'threads'].map(name => [name, 'i32']));
 /// domelight_light_samples: nine arrays.
 export const sampleArrays = ['u', 'v', 'x', 'y', 'z', 'r', 'g', 'b', 'pdf'];

@@ -1,6 +1,6 @@
 // The library on this thread: the functions of index.d.ts without promises. For workers of your own, and for scripts.
 import type {
-    BakeOptions, Encoding, Engine, Filtered, Image, LevelSpec, Light, Pixels, PrefilterOptions, ReadOptions, Samples, Sequence, Texture,
+    Baked, BakeFilesOptions, BakeOptions, Encoding, Filtered, Image, Light, Pixels, PrefilterOptions, ReadOptions, Samples, Sequence, Texture, WriteOptions,
 } from './index.js';
 
 /** Starts an instance of the module. `module`: a URL, its bytes, or a compiled one; default: domelight.wasm beside this file. */
@@ -20,7 +20,7 @@ export class LibraryEnvironment {
 
 export class LibraryProbeFilter {
     private constructor();
-    bake(cube: Pixels): Texture & Pick<Filtered, 'irradianceOverPi' | 'sh' | 'mean'> & {engine: Engine; specs: LevelSpec[]};
+    bake(cube: Pixels): Baked;
     close(): void;
 }
 
@@ -41,8 +41,10 @@ export class Library {
     read(bytes: ArrayBuffer | ArrayBufferView, options?: Omit<ReadOptions, 'signal'>): LibraryEnvironment;
     fromPixels(pixels: Pixels, options?: {worldToSource?: ArrayLike<number>}): LibraryEnvironment;
     prefilter(environment: LibraryEnvironment, options?: PrefilterOptions): Filtered;
-    bake(environment: LibraryEnvironment, options?: BakeOptions):
-        Texture & Pick<Filtered, 'irradianceOverPi' | 'sh' | 'mean'> & {engine: Engine; specs: LevelSpec[]};
+    bake(environment: LibraryEnvironment, options?: BakeOptions): Baked;
+    /** Only of domelight-bake.wasm, as write(). */
+    bakeFiles(environment: LibraryEnvironment, options?: BakeFilesOptions): {name: string; data: Uint8Array}[];
+    write(what: Texture | Filtered | Pixels | Pixels[] | LibraryEnvironment, options?: Omit<WriteOptions, 'signal'>): Uint8Array;
     probeFilter(options?: Omit<BakeOptions, 'progress' | 'signal'> & {cubeSize?: number}): LibraryProbeFilter;
     irradiance(environment: LibraryEnvironment, options?: {size?: number; layout?: 'cube' | 'latlong'}): Image;
     sphericalHarmonics(environment: LibraryEnvironment, options?: {bands?: number; quantity?: string; window?: string}): Float64Array;

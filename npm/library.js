@@ -6,27 +6,10 @@ import {
     prefilterOptionsStruct, sampleArrays, samplerOptionsStruct, textureInfoStruct,
 } from './layout.js';
 import {compile, Instance} from './module.js';
+import {check, checkEncoding, integer, integer64, number} from './options.js';
+import {pixelsIn} from './pixels.js';
 import {bakePlan, levelSpecs} from './plan.js';
-
-/// Names that an options object may have; any other is a mistake, and is named.
-function check(options, ...names) {
-    if (options === undefined || options === null) return {};
-    if (typeof options !== 'object') throw new DomelightError('The options are not an object');
-    for (const name of Object.keys(options))
-        if (!names.includes(name)) throw new DomelightError('is not an option', name, `Options: ${names.join(', ')}.`);
-    return options;
-}
-
-function number(value, field) {
-    if (value === undefined) return undefined;
-    if (typeof value !== 'number') throw new DomelightError(`is ${typeof value === 'object' ? 'an object' : JSON.stringify(value)}, not a number`, field);
-    return value;
-}
-
-function integer(value, field) {
-    if (value !== undefined && !(Number.isInteger(value) && Math.abs(value) < 2 ** 31)) throw new DomelightError(`${value} is not a whole number`, field);
-    return value;
-}
+import {bakeToFiles, pictureFile, textureFile} from './writing.js';
 
 const environmentWords = ['projection', 'latlong', 'layer', 'faces', 'faceOrientation', 'decode', 'negatives', 'up'];
 
@@ -74,18 +57,12 @@ export class Library {
         const {worldToSource} = check(options, 'worldToSource');
         return this.#instance.scope(scope => {
             const turn = worldToSource ? scope.copy(matrix(worldToSource)) : 0;
-            return this.#environment(scope.handle('domelight_environment_from_pixels', this.#pixels(scope, pixels), turn));
+            return this.#environment(scope.handle('domelight_environment_from_pixels', pixelsIn(scope, pixels), turn));
         });
     }
 
     #environment(handle) {
         return new LibraryEnvironment(this, this.#instance, handle);
-    }
-
-    /// Pixels of JavaScript in the module's memory.
-    #pixels(scope, pixels) {
-        const {data, width, height, faces, channels} = checkPixels(pixels);
-        return scope.struct(pixelsStruct, {data: scope.copy(data), width, height, faces, channels, bits: 8 * data.BYTES_PER_ELEMENT});
     }
 
     /// Everything that is filtered, in one reading of the environment.
@@ -124,16 +101,22 @@ export class Library {
     }
 
     #filtered(environment, options, progress, signal, use) {
+        return this.#watched(progress, signal, (scope, address) => scope.handle(
+            'domelight_prefilter', handleOf(environment, LibraryEnvironment), this.#filterOptions(scope, options, address)), handle => this.#useFiltered(handle, use));
+    }
+
+    /// What `work` returns, which is given the address of the progress callback, and what `use` makes of that.
+    #watched(progress, signal, work, use = result => result) {
         return this.#instance.scope(scope => {
-            const told = this.#progress(progress, signal), given = this.#filterOptions(scope, options, told?.address);
-            let handle;
+            const told = this.#progress(progress, signal);
+            let result;
             try {
-                handle = scope.handle('domelight_prefilter', handleOf(environment, LibraryEnvironment), given);
+                result = work(scope, told?.address);
             } catch (error) {
                 if (told?.thrown) throw told.thrown;
                 throw error.cancelled ? aborted(signal) : error;
             }
-            return this.#useFiltered(handle, use);
+            return use(result);
         });
     }
 
@@ -168,11 +151,11 @@ export class Library {
         const plan = bakePlan({size: cubeSize, ...asked}), instance = this.#instance;
         const handle = instance.scope(scope => scope.handle('domelight_probe_filter_make', integer(cubeSize ?? plan.levels[0].size, 'cubeSize'), this.#filterOptions(scope, plan)));
         return new LibraryProbeFilter(instance, handle, pixels => instance.scope(scope => this.#useFiltered(
-            scope.handle('domelight_probe_filter_filter', handle, this.#pixels(scope, pixels)), filtered => this.#baked(filtered, plan, quality))));
+            scope.handle('domelight_probe_filter_filter', handle, pixelsIn(scope, pixels)), filtered => this.#baked(filtered, plan, quality))));
     }
 
     #baked(handle, plan, quality) {
-        return {engine: plan.engine, ...this.#encoded({handle}, {encoding: plan.encoding, quality}), ...this.#results(handle, plan), specs: plan.levels};
+        return {engine: plan.engine, mirrored: !!plan.worldToSource, ...this.#encoded({handle}, {encoding: plan.encoding, quality}), ...this.#results(handle, plan), specs: plan.levels};
     }
 
     /// The progress callback as the library calls it. What it throws stops the work, and is thrown again after that.
@@ -252,10 +235,14 @@ export class Library {
         return this.#encoded({list}, {encoding, quality});
     }
 
-    #encoded({handle, list}, {encoding, quality}) {
+    #encoded(levels, options) {
+        return this.#withTexture(levels, options, (scope, texture) => this.#texture(scope, texture, options.encoding ?? 'rgba16f'));
+    }
+
+    /// What `use` makes of a texture: a filtered environment, or a list of pixels, encoded.
+    #withTexture({handle, list}, {encoding, quality}, use) {
         const instance = this.#instance;
-        if (/^(uastc|astc)/.test(encoding ?? ''))
-            throw new DomelightError(`${encoding} is not in the WebAssembly module`, 'encoding', 'The command line encodes it; here use bc6h or rgba16f.');
+        checkEncoding(encoding, this.#writesFiles);
         return instance.scope(scope => {
             const options = scope.options('encode_options', encodeOptionsStruct, {encoding: scope.word(encoding, 'encoding'), quality: scope.word(quality, 'quality')});
             let texture;
@@ -264,17 +251,50 @@ export class Library {
             } else {
                 const all = scope.bytes(pixelsStruct.size * Math.max(list.length, 1));
                 list.forEach((level, l) => {
-                    const one = this.#pixels(scope, level);
+                    const one = pixelsIn(scope, level);
                     instance.bytes(all + l * pixelsStruct.size, pixelsStruct.size).set(instance.bytes(one, pixelsStruct.size));
                 });
                 texture = scope.handle('domelight_encode', all, list.length, options);
             }
             try {
-                return this.#texture(scope, texture, encoding ?? 'rgba16f');
+                return use(scope, texture);
             } finally {
                 instance.call('domelight_texture_free', texture);
             }
         });
+    }
+
+    get #writesFiles() {
+        return !!this.#instance.exports.domelight_texture_file;
+    }
+    #checkWriting() {
+        if (!this.#writesFiles) throw new DomelightError('The WebAssembly module writes no files', '', 'domelight-bake.wasm does: load() it as `module`.');
+    }
+
+    /// Everything that `domelight bake` writes for engines, as [{name, data}].
+    bakeFiles(environment, options) {
+        this.#checkWriting();
+        const {progress, signal, ...given} = options ?? {};
+        return this.#watched(progress, signal, (scope, address) => bakeToFiles(this.#instance, scope, handleOf(environment, LibraryEnvironment), given, address));
+    }
+
+    /// The bytes of one file: of encoded texels as bake() and encode() give them, of pixels, or of an environment as a lat-long map.
+    write(what, options) {
+        this.#checkWriting();
+        const {format = 'ktx2', encoding, quality, metadata, supercompression} = check(options, 'format', 'encoding', 'quality', 'metadata', 'supercompression');
+        if (typeof what !== 'object' || what === null)
+            throw new DomelightError('The first argument is neither pixels nor a texture', '', 'bake(), encode() and prefilter() make what can be written.');
+        if (what instanceof LibraryEnvironment) return this.write(what.latlong(), options);
+        if (metadata !== undefined && (typeof metadata !== 'object' || metadata === null)) throw new DomelightError('is not an object of texts', 'metadata');
+        const instance = this.#instance, levels = Array.isArray(what) ? what : what?.levels ?? [what];
+        if (format === 'exr' || format === 'hdr') return pictureFile(instance, levels, {format, encoding, quality, metadata, supercompression});
+        const file = {format, metadata, supercompression, sh: what?.sh, mirrored: !!what?.mirrored};
+        if (levels[0]?.data instanceof Uint8Array) {
+            if (encoding !== undefined && encoding !== what.encoding) throw new DomelightError(`is ${encoding}, but the texels are ${what.encoding}`, 'encoding', 'Leave it out.');
+            return textureFile(instance, what, file);
+        }
+        return this.#withTexture({list: levels.map(({data, width, height, faces, channels}) => ({data, width, height, faces, channels}))},
+                                 {encoding: encoding ?? (format === 'env' ? 'rgbd' : undefined), quality}, (_, texture) => textureFile(instance, texture, file));
     }
 
     #texture(scope, texture, encoding) {
@@ -457,23 +477,4 @@ function triples(values, field) {
 function matrix(values) {
     if (values?.length !== 9) throw new DomelightError('is not nine numbers, a 3 x 3 matrix by rows', 'worldToSource');
     return Float64Array.from(values);
-}
-
-function integer64(value, field) {
-    if (value !== undefined && !Number.isSafeInteger(value)) throw new DomelightError(`${value} is not a whole number`, field);
-    return value;
-}
-
-/// The shape of pixels, which must fit the array.
-function checkPixels(pixels) {
-    const {data, width, height, faces = 1, channels = 3} = check(pixels, 'data', 'width', 'height', 'faces', 'channels', 'roughness', 'exponent', 'lobe', 'size');
-    const known = data instanceof Float32Array || data instanceof Uint16Array || (typeof Float16Array === 'function' && data instanceof Float16Array);
-    if (!known) throw new DomelightError('is neither a Float32Array nor a Uint16Array of half floats', 'data');
-    for (const [name, value] of Object.entries({width, height, faces, channels}))
-        if (!(Number.isInteger(value) && value >= 1)) throw new DomelightError(`${value} is not a whole number above 0`, name);
-    const expected = width * height * faces * channels;
-    if (data.length !== expected)
-        throw new DomelightError(`has ${data.length} numbers, not ${expected}: width ${width}, height ${height}, faces ${faces}, channels ${channels}`, 'data',
-                                 data.length === 0 ? 'Its buffer may have been transferred to another thread.' : '');
-    return {data, width, height, faces, channels};
 }

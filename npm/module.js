@@ -60,7 +60,7 @@ export class Instance {
         return instance;
     }
 
-    /// The module opens no files; what its C library would write before it ends itself is kept as the message of the error.
+    /// The module opens no files, and has its clock from here; what its C library would write before it ends itself is kept as the message of the error.
     #imports(module) {
         const imports = {};
         for (const {module: from, name} of WebAssembly.Module.imports(module)) (imports[from] ??= {})[name] = () => 8;
@@ -76,6 +76,11 @@ export class Instance {
                 bytes += size;
             }
             this.view().setUint32(written, bytes, true);
+            return 0;
+        };
+        // Nanoseconds, of whichever clock: manifests of bakes state how long the stages took.
+        imports.wasi_snapshot_preview1.clock_time_get = (_, __, result) => {
+            this.view().setBigUint64(result >>> 0, BigInt(Math.round(1e6 * performance.now())), true);
             return 0;
         };
         imports.wasi_snapshot_preview1.proc_exit = () => {
@@ -103,6 +108,7 @@ export class Instance {
             this.broken = new DomelightError(`The WebAssembly module ended during ${name.replace('domelight_', '')}: not enough memory, or a fault`, '',
                                              'Smaller images or sizes need less. A new instance is made for the next call.');
             this.broken.fatal = true;
+            this.broken.cause = error;
             throw this.broken;
         }
     }

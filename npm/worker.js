@@ -3,11 +3,12 @@
 import {DomelightError} from './errors.js';
 import {load} from './library.js';
 
-/// The library without decoders, and the one with them, which is a third larger: each is loaded when it is first used.
+/// The library without decoders, the one with them, and the one that also writes files: each is larger than the one before, and loaded when it is first used.
 let given = {};
-let small, large;
+let small, large, baking;
 const smallLibrary = async () => (small ??= await load(given.module ? {module: given.module} : {}));
 const largeLibrary = async () => (large ??= await load({module: given.files ?? new URL('./domelight-files.wasm', import.meta.url)}));
+const bakingLibrary = async () => (baking ??= await load({module: given.bake ?? new URL('./domelight-bake.wasm', import.meta.url)}));
 const objects = new Map();
 let last = 0;
 
@@ -23,12 +24,12 @@ const calls = {
     start(settings) {
         given = settings;
     },
-    async read({source, options}) {
-        const opened = (await largeLibrary()).read(source, options);
+    async read({source, options, baking}) {
+        const opened = (await (baking ? bakingLibrary() : largeLibrary())).read(source, options);
         return {id: keep(opened), info: opened.info, warnings: opened.warnings};
     },
-    async fromPixels({pixels, options}) {
-        const opened = (await smallLibrary()).fromPixels(pixels, options);
+    async fromPixels({pixels, options, baking}) {
+        const opened = (await (baking ? bakingLibrary() : smallLibrary())).fromPixels(pixels, options);
         return {id: keep(opened), info: opened.info, warnings: []};
     },
     close({id}) {
@@ -37,6 +38,15 @@ const calls = {
     },
     prefilter: ({id, options}, progress) => home(id).prefilter(environment(id), {...options, progress}),
     bake: ({id, options}, progress) => home(id).bake(environment(id), {...options, progress}),
+    /// `id`: an environment that was opened for this, in the library that writes files.
+    bakeFiles({id, options}, progress) {
+        try {
+            return home(id).bakeFiles(environment(id), {...options, progress});
+        } finally {
+            calls.close({id});
+        }
+    },
+    write: async ({what, options}) => (await bakingLibrary()).write(what, options),
     irradiance: ({id, options}) => home(id).irradiance(environment(id), options),
     sphericalHarmonics: ({id, options}) => home(id).sphericalHarmonics(environment(id), options),
     lights: ({id, options}) => home(id).lights(environment(id), options),
@@ -50,7 +60,7 @@ const calls = {
     sampler: ({id, options}) => ({id: keep(home(id).sampler(environment(id), options))}),
     sample: ({id, points}) => objects.get(id).sample(points),
     lookUp: ({id, directions}) => objects.get(id).lookUp(directions),
-    memory: () => (small?.memoryBytes ?? 0) + (large?.memoryBytes ?? 0),
+    memory: () => [small, large, baking].reduce((sum, library) => sum + (library?.memoryBytes ?? 0), 0),
 };
 
 /// All array buffers in a value, which are handed over and not copied.
@@ -70,7 +80,7 @@ async function answer({id, name, given}) {
         send({id, reply}, [...new Set(buffersOf(reply))]);
     } catch (error) {
         const {what, field, hint} = error instanceof DomelightError ? error : {what: String(error?.message ?? error), field: '', hint: ''};
-        send({id, error: {what, field, hint}, broken: !!(small?.broken || large?.broken)});
+        send({id, error: {what, field, hint}, broken: [small, large, baking].some(library => library?.broken)});
     }
 }
 

@@ -4,7 +4,6 @@
 #include "scene/gltf/gltf_document.h"
 #include "scene/gltf/gltf_image_light.h"
 #include "texture/block/astc_codec.h"
-#include "texture/block/uastc_hdr.h"
 
 #include <cstdlib>
 #include <string>
@@ -39,9 +38,6 @@ void encode_astc_hdr(int, const float*, int, EncodingQuality, std::uint8_t*) {
     std::abort();
 }
 void decode_astc_hdr(int, const std::uint8_t*, int, float*) {
-    std::abort();
-}
-void encode_uastc_hdr(const float*, int, EncodingQuality, std::uint8_t*) {
     std::abort();
 }
 }  // namespace domelight

@@ -2,7 +2,6 @@
 
 #include "io/file/byte_source.h"
 #include "io/file/file_reader.h"
-#include "io/file/sha256.h"
 
 #include <filesystem>
 #include <string_view>
@@ -34,14 +33,6 @@ FileSource::~FileSource() = default;
 FileSource::FileSource(FileSource&& other) noexcept = default;
 Result<void> FileSource::read(std::uint64_t, std::span<std::uint8_t>, const char*) {
     return no_files("");
-}
-
-/// Nothing that the module exports tells hashes.
-std::string sha256(std::span<const std::uint8_t>) {
-    return "";
-}
-Result<std::string> sha256_files(std::span<const std::filesystem::path>) {
-    return std::string();
 }
 
 }  // namespace domelight

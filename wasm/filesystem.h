@@ -7,6 +7,9 @@
 
 _LIBCPP_BEGIN_NAMESPACE_FILESYSTEM
 
+inline bool exists(const path&) {
+    return false;
+}
 inline bool exists(const path&, error_code& code) {
     code.clear();
     return false;

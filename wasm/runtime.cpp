@@ -14,4 +14,9 @@ void __cxa_throw(void*, void*, void (*)(void*)) {
     std::abort();
 }
 
+// The module never ends, so nothing of its one thread is destroyed.
+int __cxa_thread_atexit(void (*)(void*), void*, void*) noexcept {
+    return 0;
+}
+
 }  // extern "C"

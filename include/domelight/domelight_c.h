@@ -405,6 +405,19 @@ typedef struct domelight_encoding_report {
 } domelight_encoding_report;
 DOMELIGHT_API domelight_error* domelight_texture_report(const domelight_texture* texture, size_t level,
                                                         domelight_encoding_report* report);
+/* A texture of texels that are encoded already, such as those of domelight_texture_level(): to be written as a file. They
+ * are copied.
+ *
+ * info       width, height, faces and levels; its other fields are ignored
+ * encoding   as in domelight_encode_options
+ * levels     info->levels addresses, each of a level's bytes in the form of domelight_texture_level()
+ * sizes      how many bytes each level has, which must be as many as the encoding needs */
+DOMELIGHT_API domelight_error* domelight_texture_from_levels(const domelight_texture_info* info, const char* encoding,
+                                                             const void* const* levels, const size_t* sizes,
+                                                             domelight_texture** texture);
+/* Spherical harmonics of the radiance, from which a .env file gets its diffuse light: bands * bands coefficients of three
+ * numbers each, in the form of domelight_filtered_sh(). bands: 0 (none) to 64. */
+DOMELIGHT_API domelight_error* domelight_texture_set_sh(domelight_texture* texture, const double* rgb, int32_t bands);
 /* Sets a key of the texture's metadata (KTX2 and KTX); value NULL removes it. */
 DOMELIGHT_API domelight_error* domelight_texture_set_metadata(domelight_texture* texture, const char* key,
                                                               const char* value);

@@ -26,7 +26,6 @@
 
 #include <chrono>
 #include <ctime>
-#include <future>
 #include <map>
 #include <memory>
 
@@ -397,11 +396,10 @@ Result<BakeReport> bake(const Environment& environment, const BakeOptions& optio
     SourceReport source = describe_source(environment, files);
     const std::string stem = stem_of(files);
 
-    std::future<Result<std::string>> hashing;
+    BackgroundTask<Result<std::string>> hashing;
     if (options.hashes && !files.empty())
-        hashing = std::async(k_in_background, [&] {
-            return files == environment.files ? environment_sha256(environment) : sha256_files(files);
-        });
+        hashing = in_background<Result<std::string>>(
+            [&] { return files == environment.files ? environment_sha256(environment) : sha256_files(files); });
 
     FilterJob job(*plans, environment, options);
     {

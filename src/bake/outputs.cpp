@@ -20,20 +20,18 @@ void Background::start(std::function<Result<void>()> task) {
     if (at_once_) {
         done(task());
     } else {
-        tasks_.push_back(std::async(k_in_background, std::move(task)));
+        tasks_.push_back(in_background<Result<void>>(std::move(task)));
     }
 }
 
 void Background::done(Result<void> result) {
-    std::promise<Result<void>> promise;
-    tasks_.push_back(promise.get_future());
-    promise.set_value(std::move(result));
+    tasks_.push_back(finished_task(std::move(result)));
 }
 
 namespace {
 
 /// What a task returned. A lack of memory in it is an error like any other.
-Result<void> outcome_of(std::future<Result<void>>& task) {
+Result<void> outcome_of(BackgroundTask<Result<void>>& task) {
     try {
         return task.get();
     } catch (const std::bad_alloc&) {

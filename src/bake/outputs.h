@@ -4,18 +4,15 @@
 
 #include "bake/plan.h"
 #include "bake/staging.h"
+#include "base/background_task.h"
 #include "texture/texel_order.h"
 
 #include <functional>
-#include <future>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace domelight {
-
-/// In another thread; where none can be started, at the time when the result is asked for.
-inline constexpr std::launch k_in_background = std::launch::async | std::launch::deferred;
 
 /// Writing and hashing in the background of a bake. With one thread each task runs immediately.
 class Background {
@@ -31,7 +28,7 @@ class Background {
 
   private:
     bool at_once_;
-    std::vector<std::future<Result<void>>> tasks_;
+    std::vector<BackgroundTask<Result<void>>> tasks_;
 };
 
 /// How one map is stored.

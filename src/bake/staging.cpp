@@ -33,7 +33,7 @@ Staging::~Staging() {
 }
 
 fs::path Staging::stage(const std::string& name) {
-    const std::lock_guard lock(*mutex_);
+    const Lock lock(*mutex_);
     // The ending of the name is kept, because some writers depend on it.
     const fs::path temporary = temporary_name(folder_ / fs::path(name).filename());
     files_.push_back({name, temporary, std::make_unique<TemporaryFileGuard>(temporary.string())});

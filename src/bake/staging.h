@@ -2,11 +2,11 @@
 
 #include "domelight/base/result.h"
 
+#include "base/mutex.h"
 #include "io/file/temporary_files.h"
 
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -44,7 +44,7 @@ class Staging {
     std::vector<std::filesystem::path> inputs_;
     std::vector<std::filesystem::path> created_folders_;  ///< outermost first
     std::vector<File> files_;
-    std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();
+    std::unique_ptr<Mutex> mutex_ = std::make_unique<Mutex>();
 };
 
 }  // namespace domelight

@@ -5,12 +5,15 @@
 #include "c/pixels.h"
 
 #include <algorithm>
+#include <bit>
+#include <utility>
 
 using namespace domelight;
 
 namespace {
 
 constexpr domelight_encode_options k_options{};
+constexpr int k_max_side = 32768, k_max_sh_bands = 64;
 
 struct EncodeRequest {
     Encoding encoding;
@@ -68,6 +71,29 @@ Result<void> encode_table(const domelight_pixels& table, const EncodeRequest& re
                        std::vector<Vec3d>());
 }
 
+/// A texture of the stated size whose levels are empty.
+Result<Texture> empty_texture(const domelight_texture_info* info, const char* encoding) {
+    const auto given = c::read_struct(info, {});
+    if (!given) return given.error();
+    const auto known = c::read_word(encoding, Encoding::rgba16f, "encoding");
+    if (!known) return known.error();
+    if (given->faces != 1 && given->faces != 6)
+        return Error{text(given->faces, " is neither 1 nor 6"), field_place("faces"), ""};
+    for (const auto& [size, name] : {std::pair(given->width, "width"), std::pair(given->height, "height")})
+        if (size < 1 || size > k_max_side)
+            return Error{text(size, " is not from 1 to ", k_max_side), field_place(name), ""};
+    const int most = std::bit_width(unsigned(std::max(given->width, given->height)));
+    if (given->levels < 1 || given->levels > most)
+        return Error{text(given->levels, " is not from 1 to ", most), field_place("levels"), ""};
+    Texture texture;
+    texture.encoding = *known;
+    texture.width = given->width;
+    texture.height = given->height;
+    texture.faces = given->faces;
+    texture.levels.resize(std::size_t(given->levels));
+    return texture;
+}
+
 }  // namespace
 
 extern "C" {
@@ -104,6 +130,42 @@ domelight_error* domelight_encode_filtered(const domelight_filtered* filtered, c
         const auto request = read_options(options);
         if (!request) return request.error();
         return encode_maps(filtered->result.specular, *request, filtered->result.sh, texture);
+    });
+}
+
+domelight_error* domelight_texture_from_levels(const domelight_texture_info* info, const char* encoding,
+                                               const void* const* levels, const size_t* sizes,
+                                               domelight_texture** texture) {
+    return c::guarded([&]() -> Result<void> {
+        if (auto ok = c::check_given({{info, "info"}, {levels, "levels"}, {sizes, "sizes"}, {texture, "texture"}}); !ok)
+            return ok;
+        auto made = empty_texture(info, encoding);
+        if (!made) return made.error();
+        for (std::size_t l = 0; l < made->levels.size(); ++l) {
+            if (auto ok = c::check_given({{levels[l], "levels"}}); !ok) return ok;
+            const std::int64_t blocks = std::int64_t(made->level_columns(int(l))) * made->level_rows(int(l));
+            const std::int64_t expected = blocks * encoding_bytes(made->encoding) * made->faces;
+            if (std::int64_t(sizes[l]) != expected)
+                return Error{text("level ", int(l), " has ", std::int64_t(sizes[l]), " bytes, not ", expected),
+                             field_place("levels"), ""};
+            const auto* bytes = static_cast<const std::uint8_t*>(levels[l]);
+            made->levels[l].assign(bytes, bytes + sizes[l]);
+        }
+        const std::size_t count = made->levels.size();
+        return c::hand_out(texture, *std::move(made), std::vector<EncodingReport>(count), std::vector<Vec3d>());
+    });
+}
+
+domelight_error* domelight_texture_set_sh(domelight_texture* texture, const double* rgb, int32_t bands) {
+    return c::guarded([&]() -> Result<void> {
+        if (auto ok = c::check_given({{texture, "texture"}}); !ok) return ok;
+        if (bands < 0 || bands > k_max_sh_bands)
+            return Error{text(bands, " is not from 0 to ", k_max_sh_bands), field_place("bands"), ""};
+        if (bands > 0)
+            if (auto ok = c::check_given({{rgb, "rgb"}}); !ok) return ok;
+        texture->sh.clear();
+        for (int k = 0; k < bands * bands; ++k) texture->sh.push_back({rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2]});
+        return {};
     });
 }
 

@@ -39,6 +39,18 @@ std::vector<float> light_of(const domelight_environment* environment) {
     return {floats.begin(), floats.end()};
 }
 
+/// A texture of the same texels, and of nothing else that the first one has.
+void copy_texels(const domelight_texture* texture, const char* encoding, domelight_texture** copy) {
+    domelight_texture_info info{};
+    info.struct_size = sizeof info;
+    CHECK_DONE(domelight_texture_get_info(texture, &info));
+    std::vector<const void*> levels(std::size_t(info.levels));
+    std::vector<std::size_t> sizes(levels.size());
+    for (std::size_t l = 0; l < levels.size(); ++l)
+        CHECK_DONE(domelight_texture_level(texture, l, &levels[l], &sizes[l]));
+    CHECK_DONE(domelight_texture_from_levels(&info, encoding, levels.data(), sizes.data(), copy));
+}
+
 }  // namespace
 
 TEST_SUITE("c") {
@@ -183,6 +195,15 @@ TEST_SUITE("c") {
             CHECK_DONE(domelight_texture_write(texture, file.c_str(), format, packing));
             const auto written = bytes_of(file);
             CHECK(std::equal(written.begin(), written.end(), expected.begin(), expected.end()));
+            // The same of its texels alone.
+            OwnedTexture copy;
+            copy_texels(texture, encoding, copy.place());
+            CHECK_DONE(domelight_texture_set_metadata(copy, "note", "of a test"));
+            Owned<domelight_bytes, domelight_bytes_free> again;
+            CHECK_DONE(domelight_texture_file(copy, format, packing, again.place()));
+            data = domelight_bytes_data(again, &size);
+            CHECK(size == expected.size());
+            CHECK(std::memcmp(data, expected.data(), std::min(size, expected.size())) == 0);
         };
         Texture texture = encode_texture(maps->specular, Encoding::rgba16f, 1);
         texture.metadata["note"] = "of a test";
@@ -208,6 +229,37 @@ TEST_SUITE("c") {
             said(domelight_texture_write(half, "a.png", nullptr, nullptr)).starts_with("a.png: does not end in .ktx2"));
         CHECK(
             said(domelight_texture_write(half, "/nowhere/a.ktx2", nullptr, nullptr)).starts_with("/nowhere/a.ktx2: "));
+    }
+
+    TEST_CASE("c: texels that are no texture's are refused") {
+        domelight_texture_info info{};
+        info.struct_size = sizeof info;
+        info.width = info.height = 4;
+        info.faces = info.levels = 1;
+        const std::vector<std::uint8_t> bytes(4 * 4 * 8);
+        const void* levels[] = {bytes.data(), bytes.data()};
+        std::size_t sizes[] = {bytes.size(), bytes.size()};
+        OwnedTexture texture;
+        const auto made = [&](const char* encoding) {
+            return domelight_texture_from_levels(&info, encoding, levels, sizes, texture.place());
+        };
+        CHECK_DONE(made(nullptr));
+        CHECK(said(made("rgba32f")) == "`levels`: level 0 has 128 bytes, not 256");
+        CHECK(said(made("rgba64f")).starts_with("`encoding`: "));
+        info.levels = 2;
+        CHECK(said(made(nullptr)) == "`levels`: level 1 has 128 bytes, not 32");
+        info.levels = 4;
+        CHECK(said(made(nullptr)) == "`levels`: 4 is not from 1 to 3");
+        info.levels = 1, info.faces = 2;
+        CHECK(said(made(nullptr)) == "`faces`: 2 is neither 1 nor 6");
+        info.faces = 1, info.width = 0;
+        CHECK(said(made(nullptr)).starts_with("`width`: 0 is not from 1 to "));
+        info.width = 4, levels[0] = nullptr;
+        CHECK(said(made(nullptr)).starts_with("`levels`"));
+        const double sh[3] = {1, 1, 1};
+        CHECK_DONE(domelight_texture_set_sh(texture, sh, 1));
+        CHECK(said(domelight_texture_set_sh(texture, sh, 65)) == "`bands`: 65 is not from 0 to 64");
+        CHECK(said(domelight_texture_set_sh(texture, nullptr, 1)).starts_with("`rgb`"));
     }
 
     TEST_CASE("c: a .env file holds the light where Babylon reads it") {
@@ -243,6 +295,14 @@ TEST_SUITE("c") {
         const auto env = read_env(file);
         REQUIRE(env);
         CHECK(env->irradiance.has_value());
+
+        // Of the texels alone and their harmonics the same file.
+        OwnedTexture copy;
+        copy_texels(texture, "rgbd", copy.place());
+        CHECK_DONE(domelight_texture_set_sh(copy, domelight_filtered_sh(filtered, nullptr), 3));
+        const std::string same = (folder / "b.env").string();
+        CHECK_DONE(domelight_texture_write(copy, same.c_str(), nullptr, nullptr));
+        CHECK(bytes_of(same) == bytes_of(file));
     }
 
     TEST_CASE("c: a conversion and its file are those of C++") {

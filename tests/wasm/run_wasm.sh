@@ -20,7 +20,7 @@ module=$root/build/wasm/domelight.wasm
 folder=$root/build/npm
 rm -rf "$folder"
 mkdir -p "$folder/package" "$folder/app"
-cp -r "$root"/npm/. "$root/LICENSE" "$root/NOTICE" "$module" "${module%.wasm}-files.wasm" "$folder/package/"
+cp -r "$root"/npm/. "$root/LICENSE" "$root/NOTICE" "$module" "${module%.wasm}-files.wasm" "${module%.wasm}-bake.wasm" "$folder/package/"
 node "$root/scripts/npm_inline.mjs" "$module" "$folder/package/inline.js"
 (cd "$folder" && npm pack --silent ./package) >"$folder/pack.log" 2>&1 || { cat "$folder/pack.log"; exit 1; }
 (cd "$folder/app" && npm init -y && npm install --no-audit --no-fund ../domelight-*.tgz) >"$folder/install.log" 2>&1 || { cat "$folder/install.log"; exit 1; }

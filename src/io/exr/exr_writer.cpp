@@ -3,6 +3,7 @@
 #include "domelight/io/file/atomic_file.h"
 #include "domelight/io/write_image.h"
 
+#include "io/exr/exr_levels.h"
 #include "io/exr/exr_stream.h"
 #include "io/exr/exr_writing.h"
 #include "io/file/output_file.h"
@@ -60,13 +61,6 @@ std::vector<const char*> exr_channel_names(int channels) {
     std::vector<const char*> names{"R", "G", "B", "A"};
     names.resize(std::size_t(channels));
     return names;
-}
-
-bool fits_half(ImageView<const float> pixels) {
-    for (int y = 0; y < pixels.height; ++y)
-        for (const float* v = pixels.row(y); v < pixels.row(y) + pixels.width * pixels.channels; ++v)
-            if (std::abs(*v) > k_half_max) return false;
-    return true;
 }
 
 Result<bool> fits_half(RowSource& rows) {
@@ -193,26 +187,6 @@ Result<void> write_exr_file(const std::filesystem::path& file,
         Result<void> finished = out.finish();
         return finished ? written : finished;
     });
-}
-
-// ImfEnvmap.h draws OpenEXR's: seen along its axis each face is the mirror image of OpenGL's, +X -X +Z -Z left to
-// right, +Y -Y top to bottom.
-ImageF exr_cube_strip(ImageView<const float> strip) {
-    ImageF turned(strip.width, strip.height, strip.channels);
-    const int size = strip.width, channels = strip.channels;
-    for (int f = 0; f < 6; ++f) {
-        const bool vertical = f == 2 || f == 3;
-        for (int y = 0; y < size; ++y) {
-            const float* from = strip.row(f * size + (vertical ? size - 1 - y : y));
-            float* to = turned.row(f * size + y);
-            if (vertical)
-                std::copy_n(from, size * channels, to);
-            else
-                for (int x = 0; x < size; ++x)
-                    std::copy_n(from + (size - 1 - x) * channels, channels, to + x * channels);
-        }
-    }
-    return turned;
 }
 
 Result<void> write_exr(const std::filesystem::path& file, ImageView<const float> pixels,

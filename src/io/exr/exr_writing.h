@@ -19,9 +19,6 @@ std::vector<const char*> exr_channel_names(int channels);
 /// compression or envmap, a cube that is not a strip, an attribute whose name belongs to another type.
 Result<Imf::Header> exr_header(int width, int height, int channels, bool half, const ExrWriteOptions& options);
 
-/// Faces from OpenGL's orientation to OpenEXR's.
-ImageF exr_cube_strip(ImageView<const float> strip);
-
 /// Writes a file through a stream; an exception from `write` becomes an error.
 Result<void> write_exr_file(const std::filesystem::path& file,
                             const std::function<Result<void>(ExrOutputStream& stream)>& write);
