@@ -79,8 +79,13 @@ def from_library(what: str, where: str, hint: str) -> Error:
     return Error(message, place, advice, field)
 
 
+def a_or_an(noun: str) -> str:
+    """The noun with its article."""
+    return f"{'an' if noun[:1].lower() in 'aeiou' else 'a'} {noun}"
+
+
 def wrong_type(keyword: str, value: object, expected: str) -> NoReturn:
     """Raises WrongType."""
     text = repr(value)
     shown = text if len(text) <= 40 else text[:37] + "..."
-    raise WrongType(f"{shown} is a {type(value).__name__}, expected {expected}", keyword, "", keyword)
+    raise WrongType(f"{shown} is {a_or_an(type(value).__name__)}, expected {expected}", keyword, "", keyword)

@@ -14,40 +14,48 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import torch
 
 from . import _core
-from ._errors import Error, from_library
-from .conventions import resolve
+from ._errors import Error, a_or_an, from_library
+from .conventions import CONVENTIONS, resolve
 
 __all__ = ["irradiance", "prefilter", "spherical_harmonics"]
 
-#: From world directions to those of the default lat-long convention: rows centre, up, right.
-_AXES = {
-    "default": ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
-    "usd": ((0, 0, 1), (0, 1, 0), (-1, 0, 0)),
-    "mitsuba": ((0, 0, 1), (0, 1, 0), (-1, 0, 0)),
-    "openexr": ((0, 0, 1), (0, 1, 0), (-1, 0, 0)),
-    "materialx": ((0, 0, -1), (0, 1, 0), (1, 0, 0)),
-    "mod": ((-1, 0, 0), (0, 1, 0), (0, 0, -1)),
-}
-_ROWS_ON_POLES, _COLUMNS_ON_EDGES = {"mitsuba", "openexr"}, {"openexr"}
+
+@dataclass(frozen=True)
+class _Layout:
+    """How an environment lies.
+
+    Attributes
+    ----------
+    world_to_source
+        From world directions to those of the default lat-long convention.
+    rows_on_poles, columns_on_edges
+        Whether the first and the last row (column) show the poles (the edges), and not the centres of texels there.
+    """
+
+    world_to_source: list[list[float]]
+    rows_on_poles: bool
+    columns_on_edges: bool
 
 
-def _convention(name: str) -> tuple[str, list[list[float]]]:
-    """The library's name of a convention, and the matrix from the world to the default convention."""
-    projection, turned_deg = resolve(name)
-    short = projection.removeprefix("latlong/")
-    if short == "latlong":
-        short = "default"
-    if short not in _AXES:
-        known = ", ".join([*_AXES, "nvdiffrec", "gaussianshader", "stanford-orb"])
-        raise Error(f'"{name}" is not a convention', "convention", f"Accepted: {known}.", "convention")
+def _layout(convention: str) -> _Layout:
+    projection, turned_deg = resolve(convention)
+    name = projection.removeprefix("latlong/")
+    known = _core.latlong_conventions()
+    if name == "latlong":
+        name = "default"
+    if name not in known:
+        accepted = ", ".join(dict.fromkeys([*known, *CONVENTIONS]))
+        raise Error(f'"{convention}" is not a convention', "convention", f"Accepted: {accepted}.", "convention")
+    matrix, rows_on_poles, columns_on_edges = known[name]
     sign = -1.0 if turned_deg == 180 else 1.0
-    return short, [[sign * x, float(y), sign * z] for x, y, z in _AXES[short]]
+    return _Layout([[sign * x, y, sign * z] for x, y, z in matrix], rows_on_poles, columns_on_edges)
 
 
 def _between(length: int) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
@@ -57,10 +65,10 @@ def _between(length: int) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
     return before, (before + 1).clamp(max=length - 1), place - before
 
 
-def _to_centres(environment: torch.Tensor, convention: str) -> torch.Tensor:
+def _to_centres(environment: torch.Tensor, layout: _Layout) -> torch.Tensor:
     """The same light at texel centres, where the convention has its samples elsewhere."""
-    for axis, names in ((0, _ROWS_ON_POLES), (1, _COLUMNS_ON_EDGES)):
-        if convention in names:
+    for axis, elsewhere in ((0, layout.rows_on_poles), (1, layout.columns_on_edges)):
+        if elsewhere:
             before, after, weight = (each.to(environment.device) for each in _between(environment.shape[axis]))
             weight = weight.to(environment.dtype).reshape(-1, *[1] * (2 - axis))
             environment = torch.lerp(
@@ -71,7 +79,7 @@ def _to_centres(environment: torch.Tensor, convention: str) -> torch.Tensor:
 
 def _checked(environment: torch.Tensor) -> torch.Tensor:
     if not isinstance(environment, torch.Tensor):
-        raise from_library(f"a {type(environment).__name__} is no torch.Tensor", "`environment`", "")
+        raise from_library(f"{a_or_an(type(environment).__name__)} is no torch.Tensor", "`environment`", "")
     if environment.ndim != 3 or environment.shape[2] != 3:
         shape = tuple(environment.shape)
         raise from_library(f"shape is {shape}, expected (height, width, 3)", "`environment`", "")
@@ -123,10 +131,10 @@ class _Transpose(torch.autograd.Function):
 
 
 def _run(environment: torch.Tensor, convention: str, options: dict[str, Any]) -> tuple[torch.Tensor, ...]:
-    name, matrix = _convention(convention)
+    layout = _layout(convention)
     options = {key: value for key, value in options.items() if value is not None}
-    centred = _to_centres(_checked(environment), name)
-    maps: tuple[torch.Tensor, ...] = _Filter.apply(centred, {**options, "world_to_source": matrix})
+    centred = _to_centres(_checked(environment), layout)
+    maps: tuple[torch.Tensor, ...] = _Filter.apply(centred, {**options, "world_to_source": layout.world_to_source})
     return maps
 
 

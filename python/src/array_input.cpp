@@ -63,8 +63,9 @@ AnyArray import_array(nb::handle object, const char* keyword) {
     return array;
 }
 
-ArrayPixels::Type number_type(const AnyArray& array, const char* keyword) {
+ArrayPixels::Type number_type(const AnyArray& array, const char* keyword, bool bytes_too) {
     const nb::dlpack::dtype type = array.dtype();
+    if (bytes_too && type == nb::dtype<std::uint8_t>()) return ArrayPixels::Type::byte;
     if (nb::dlpack::dtype_code(type.code) == nb::dlpack::dtype_code::Float && type.lanes == 1) {
         if (type.bits == 16) return ArrayPixels::Type::half;
         if (type.bits == 32) return ArrayPixels::Type::single;
@@ -188,10 +189,10 @@ nb::object numpy_picture(Image<T> image) {
 
 }  // namespace
 
-ArrayPixels ArrayPixels::borrow(nb::handle object, int channels, const char* keyword) {
+ArrayPixels ArrayPixels::borrow(nb::handle object, int channels, const char* keyword, bool bytes_too) {
     AnyArray array = import_array(object, keyword);
     ArrayPixels pixels;
-    pixels.type_ = number_type(array, keyword);
+    pixels.type_ = number_type(array, keyword, bytes_too);
     check_shape(array, channels, keyword);
     const std::int64_t bytes = array.itemsize();
     const bool bare = channels == 1 && array.ndim() == 2;
@@ -235,6 +236,8 @@ void ArrayPixels::copy_rows(int first, ImageView<float> out) const {
             copy_strided<float>(from, out.row(y), width_, channels_, column_stride_, channel_stride_);
         else if (type_ == Type::wide)
             copy_strided<double>(from, out.row(y), width_, channels_, column_stride_, channel_stride_);
+        else if (type_ == Type::byte)
+            copy_strided<std::uint8_t>(from, out.row(y), width_, channels_, column_stride_, channel_stride_);
         else
             copy_strided<Half>(from, out.row(y), width_, channels_, column_stride_, channel_stride_);
     }

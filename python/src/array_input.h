@@ -19,20 +19,21 @@ namespace domelight::python {
 /// Any array of numbers that is in the CPU's memory; it is only read.
 using AnyArray = nb::ndarray<nb::ro>;
 
-/// An array of pixels that stays where it is: rows x columns x channels of float16, float32 or float64, with any strides.
-/// Copies share it, and may be destroyed by any thread.
+/// An array of pixels that stays where it is: rows x columns x channels of float16, float32 or float64, and for pictures
+/// also of uint8, with any strides. Copies share it, and may be destroyed by any thread.
 class ArrayPixels {
   public:
-    enum class Type { half, single, wide };
+    enum class Type { half, single, wide, byte };
 
     /// Borrows the array. Charts (the faces of a cube, an array with one more axis in front) lie one below the other.
     ///
     /// array     any object with a buffer or with __dlpack__
     /// channels  how many it must have; 1 also accepts an array without an axis for channels
     /// keyword   names it in errors
+    /// bytes_too also accepts uint8, which copies hold as 0 to 255
     ///
     /// Raises domelight.Error: no array, another type of numbers, another shape, no memory, not in the CPU's memory.
-    static ArrayPixels borrow(nb::handle array, int channels, const char* keyword);
+    static ArrayPixels borrow(nb::handle array, int channels, const char* keyword, bool bytes_too = false);
 
     int width() const { return width_; }
     int height() const { return charts_ * chart_height_; }  ///< of all charts
@@ -40,6 +41,7 @@ class ArrayPixels {
     int chart_height() const { return chart_height_; }
     int channels() const { return channels_; }
     bool has_charts() const { return has_charts_; }
+    bool holds_bytes() const { return type_ == Type::byte; }
 
     /// Whether the rows can be read in place as an ImageView: float32, channels and columns close together, and charts
     /// that follow each other like rows.

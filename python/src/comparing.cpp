@@ -29,17 +29,11 @@ struct Comparison {
     PictureComparison result;
 };
 
-/// Bytes of a picture for a screen, decoded from sRGB; nothing if the array holds other numbers.
-std::optional<ImageF> decoded_bytes(nb::handle array, const char* keyword) {
-    nb::ndarray<const std::uint8_t, nb::c_contig, nb::device::cpu> bytes;
-    if (!nb::try_cast(array, bytes, false)) return std::nullopt;
-    if (bytes.ndim() != 3 || bytes.shape(2) != 3)
-        throw Failure({"expected the shape (height, width, 3)", field_place(keyword), ""});
+/// Bytes of a picture for a screen, decoded from sRGB.
+void decode_bytes(ImageF& image) {
     std::array<float, 256> decode;
     for (int i = 0; i < 256; ++i) decode[std::size_t(i)] = srgb_decode(float(i) / 255);
-    auto image = ImageF::uninitialized(int(bytes.shape(1)), int(bytes.shape(0)), 3);
-    for (std::size_t i = 0; i < bytes.size(); ++i) image.pixels()[i] = decode[bytes.data()[i]];
-    return image;
+    for (float& value : image.pixels()) value = decode[std::size_t(value)];
 }
 
 /// A picture from an array or a file.
@@ -53,12 +47,10 @@ Picture picture_of(nb::handle source, const char* keyword, const Keywords& words
     }
     Picture picture;
     picture.format = "array";
-    if (auto bytes = decoded_bytes(source, keyword)) {
-        picture.rgb = *std::move(bytes);
-        picture.high_dynamic_range = false;
-    } else {
-        picture.rgb = ArrayPixels::borrow(source, 3, keyword).copy();
-    }
+    const auto pixels = ArrayPixels::borrow(source, 3, keyword, true);
+    picture.rgb = pixels.copy();
+    picture.high_dynamic_range = !pixels.holds_bytes();
+    if (pixels.holds_bytes()) decode_bytes(picture.rgb);
     return picture;
 }
 

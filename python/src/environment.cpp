@@ -131,15 +131,11 @@ Environment sky(const nb::dict& dictionary) {
     words.read("ground_albedo", options.ground_albedo);
     words.read("sun_disc", options.sun_disc);
     words.read("threads", options.threads);
-    const auto within = [](const char* field, double value, double low, double high) {
-        if (!(value >= low && value <= high))
-            throw Failure({fmt::format("{:g} is not from {:g} to {:g}", value, low, high), field_place(field), ""});
-    };
-    within("height", options.height, 1, 32768);
-    within("sun_elevation_deg", options.sun_elevation_deg, -18, 90);
-    within("sun_azimuth_deg", options.sun_azimuth_deg, -3600, 3600);
-    within("turbidity", options.turbidity, 1, 10);
-    within("ground_albedo", options.ground_albedo, 0, 1);
+    check_within("height", options.height, 1, 32768);
+    check_within("sun_elevation_deg", options.sun_elevation_deg, -18, 90);
+    check_within("sun_azimuth_deg", options.sun_azimuth_deg, -3600, 3600);
+    check_within("turbidity", options.turbidity, 1, 10);
+    check_within("ground_albedo", options.ground_albedo, 0, 1);
     Environment environment = run_work_for(nb::none(), [&](const Progress&) {
         return Environment::from_latlong(value_of(read_latlong(*make_sky(options))));
     });
@@ -148,8 +144,7 @@ Environment sky(const nb::dict& dictionary) {
 }
 
 Environment axes(int height) {
-    if (height < 1 || height > 32768)
-        throw Failure({fmt::format("{} is not from 1 to 32768", height), field_place("height"), ""});
+    check_within("height", height, 1, 32768);
     Environment environment = Environment::from_latlong(make_axes_environment(height));
     environment.format = "axes";
     return environment;

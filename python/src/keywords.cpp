@@ -1,5 +1,7 @@
 #include "keywords.h"
 
+#include <fmt/format.h>
+
 #include <limits>
 
 namespace domelight::python {
@@ -123,6 +125,11 @@ void Keywords::read(const char* name, Mat3& field) const {
     if (numbers.size() != 9)
         throw Failure({std::to_string(numbers.size()) + " numbers, expected a 3 x 3 matrix", field_place(name), ""});
     for (std::size_t r = 0; r < 3; ++r) field.row[r] = {numbers[3 * r], numbers[3 * r + 1], numbers[3 * r + 2]};
+}
+
+void check_within(const char* keyword, double value, double low, double high) {
+    if (!(value >= low && value <= high))
+        throw Failure({fmt::format("{:g} is not from {:g} to {:g}", value, low, high), field_place(keyword), ""});
 }
 
 }  // namespace domelight::python

@@ -63,4 +63,7 @@ class Keywords {
     nb::dict words_;
 };
 
+/// Raises domelight.Error, which names the keyword, unless low <= value <= high.
+void check_within(const char* keyword, double value, double low, double high);
+
 }  // namespace domelight::python

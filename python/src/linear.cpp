@@ -7,6 +7,7 @@
 #include "environment.h"
 #include "keywords.h"
 #include "maps.h"
+#include "projection/latlong_convention.h"
 #include "work.h"
 
 #include <fmt/format.h>
@@ -115,9 +116,24 @@ nb::object run_transpose(int width, int height, const nb::tuple& values, const n
     }));
 }
 
+/// The conventions that have names: for each the matrix (rows) from world directions to those of the default, and whether
+/// the first and last rows lie on the poles, and the first and last columns on the picture's edges.
+nb::dict latlong_conventions() {
+    nb::dict conventions;
+    for (const std::string& name : latlong_convention_names()) {
+        const LatlongConvention c = value_of(latlong_convention(name));
+        const Mat3 m = c.world_to_default();
+        conventions[name.c_str()] =
+            nb::make_tuple(nb::make_tuple(tuple_of(m.row[0]), tuple_of(m.row[1]), tuple_of(m.row[2])),
+                           c.grid != SampleGrid::centres, c.grid == SampleGrid::both_on_edges);
+    }
+    return conventions;
+}
+
 }  // namespace
 
 void declare_linear(nb::module_& module) {
+    module.def("latlong_conventions", &latlong_conventions);
     module.def("linear_filter", &run_filter, nb::arg("environment"), nb::arg("options"));
     module.def("linear_transpose", &run_transpose, nb::arg("width"), nb::arg("height"), nb::arg("values"),
                nb::arg("options"));

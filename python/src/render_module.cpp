@@ -29,21 +29,16 @@ Vec3f vector_of(const Keywords& words, const char* name) {
     return Vec3f(Vec3d{v[0], v[1], v[2]});
 }
 
-void within(const char* field, double value, double low, double high) {
-    if (!(value >= low && value <= high))
-        throw Failure({fmt::format("{:g} is not from {:g} to {:g}", value, low, high), field_place(field), ""});
-}
-
 /// Size in pixels and camera: the scene's own, or one that shows all of it.
 void read_view(const Keywords& words, const Scene& scene, RenderOptions& options) {
     SceneView view{options.width, {}, scene.cameras.empty() ? nullptr : &scene.cameras.front(), {}, {}, 0};
     words.read("width", view.width);
     words.read("height", view.height);
-    within("width", *view.width, 1, 16384);
-    if (view.height) within("height", *view.height, 1, 16384);
+    check_within("width", *view.width, 1, 16384);
+    if (view.height) check_within("height", *view.height, 1, 16384);
     double fov_deg = 35;
     words.read("fov_deg", fov_deg);
-    within("fov_deg", fov_deg, 0.1, 170);
+    check_within("fov_deg", fov_deg, 0.1, 170);
     view.fov_y = float(fov_deg * k_pi / 180);
     if (words.has("camera_position")) {
         view.eye = vector_of(words, "camera_position");
@@ -70,12 +65,12 @@ RenderOptions render_options(const Keywords& words, const Scene& scene) {
     double roughness = options.background_roughness;
     words.read("background_roughness", roughness);
     options.background_roughness = float(roughness);
-    within("spp", options.samples, 1, 1 << 20);
-    within("noise", options.noise, 0, 1);
-    within("time", options.seconds, 0, 1e9);
-    within("bounces", options.bounces, 0, 1000);
-    within("background_roughness", roughness, 0, 1);
-    within("threads", options.threads, 0, 1024);
+    check_within("spp", options.samples, 1, 1 << 20);
+    check_within("noise", options.noise, 0, 1);
+    check_within("time", options.seconds, 0, 1e9);
+    check_within("bounces", options.bounces, 0, 1000);
+    check_within("background_roughness", roughness, 0, 1);
+    check_within("threads", options.threads, 0, 1024);
     return options;
 }
 

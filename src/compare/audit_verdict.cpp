@@ -8,6 +8,8 @@
 namespace domelight {
 namespace {
 
+constexpr int k_least_decisive_size = 4;
+
 std::string percent(double v) {
     return fmt::format("{:.2g} %", 100 * v);
 }
@@ -24,11 +26,18 @@ std::size_t worst_by(const std::vector<LevelAudit>& levels, Error error) {
     return std::size_t(std::max_element(levels.begin(), levels.end(), less) - levels.begin());
 }
 
+/// Whether a level can show that a bake is one of another environment. What a tool stores in faces of a few texels
+/// depends on how it expects them to be read, more than on the environment.
+bool decides(const LevelAudit& level, const BakeAudit& audit) {
+    return level.size >= k_least_decisive_size || audit.levels[0].size < k_least_decisive_size;
+}
+
 std::string verdict_on_another(const BakeAudit& audit, double same) {
     if (audit.orientation.error > same)
         return fmt::format("not a bake of this environment: in the best of 48 orientations it is {} off",
                            percent(audit.orientation.error));
-    const std::size_t l = worst_by(audit.levels, [](const LevelAudit& level) { return level.broad_error; });
+    const std::size_t l =
+        worst_by(audit.levels, [&](const LevelAudit& level) { return decides(level, audit) ? level.broad_error : -1; });
     return fmt::format("not a bake of this environment: level {} is {} off at every roughness", l,
                        percent(audit.levels[l].broad_error));
 }
@@ -81,7 +90,9 @@ std::string small_source_note(const LevelAudit& first, const Environment& source
 }  // namespace
 
 BakeAudit judged(BakeAudit audit, const Environment& source, const AuditOptions& options) {
-    const auto above = [&](const LevelAudit& level) { return level.broad_error > options.same; };
+    const auto above = [&](const LevelAudit& level) {
+        return decides(level, audit) && level.broad_error > options.same;
+    };
     audit.of_source =
         !(audit.orientation.error > options.same) && !std::any_of(audit.levels.begin(), audit.levels.end(), above);
     const double worst = error_of(audit.levels[worst_by(audit.levels, error_of)]);

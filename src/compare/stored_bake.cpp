@@ -8,6 +8,7 @@
 
 #include "base/field_place.h"
 #include "compare/latlong_level.h"
+#include "compare/manifest_entry.h"
 #include "io/environment/cube_texture_reader.h"
 #include "io/environment/environment_files.h"
 #include "io/file/file_reader.h"
@@ -40,8 +41,9 @@ std::vector<double> numbers_in(std::string text, std::size_t count, double most)
     return values.size() == count ? values : std::vector<double>{};
 }
 
-/// Which lobe the levels were filtered with, and how wide it is in each, where the file says so.
-void read_keys(const std::map<std::string, std::string>& keys, StoredBake& bake) {
+/// Which lobe the levels were filtered with, and how wide it is in each, where the keys say so.
+/// by   who wrote the keys, for the report
+void read_keys(const std::map<std::string, std::string>& keys, const char* by, StoredBake& bake) {
     const auto value = [&](const char* name) {
         const auto key = keys.find(name);
         return key == keys.end() ? std::string() : key->second;
@@ -53,7 +55,11 @@ void read_keys(const std::map<std::string, std::string>& keys, StoredBake& bake)
         numbers_in(value("domelight.exponent"), bake.levels.size(), std::numeric_limits<double>::infinity());
     for (std::size_t l = 0; l < roughness.size(); ++l) bake.levels[l].roughness = roughness[l];
     for (std::size_t l = 0; l < exponents.size(); ++l) bake.levels[l].exponent = exponents[l];
-    if (!roughness.empty() || !exponents.empty()) bake.stated_by = "the file";
+    if (!roughness.empty() || !exponents.empty()) bake.stated_by = by;
+}
+
+bool states_filter(const std::map<std::string, std::string>& keys) {
+    return keys.contains("domelight.roughness") || keys.contains("domelight.exponent");
 }
 
 /// The projection of a bake's lat-long file: by the manifest beside it, by its own key, or the default.
@@ -86,7 +92,11 @@ Result<StoredBake> read_chain(const std::string& file, int threads) {
     StoredBake bake;
     bake.format = info ? fmt::format("{}, {}", info->container, info->format) : "texture";
     for (Cubemap& cube : *cubes) bake.levels.emplace_back().cube = std::move(cube);
-    read_keys(texture->metadata, bake);
+    // DDS and .env have no place for keys.
+    if (states_filter(texture->metadata))
+        read_keys(texture->metadata, "the file", bake);
+    else
+        read_keys(filter_in_manifest(file), "the manifest beside it", bake);
     return bake;
 }
 

@@ -42,7 +42,7 @@ Result<std::unique_ptr<ImageReader>> open_image_reader(std::shared_ptr<const Fil
     if (const auto foreign = foreign_format(all); foreign && !foreign->hint.empty())
         return Error{foreign->name + " is not read", "", foreign->hint};
     return Error{"not an image of a known format", "",
-                 "Known: Radiance .hdr, OpenEXR, PNG, JPEG; as cubes also KTX2, KTX and DDS."};
+                 "Known: Radiance .hdr, OpenEXR, PNG, JPEG; as cubes also KTX2, KTX, DDS and .env."};
 }
 
 }  // namespace domelight

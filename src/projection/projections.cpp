@@ -55,9 +55,9 @@ Result<void> read_key(const std::string& key, const std::string& value, bool has
     if (key == "fov" && has_fov) {
         const char* end = value.data() + value.size();
         if (read_number(value.data(), end, c.fov_deg) != end)
-            return Error{"\"" + value + "\" is not a number", "fov", ""};
+            return Error{"a mirror ball's fov: \"" + value + "\" is not a number", "", ""};
         if (!(c.fov_deg >= 0 && c.fov_deg < 175))
-            return Error{"a mirror ball's fov must lie between 0 and 175 degrees", "fov", ""};
+            return Error{"a mirror ball's fov must lie between 0 and 175 degrees", "", ""};
         return {};
     }
     Vec3d* axis = key == "centre" || key == "center" ? &c.centre
@@ -91,9 +91,9 @@ Result<Convention> read_convention(const std::string& name, const std::string& w
                                     : "Accepted: centre=+Z,right=+X[,up=+Y]."};
     }
     for (std::size_t at = 0; at <= words.size();) {
-        const std::size_t comma = std::min(words.find(',', at), words.size());
-        const std::string item = words.substr(at, comma - at);
-        at = comma + 1;
+        const std::size_t end = std::min(words.find_first_of(",/", at), words.size());
+        const std::string item = words.substr(at, end - at);
+        at = end + 1;
         const std::size_t equals = std::min(item.find('='), item.size());
         const std::string value = equals < item.size() ? item.substr(equals + 1) : "";
         if (const auto read = read_key(item.substr(0, equals), value, name == "mirror-ball", c); !read)

@@ -33,7 +33,8 @@ struct Path {
     std::uint64_t key = 0;    ///< of the pixel
     Ray ray;
     Vec3f throughput{1, 1, 1};
-    float pdf_brdf = 0;  ///< of the ray's direction; 0: a camera ray
+    float pdf_brdf = 0;         ///< of the ray's direction; 0: a camera ray
+    bool drew_emitter = false;  ///< where the ray starts, a point was drawn from the surfaces that emit light
     Hit hit;
     SurfacePoint surface;
     Vec3f V;                       ///< local
@@ -84,6 +85,9 @@ constexpr int chance_pair(int bounce) {
 /// Numbers beyond those for bounces, for features that few surfaces have.
 constexpr int shift_pair(int bounce) {
     return (1 << 20) + bounce;
+}
+constexpr int emitter_pair(int bounce) {
+    return (1 << 21) + bounce;
 }
 
 /// Light that arrives at a path's surface unless it is occluded.

@@ -1,6 +1,7 @@
-// Path tracing with next-event estimation: at each surface one light direction from the environment and one from the
-// BRDF, weighted by the balance heuristic (Veach 1997, 9.2.2); the BRDF's ray continues the path if there are bounces
-// left. All samples of a tile take each step together, so that the environment is sampled in batches.
+// Path tracing with next-event estimation: at each surface one light direction from the environment, one to a point of
+// the surfaces that emit light, and one from the BRDF, weighted by the balance heuristic (Veach 1997, 9.2.2); the BRDF's
+// ray continues the path if there are bounces left. All samples of a tile take each step together, so that the
+// environment is sampled in batches.
 
 #include "render/path_tracer.h"
 
@@ -19,6 +20,7 @@ namespace {
 
 constexpr int k_most_passages = 64;  ///< the largest number of transparent surfaces that a ray passes
 constexpr int k_roulette_from = 3;   ///< bounces before paths may be ended at random
+constexpr float k_infinite = std::numeric_limits<float>::infinity();
 
 class Tracer final : public TileTracer {
   public:
@@ -30,7 +32,8 @@ class Tracer final : public TileTracer {
           lights_(all_lights(scene_, options)),
           camera_(options.camera, options.width, options.height),
           passages_(has_passages(scene_)),
-          layers_(has_layers(scene_)) {}
+          layers_(has_layers(scene_)),
+          draws_emitters_(!rays_.emitters.empty() && options.occlusion && options.strategy != LightStrategy::brdf) {}
 
     std::int64_t trace(int x0, int y0, int columns, std::span<const int> count,
                        std::span<PixelSums> sums) const override {
@@ -89,12 +92,11 @@ class Tracer final : public TileTracer {
     }
 
     /// The part of the light from a direction that arrives.
-    float visibility(const SurfacePoint& s, const Vec3f& direction, std::int64_t& rays,
-                     float distance = std::numeric_limits<float>::infinity()) const {
+    float visibility(const SurfacePoint& s, const Vec3f& direction, std::int64_t& rays, float distance) const {
         if (!options_.occlusion) return 1;
         if (s.blocks(direction)) return 0;
-        Ray ray = s.ray_to(direction);
-        if (!passages_ && std::isinf(distance)) {
+        Ray ray = s.ray_to(direction, distance);
+        if (!passages_) {
             ++rays;
             return rays_.occluded(ray) ? 0 : 1;
         }
@@ -102,7 +104,7 @@ class Tracer final : public TileTracer {
         for (int passage = 0; passage < k_most_passages && through > 0; ++passage) {
             const Hit hit = rays_.intersect(ray, false);
             ++rays;
-            if (hit.instance < 0 || hit.distance >= distance) return through;
+            if (hit.instance < 0) return through;
             through *= 1 - opacity_at(scene_, hit);
             pass(ray, hit);
         }
@@ -139,7 +141,9 @@ class Tracer final : public TileTracer {
                 Path& p = *alive[i];
                 const Frame<float> frame(p.surface.normal);
                 p.V = frame.to_local(-p.ray.direction);
-                if (draw) light_up(p, frame, light.direction(i), light.radiance(i), light.pdf(i), bounce, room, rays);
+                if (draw) light_up(p, frame, {light.direction(i), light.radiance(i), light.pdf(i)}, bounce, room, rays);
+                p.drew_emitter = draws_emitters_ && bounce - p.passages < options_.bounces;
+                if (p.drew_emitter) draw_emitter(p, frame, bounce, room, rays);
                 for (const PunctualLight& l : lights_) light_up(p, frame, l, bounce, rays);
                 if (scatter(p, frame, bounce, room)) next.push_back(&p);
             }
@@ -192,14 +196,15 @@ class Tracer final : public TileTracer {
     }
 
     /// Adds light to a path unless it is occluded: either now, or when its shadow ray is traced with the others.
-    void add_if_seen(Path& p, const Vec3f& direction, const Vec3f& diffuse, const Vec3f& specular, int bounce,
-                     Workspace& room, std::int64_t& rays) const {
+    void add_if_seen(Path& p, const Vec3f& direction, float distance, const Vec3f& diffuse, const Vec3f& specular,
+                     int bounce, Workspace& room, std::int64_t& rays) const {
         const SurfacePoint& s = p.surface;
         if (options_.occlusion && !passages_) {
-            if (!s.blocks(direction)) room.shadows.push_back({&p, s.ray_to(direction), diffuse, specular});
+            if (!s.blocks(direction)) room.shadows.push_back({&p, s.ray_to(direction, distance), diffuse, specular});
             return;
         }
-        if (const float seen = visibility(s, direction, rays); seen > 0) p.add(diffuse * seen, specular * seen, bounce);
+        if (const float seen = visibility(s, direction, rays, distance); seen > 0)
+            p.add(diffuse * seen, specular * seen, bounce);
     }
 
     /// At a surface: adds its emission. Returns whether there is a surface to be lit.
@@ -221,7 +226,7 @@ class Tracer final : public TileTracer {
             p.depth = p.hit.distance;
             p.object = p.hit.instance + 1;
         }
-        if (const Vec3f e = product(p.throughput, s.emission); largest(e) > 0) {
+        if (const Vec3f e = product(p.throughput, s.emission) * emission_weight(p); largest(e) > 0) {
             p.radiance += e;
             const bool first = bounce - p.passages <= 1;
             (first ? p.direct : p.indirect) = (first ? p.direct : p.indirect) + e;
@@ -232,6 +237,14 @@ class Tracer final : public TileTracer {
             }
         }
         return !s.unlit;
+    }
+
+    /// The weight of the emission that the BRDF's ray has found beside that of a point drawn from the emitters.
+    float emission_weight(const Path& p) const {
+        if (!p.drew_emitter || largest(p.surface.emission) <= 0) return 1;
+        const float pdf = rays_.emitters.pdf_solid_angle(p.hit, p.ray.direction);
+        if (pdf <= 0) return 1;
+        return options_.strategy == LightStrategy::environment ? 0 : p.pdf_brdf / (p.pdf_brdf + pdf);
     }
 
     /// Rays that hit nothing: they add the background, or the environment as the BRDF's half of direct light.
@@ -265,7 +278,8 @@ class Tracer final : public TileTracer {
             const Vec3f light = product(p.throughput,
                                         weighted(room.light.radiance(int(i)), room.light.pdf(int(i)), p.pdf_brdf)),
                         below = product(light, p.diffuse_share);
-            if (largest(light) > 0) add_if_seen(p, room.endings[i].direction, below, light - below, bounce, room, rays);
+            if (largest(light) > 0)
+                add_if_seen(p, room.endings[i].direction, k_infinite, below, light - below, bounce, room, rays);
         }
         room.endings.clear();
         settle(room, bounce, rays);
@@ -287,17 +301,36 @@ class Tracer final : public TileTracer {
         return options_.strategy == LightStrategy::brdf ? radiance : radiance * (pdf_brdf / (pdf_brdf + pdf_light));
     }
 
-    /// A direction drawn from the environment.
-    void light_up(Path& p, const Frame<float>& frame, const Vec3f& direction, const Vec3f& radiance, float pdf,
-                  int bounce, Workspace& room, std::int64_t& rays) const {
-        const Vec3f L = frame.to_local(direction);
-        if (!(L.z > 0 || p.surface.layers) || largest(radiance) <= 0) return;
+    /// A point drawn from the surfaces that emit light.
+    void draw_emitter(Path& p, const Frame<float>& frame, int bounce, Workspace& room, std::int64_t& rays) const {
+        const Vec3f& place = p.surface.position;
+        const EmitterSample e = rays_.emitters.sample(scene_, place, p.point(emitter_pair(bounce)));
+        if (e.hit.instance < 0) return;
+        Vec3f radiance = emission_at(scene_, e.hit, place, e.direction, options_.multiple_scattering);
+        if (passages_) radiance *= opacity_at(scene_, e.hit);
+        if (p.layers) radiance = product(radiance, through_body(p, e));
+        light_up(p, frame, {e.direction, radiance, e.pdf_solid_angle, e.hit.distance}, bounce, room, rays);
+    }
+
+    /// A direction from which light arrives, drawn from the environment or from the emitters.
+    struct DrawnLight {
+        Vec3f direction, radiance;
+        float pdf_solid_angle;
+        float distance = k_infinite;  ///< to the surface that emits it
+    };
+    void light_up(Path& p, const Frame<float>& frame, const DrawnLight& drawn, int bounce, Workspace& room,
+                  std::int64_t& rays) const {
+        const Vec3f L = frame.to_local(drawn.direction);
+        if (!(L.z > 0 || p.surface.layers) || largest(drawn.radiance) <= 0) return;
         const Bsdf::Value f = p.surface.evaluate_cosine(p.V, L);
         if (largest(f.sum()) <= 0) return;
         const float other = options_.strategy == LightStrategy::mis ? p.surface.pdf_solid_angle(p.V, L) : 0;
         // The balance heuristic's weight over the density: 1 / (p_light + p_brdf).
-        const Vec3f light = product(p.throughput, through_sheet(p.surface, L, radiance)) * (1 / (pdf + other));
-        add_if_seen(p, direction, product(f.diffuse, light), product(f.specular, light), bounce, room, rays);
+        const bool far = std::isinf(drawn.distance);
+        const Vec3f arriving = far ? through_sheet(p.surface, L, drawn.radiance) : drawn.radiance;
+        const Vec3f light = product(p.throughput, arriving) * (1 / (drawn.pdf_solid_angle + other));
+        add_if_seen(p, drawn.direction, drawn.distance, product(f.diffuse, light), product(f.specular, light), bounce,
+                    room, rays);
     }
 
     /// A light of the scene.
@@ -319,6 +352,14 @@ class Tracer final : public TileTracer {
     static Vec3f through_sheet(const SurfacePoint& s, const Vec3f& L, const Vec3f& light) {
         if (!s.layers || !s.layers->volume || !s.front || L.z > 0) return light;
         return product(light, s.layers->through(s.layers->thickness));
+    }
+
+    /// The part of an emitter's light that the body between it and a path's surface leaves (Beer's law).
+    static Vec3f through_body(const Path& p, const EmitterSample& e) {
+        const LayeredBsdf* layers = p.surface.layers;
+        const bool enters = layers && layers->volume && dot(e.direction, p.surface.geometric_normal) < 0;
+        if (enters ? !p.surface.front : !p.layers->inside) return {1, 1, 1};
+        return (enters ? *layers : p.layers->body).through(e.hit.distance);
     }
 
     /// Continues the path by sampling the BRDF. Returns whether the path goes on.
@@ -413,6 +454,7 @@ class Tracer final : public TileTracer {
     CameraRays camera_;
     bool passages_;
     bool layers_;
+    bool draws_emitters_;
 };
 
 }  // namespace

@@ -129,6 +129,7 @@ Result<RayScene> RayScene::build(Scene scene) {
     if (!room_for_workers()) return no_memory;
     rtcCommitScene(impl.world);
     rtcSetDeviceMemoryMonitorFunction(impl.device, nullptr, nullptr);
+    impl.emitters = Emitters(s);
     impl.bytes = std::size_t(std::max<std::int64_t>(0, bytes));
     if (const RTCError error = rtcGetDeviceError(impl.device); error != RTC_ERROR_NONE)
         return error == RTC_ERROR_OUT_OF_MEMORY ? no_memory
@@ -168,7 +169,7 @@ Hit RayScene::Impl::intersect(const Ray& ray, bool coherent) const {
     r.ray.org_x = ray.origin.x, r.ray.org_y = ray.origin.y, r.ray.org_z = ray.origin.z;
     r.ray.dir_x = ray.direction.x, r.ray.dir_y = ray.direction.y, r.ray.dir_z = ray.direction.z;
     r.ray.tnear = ray.near;
-    r.ray.tfar = std::numeric_limits<float>::infinity();
+    r.ray.tfar = ray.far;
     r.ray.time = 0;
     r.ray.mask = ~0u;
     r.ray.flags = 0;
@@ -187,7 +188,7 @@ bool RayScene::Impl::occluded(const Ray& ray) const {
     r.org_x = ray.origin.x, r.org_y = ray.origin.y, r.org_z = ray.origin.z;
     r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z;
     r.tnear = ray.near;
-    r.tfar = std::numeric_limits<float>::infinity();
+    r.tfar = ray.far;
     r.time = 0;
     r.mask = ~0u;
     r.flags = 0;
@@ -207,7 +208,7 @@ void fill(RTCRay16& r, int (&valid)[16], std::span<const Ray* const> rays) {
         r.org_x[i] = ray.origin.x, r.org_y[i] = ray.origin.y, r.org_z[i] = ray.origin.z;
         r.dir_x[i] = ray.direction.x, r.dir_y[i] = ray.direction.y, r.dir_z[i] = ray.direction.z;
         r.tnear[i] = ray.near;
-        r.tfar[i] = std::numeric_limits<float>::infinity();
+        r.tfar[i] = ray.far;
         r.time[i] = 0;
         r.mask[i] = ~0u;
         r.flags[i] = 0;

@@ -105,6 +105,19 @@ def test_compare_audits_our_bakes(folder):
     assert "a bake of this environment, as ours" in text, text
 
 
+def test_compare_knows_the_filter_of_files_without_keys(folder):
+    """DDS and .env cannot say how they were filtered; the manifest beside them does. Without it, faces of one texel do not decide."""
+    for engine, name in [("unreal", "studio.dds"), ("babylon", "studio.env")]:
+        run("bake", "studio.hdr", "-o", engine, "--for", engine, "--size", "64", "--no-preview", folder=folder)
+        found = json.loads(run("compare", "--bake", f"{engine}/{name}", "--env", "studio.hdr", "--json", folder=folder).stdout)
+        assert found["roughness_stated_by"] == "the manifest beside it" and found["of_source"], found
+        assert all(level["stated_error"] < 5e-3 for level in found["levels"] if level["size"] <= 2), found["levels"]
+        run("bake", "studio.hdr", "-o", "other", "--for", engine, "--size", "64", "--exposure", "1", "--no-preview", folder=folder)
+        shutil.copy(folder / engine / name, folder / "other" / name)
+        alone = json.loads(run("compare", "--bake", f"other/{name}", "--env", "studio.hdr", "--json", folder=folder).stdout)
+        assert alone["of_source"] and not alone["roughness_stated_by"], alone
+
+
 def test_compare_passes_a_verdict_on_bakes(folder):
     def audit(*words, code=0):
         return json.loads(run("compare", "--bake", *words, "--json", folder=folder, code=code).stdout)

@@ -68,8 +68,8 @@ TYPES = [
     (lambda light: dl.prefilter(light, size="large"), "size", "'large' is a str, expected a whole number"),
     (lambda light: dl.prefilter(light, size=16.5), "size", "16.5 is a float, expected a whole number"),
     (lambda light: dl.prefilter(light, roughness=0.5), "roughness", "0.5 is a float, expected a sequence of numbers"),
-    (lambda light: dl.prefilter(light, lobe=3), "lobe", "3 is a int, expected a str"),
-    (lambda light: dl.prefilter(light, progress=3), "progress", "3 is a int, expected a function"),
+    (lambda light: dl.prefilter(light, lobe=3), "lobe", "3 is an int, expected a str"),
+    (lambda light: dl.prefilter(light, progress=3), "progress", "3 is an int, expected a function"),
 ]
 
 

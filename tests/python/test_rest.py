@@ -79,7 +79,27 @@ def test_comparisons():
     with pytest.raises(dl.Error, match="1 pixel is NaN or infinite, the first at row 3, column 4"):
         dl.compare(test, reference)
     assert dl.compare(test, reference, skip_bad=True)["pixels"] == 48 * 64 - 1
-    assert dl.compare((reference * 255).astype(np.uint8), (reference * 255).astype(np.uint8))["largest"] == 0
+
+
+def test_pictures_of_bytes_are_compared():
+    rng = np.random.default_rng(4)
+    a, b = (rng.integers(0, 256, (48, 64, 3), np.uint8) for _ in range(2))
+    assert dl.compare(a, a)["largest"] == 0
+    decoded = np.where(a <= 10, a / 255 / 12.92, ((a / 255 + 0.055) / 1.055) ** 2.4).astype(np.float32)
+    assert dl.compare(decoded, a, flip=False)["largest"] < 1e-6
+    # Strides of any kind, as of every other array.
+    wanted = dl.compare(a[:, ::2].copy(), b[:, ::2].copy()).figures
+    assert dl.compare(a[:, ::2], b[:, ::2]).figures == wanted
+    assert dl.compare(a[::-1, ::-2][::-1, ::-1], b[:, 1::2]).figures == dl.compare(a[:, 1::2].copy(), b[:, 1::2].copy()).figures
+
+
+@pytest.mark.parametrize("shape", [(48, 64), (48, 64, 4), (0, 64, 3), (70000, 1, 3), (3, 48, 64)])
+def test_pictures_of_bytes_of_a_wrong_shape(shape):
+    for keyword, pair in (("test", [0, 1]), ("reference", [1, 0])):
+        pictures = [np.zeros(shape, np.uint8), np.zeros((48, 64, 3), np.uint8)]
+        with pytest.raises(dl.Error, match=f"^{keyword}: shape is ") as caught:
+            dl.compare(*(pictures[i] for i in pair))
+        assert caught.value.field == keyword
 
 
 def test_variance_explains_noise():

@@ -7,6 +7,7 @@ import pytest
 
 import domelight as dl
 from conftest import small_environment
+from test_conventions import DIRECTIONS, light_from
 
 torch = pytest.importorskip("torch", reason="PyTorch is not installed")
 import domelight.torch as dt  # noqa: E402
@@ -82,6 +83,24 @@ def test_conventions_turn_the_light(tensor):
     light = torch.from_numpy(dl.convert(dl.Environment(tensor.numpy()), "nvdiffrec", size=16))
     ours, theirs = dt.irradiance(tensor, 8), dt.irradiance(light, 8, convention="nvdiffrec")
     assert torch.allclose(ours, theirs, rtol=1e-3)
+
+
+@pytest.mark.parametrize("name", DIRECTIONS)
+def test_light_is_read_from_where_the_project_has_it(name):
+    light = torch.from_numpy(light_from(DIRECTIONS[name](64, 128)))
+    # Y_1 = √(3/4π) (y, z, x): red is 2 + x, green 2 + y, blue 2 + z.
+    linear = dt.spherical_harmonics(light, convention=name)[1:4] * math.sqrt(3 / (4 * math.pi))
+    assert torch.allclose(linear, torch.tensor([[0.0, 1, 0], [0, 0, 1], [1, 0, 0]]), atol=3e-3)
+
+
+@pytest.mark.parametrize("name", ["default", "usd", "mitsuba", "openexr", "materialx", "mod"])
+def test_every_convention_of_the_library_has_its_name_here(name):
+    environment = dl.Environment(light_from(DIRECTIONS["nvdiffrec"](64, 128)), "nvdiffrec")
+    projection = f"latlong/{name}"
+    light = dl.convert(environment, projection, size=32)
+    wanted = dl.irradiance(dl.Environment(light, projection), size=4)
+    assert np.allclose(dt.irradiance(torch.from_numpy(light), 4, convention=name).numpy(), wanted, rtol=1e-5)
+    assert np.allclose(wanted, dl.irradiance(environment, size=4), rtol=2e-3)
 
 
 def test_an_environment_is_found_again():

@@ -223,6 +223,40 @@ async function testExport({open, claim, program, work}) {
     await page.close();
 }
 
+/// What was opened can be chosen again, beside what the page computes; light that is far too bright, or a file that is no lat-long map, is not the end.
+async function testLists({open, claim, work, program}) {
+    const run = (...args) => execFileSync(program, args.map(String), {stdio: ['ignore', 'pipe', 'pipe']});
+    run('sky', '-o', path.join(work, 'bright.hdr'), '--height', 64, '--no-sun-disc', '--quiet');
+    run('sky', '-o', path.join(work, 'evening.hdr'), '--height', 64, '--no-sun-disc', '--sun-elevation-deg', 8, '--quiet');
+    run('convert', path.join(work, 'evening.hdr'), '-o', path.join(work, 'round.hdr'), '--to', 'angular', '--size', 64, '--quiet');
+    const page = await open('', {viewport: {width: 720, height: 400}}), named = async (what, name) => {
+        await page.waitForFunction(name => domelight.ready && domelight.app.environmentName === name, name, {timeout: 20_000}).catch(() => {});
+        const found = await page.evaluate(() => domelight.app.environmentName);
+        claim(`lists: ${what}`, found === name ? [] : [`the page shows ${found}`]);
+    };
+    await openFile(page, '/work/bright.hdr', 'bright.hdr');
+    const exposure = await state(page, 'exposure'), said = await page.locator('#notes .hint').last().textContent();
+    claim('lists: under light that is far too bright the exposure is another, and the page says so', exposure < -3 && /is bright: the exposure is now -/.test(said) ? [] : [`${exposure}: ${said}`], `${exposure.toFixed(1)} EV`);
+    await page.selectOption('#environment', 'studio');
+    await named('the studio can be chosen after a file', 'studio');
+    await page.waitForFunction(() => domelight.store.state.exposure === 0, undefined, {timeout: 10_000}).catch(() => {});
+    claim('lists: its exposure is the usual one again', (await state(page, 'exposure')) === 0 ? [] : [`it is ${await state(page, 'exposure')}`]);
+    await page.selectOption('#environment', 'bright.hdr');
+    await named('and the file after the studio', 'bright.hdr');
+    await page.evaluate(() => document.activeElement.blur());
+    await page.keyboard.press('n');
+    await named('N goes on to the next', 'studio');
+    await openFile(page, '/work/round.hdr', 'round.hdr');
+    await named('a round map is refused where nobody says that it is one', 'studio');
+    await setState(page, {projection: 'angular'});
+    await named('it is read when its projection is chosen', 'round.hdr');
+    await openFile(page, '/work/bright.hdr', 'teapot.obj');
+    const model = await page.locator('#notes p').last().textContent();
+    claim('lists: another kind of model gives a sentence', /teapot\.obj: models are read as \.glb or \.gltf/.test(model) ? [] : [model]);
+    claim('lists: the console is silent', page.complaints);
+    await page.close();
+}
+
 async function testLostContext({open, claim}) {
     const page = await open('#fullResolution=true', {viewport: {width: 400, height: 240}});
     const middle = () => page.evaluate(async () => {
@@ -260,29 +294,31 @@ async function testPhone({open, claim, work}) {
     await page.close();
 }
 
-async function testAccessibility({all, open, claim, root, work}) {
+async function testAccessibility({open, claim, root, work}) {
     const axe = fs.readFileSync(path.join(root, 'web/node_modules/axe-core/axe.min.js'), 'utf8');
-    for (const colorScheme of all ? ['light', 'dark'] : ['dark']) {
-        const page = await open('#mode=monte-carlo&view=split&other=phong', {colorScheme, viewport: {width: 1000, height: 600}});
-        await page.evaluate(axe);
-        const check = async what => {
+    const page = await open('#mode=monte-carlo&view=split&other=phong', {viewport: {width: 1000, height: 600}}), schemes = ['light', 'dark'];
+    await page.evaluate(axe);
+    const check = async what => {
+        for (const colorScheme of schemes) {
+            await page.emulateMedia({colorScheme});
             const found = await page.evaluate(() => axe.run(document, {resultTypes: ['violations']}));
             claim(`accessibility: ${what}, ${colorScheme}: axe-core finds nothing`, found.violations.map(v => `${v.id}: ${v.help} (${v.nodes.map(n => n.target).slice(0, 3).join(' ')})`));
-        };
-        await check('the page');
-        await page.evaluate(() => document.querySelectorAll('details').forEach(d => (d.open = true)));
-        await setState(page, {override: true});
-        await check('all sections open');
-        await page.evaluate(() => domelight.app.events.failed('A sentence.'));
-        await check('a sentence shown');
-        const [note, panel] = await Promise.all(['#notes > div', '#panel'].map(selector => page.locator(selector).last().boundingBox()));
-        claim('notes: a sentence lies beside the panel', note.x >= 0 && note.x + note.width <= panel.x ? [] : [`${JSON.stringify(note)} and ${JSON.stringify(panel)}`]);
-        await page.keyboard.press('?');
-        await check('the help');
-        await page.keyboard.press('Escape');
+        }
+    };
+    await check('the page');
+    await page.evaluate(() => document.querySelectorAll('details').forEach(d => (d.open = true)));
+    await setState(page, {override: true});
+    await check('all sections open');
+    await page.evaluate(() => domelight.app.events.failed('A sentence.'));
+    await check('a sentence shown');
+    await page.keyboard.press('?');
+    await check('the help');
+    await page.keyboard.press('Escape');
+    for (const colorScheme of schemes) {
+        await page.emulateMedia({colorScheme});
         await page.screenshot({path: path.join(work, `page-${colorScheme}.png`)});
-        await page.close();
     }
+    await page.close();
 }
 
 async function testTab({open, claim}) {
@@ -299,7 +335,7 @@ async function testTab({open, claim}) {
 }
 
 export async function testInterface(app) {
-    for (const test of [testStart, testKeys, testAddress, testBadFiles, testModels, testProjections, testFlip, testExport, testLive, testLostContext, testPhone, testAccessibility, testTab]) {
+    for (const test of [testStart, testKeys, testAddress, testBadFiles, testModels, testProjections, testFlip, testExport, testLists, testLive, testLostContext, testPhone, testAccessibility, testTab]) {
         const start = performance.now();
         try {
             await test(app);

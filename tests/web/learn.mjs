@@ -63,6 +63,9 @@ const lessons = {
             await slide(page, 'Exponent', 8);
             const between = await numbers(page);
             claim('phong: between two levels the exact light is that of the exponent', between.exact !== at.exact && Math.abs(between.light / between.exact - 1) < 0.2 ? [] : [`${between.light}, exactly ${between.exact}`]);
+            await slide(page, 'Exponent', 0);
+            const below = await numbers(page);
+            claim('phong: below the last level it is mixed with the irradiance', near('the ratio', below.light / below.exact, 1, 0.05), `${(100 * (below.light / below.exact - 1)).toFixed(2)} %`);
         },
     },
     'split-sum': {
@@ -103,6 +106,7 @@ const lessons = {
             const middle = await numbers(page);
             const apart = ['brdf', 'environment'].flatMap(key => near(`the mean by ${key}`, middle[`${key}Mean`], middle.bothMean, 4.5 * Math.hypot(middle[`${key}Error`], middle.bothError)));
             claim('mis: all strategies have one mean', apart);
+            claim('mis: pixels scatter as the integrals of the noise say', ['brdf', 'both'].flatMap(key => near(`the ratio by ${key}`, middle[`${key}Measured`] / middle[key], 1, 0.2)), ['brdf', 'environment', 'both'].map(key => (middle[`${key}Measured`] / middle[key]).toFixed(2)).join(', '));
             await slide(page, 'Roughness', 1);
             const rough = await numbers(page);
             claim('mis: both together are never far from the better one',
@@ -128,8 +132,12 @@ const lessons = {
 
 async function testAxe(page, axe, what, claim) {
     await page.evaluate(axe);
-    const violations = await page.evaluate(async () => (await window.axe.run(document)).violations.map(v => `${v.id}: ${v.nodes.map(n => n.target.join(' ')).slice(0, 3).join(', ')}`));
-    claim(`${what}: axe finds nothing`, violations);
+    const violations = [];
+    for (const colorScheme of ['light', 'dark']) {
+        await page.emulateMedia({colorScheme});
+        violations.push(...await page.evaluate(async scheme => (await window.axe.run(document)).violations.map(v => `${scheme}: ${v.id}: ${v.nodes.map(n => n.target.join(' ')).slice(0, 3).join(', ')}`), colorScheme));
+    }
+    claim(`${what}: axe finds nothing, in light and dark`, violations);
 }
 
 /// A .hdr of an even light of radiance 2, and a file that is none.
@@ -146,8 +154,34 @@ async function testFiles(page, claim) {
     await page.waitForSelector('#notes p');
     const {light, sentence} = await page.evaluate(() => ({light: lesson.light.name, sentence: document.querySelector('#notes p').textContent}));
     claim('learn: a broken file gives a sentence, and the light stays', light === 'even.hdr' && sentence.startsWith('broken.hdr') ? [] : [`${light}: ${sentence}`]);
-    await page.getByRole('combobox', {name: 'Environment'}).selectOption('studio');
-    await page.waitForFunction(() => lesson.light.name === 'studio' && lesson.ready, undefined, {timeout: 30_000});
+    const select = async (option, name) => {
+        await page.getByRole('combobox', {name: 'Environment'}).selectOption(option);
+        return page.waitForFunction(name => lesson.light.name === name && lesson.ready, name, {timeout: 30_000});
+    };
+    await select('studio', 'studio');
+    claim('learn: the file can be chosen again', await select('file', 'even.hdr').then(() => [], error => [String(error)]));
+    await select('studio', 'studio');
+}
+
+/// The graphics context is lost and comes back.
+async function testLostContext(page, claim) {
+    const before = await numbers(page);
+    await page.evaluate(async () => {
+        const lose = lesson.painter.renderer.getContext().getExtension('WEBGL_lose_context'), pause = () => new Promise(done => setTimeout(done, 200));
+        lose.loseContext();
+        await pause();
+        lesson.values.set({j: lesson.state.j + 3});
+        await pause();
+        lose.restoreContext();
+        await pause();
+    });
+    await settled(page);
+    const between = await numbers(page);
+    await page.evaluate(() => lesson.values.set({j: lesson.state.j - 3}));
+    await settled(page);
+    const after = await numbers(page);
+    claim('learn: after a lost context the figures are computed again', between.sum !== before.sum && after.sum === before.sum ? [] : [`${before.sum}, ${between.sum}, ${after.sum}`]);
+    page.complaints = page.complaints.filter(text => !/context/i.test(text));
 }
 
 /// The parts that all pages share: titles, icons, and the links from one page to the next and back.
@@ -197,7 +231,10 @@ export async function testLearn({root, server, browser, claim, watch}) {
         claim(`${name}: "${label}" changes the number of the page`, Number.isFinite(after[number]) && after[number] !== before[number] ? [] : [`${number} was ${before[number]} and is ${after[number]}`]);
         await testAxe(page, axe, name, claim);
         await check(page, claim);
-        if (name === 'irradiance') await testFiles(page, claim);
+        if (name === 'irradiance') {
+            await testFiles(page, claim);
+            await testLostContext(page, claim);
+        }
         await page.setViewportSize({width: 390, height: 844});
         const beyond = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
         claim(`${name}: it fits a phone`, beyond > 0 ? [`${beyond} pixels stand out to the right`] : []);

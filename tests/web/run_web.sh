@@ -3,7 +3,7 @@
 #
 #   run_web.sh [--all] [NAME...]
 #
-# --all: every texture of reflection mapping, every strategy, and both colour schemes (also with DOMELIGHT_BROWSER_ENGINES=all). NAME: only the
+# --all: every texture of reflection mapping, and every strategy (also with DOMELIGHT_BROWSER_ENGINES=all). NAME: only the
 # tests whose names have one of these words. Pictures: build/web-test.
 set -uo pipefail
 here=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)

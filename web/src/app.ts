@@ -3,9 +3,9 @@
 import type {Baker} from './bake/baker';
 import {brdfTable} from './bake/brdf_table';
 import type {Bake, BrdfTable} from './bake/types';
-import {endsIn, modelEndings} from './endings';
+import {endsIn, modelEndings, otherModelEndings} from './endings';
 import {Jobs, type JobEvents} from './jobs';
-import {builtIn, fromFile, fromServed, type LightSource} from './light_source';
+import {builtIn, builtInEnvironments, exposureFor, fromFile, fromServed, type LightSource} from './light_source';
 import {LiveCubes} from './render/live_cubes';
 import {loadProbes, splitFiles} from './probes/load';
 import {readPane} from './render/read_back';
@@ -22,6 +22,10 @@ import {isPicture, Store, type Mode, type State} from './state';
 const k_frames = 64;
 /// What an object sees of its neighbours depends on these.
 const seenByObjects = new Set<keyof State>(['live', 'lights', 'turn', 'override', 'color', 'metalness', 'roughness', 'multipleScattering', 'irradiance', 'occlusion', 'diffuseWeight', 'bentLookup']);
+/// Stops from a good exposure at which hardly anything is seen.
+const k_too_bright_ev = 3.5, k_too_dark_ev = 6;
+/// Height of what lies over the picture above and below, in CSS pixels.
+const k_bars = 64;
 const k_noisy_frames = 4096;
 /// Until it is asked again whether the graphics card has done its work.
 const k_pause_ms = 4;
@@ -52,6 +56,13 @@ export class App {
     private movingSince: number | null = null;
     private needed = {phong: false, rows: 0};
     private source: LightSource;
+    /// What can be shown, by name: what is computed here and what was opened.
+    readonly environments = new Map<string, LightSource>(Object.keys(builtInEnvironments).map(name => [name, builtIn(name)]));
+    readonly models = new Map<string, () => Model | Promise<Model>>(Object.entries(builtInModels));
+    /// The exposure that was chosen here and not by the user.
+    private adapted: number | null = null;
+    /// An environment that could not be read as what it was taken for.
+    private refused: {name: string; source: LightSource} | null = null;
     private light = 0;
     private readonly resolution = new Resolution();
     private drawnScale = 1;
@@ -125,9 +136,9 @@ export class App {
         if (!(await this.relight()) && served?.environment[0]) {
             this.source = builtIn(this.state.environment);
             await this.relight();
-        }
+        } else if (served?.environment[0]) this.environments.set(served.environment[0].name, this.source);
         const {scene} = served ?? {};
-        if (scene) await this.work(`reading ${scene.name}`, async () => this.showModel(await loadModel(this.stage.renderer, scene.name, await (await fetchFile(scene)).arrayBuffer(), new Map(), scene.url.replace(/[^/]*$/, ''))));
+        if (scene) await this.useModel(scene.name, async () => loadModel(this.stage.renderer, scene.name, await (await fetchFile(scene)).arrayBuffer(), new Map(), scene.url.replace(/[^/]*$/, '')));
         if (served?.probes.length) await this.work('reading the probes', async () => this.openProbes(await Promise.all(served.probes.map(fetchFile))));
         await table;
     }
@@ -136,19 +147,67 @@ export class App {
     async openFiles(files: Iterable<File>): Promise<void> {
         const {set, rest: all} = splitFiles([...files]), siblings = new Map(all.map(file => [file.name, file])), withGltf = all.some(file => endsIn(file.name, ['.gltf'])), isModel = (name: string) => endsIn(name, modelEndings);
         const environments = all.filter(({name}) => !isModel(name) && (!withGltf || endsIn(name, ['.hdr', '.exr'])));
-        for (const file of all.filter(({name}) => isModel(name))) await this.work(`reading ${file.name}`, async () => this.showModel(await loadModel(this.stage.renderer, file.name, await file.arrayBuffer(), siblings)));
-        for (const file of environments) await this.openEnvironment(file);
+        for (const file of all.filter(({name}) => isModel(name))) await this.useModel(file.name, async () => loadModel(this.stage.renderer, file.name, await file.arrayBuffer(), siblings));
+        for (const file of environments) {
+            if (endsIn(file.name, otherModelEndings)) this.events.failed(`${file.name}: models are read as .glb or .gltf. Convert it first, for instance with Blender.`);
+            else await this.useLight(file.name, fromFile(file));
+        }
         if (set.length > 0) await this.work('reading the probes', () => this.openProbes(set));
     }
     private async openProbes(files: File[]): Promise<void> {
         this.stage.setProbes(await loadProbes(files));
         this.opened();
     }
-    private async openEnvironment(file: File): Promise<void> {
+    /// Lights by another environment, which can be chosen again from then on. One that cannot be read changes nothing.
+    private async useLight(name: string, source: LightSource): Promise<void> {
         const before = this.source;
-        this.source = fromFile(file);
-        if (await this.relight(`reading ${file.name}`)) this.store.set({furnace: false});
-        else this.source = before;
+        this.source = source;
+        this.refused = null;
+        if (await this.relight(`reading ${name}`)) {
+            this.environments.set(name, source);
+            this.store.set({furnace: false});
+            this.adaptExposure();
+        } else {
+            this.source = before;
+            this.refused = {name, source};
+        }
+    }
+    chooseEnvironment(name: string): void {
+        const source = this.environments.get(name);
+        if (!source || name === this.environmentName) return;
+        // The address tells of those that are computed here.
+        if (name in builtInEnvironments && this.state.environment !== name) this.store.set({environment: name});
+        else void this.useLight(name, source);
+    }
+    /// The one after the shown one, or before it.
+    nextEnvironment(step: number): void {
+        const names = [...this.environments.keys()].filter(name => name !== 'furnace'), at = names.indexOf(this.environmentName);
+        this.chooseEnvironment(names[(at + step + names.length) % names.length]!);
+    }
+    /// For the mean of the light.
+    get goodExposure(): number {
+        return this.bake ? exposureFor(this.bake.sh) : 0;
+    }
+    /// Light that would leave nothing but black or white is given another exposure, and the page says so.
+    private adaptExposure(): void {
+        const {goodExposure, state} = this, exposure = state.exposure === this.adapted ? 0 : state.exposure;
+        this.adapted = null;
+        if (goodExposure - exposure > -k_too_bright_ev && goodExposure - exposure < k_too_dark_ev) return this.store.set({exposure});
+        this.store.set({exposure: (this.adapted = goodExposure)});
+        this.events.told(`${this.environmentName} is ${goodExposure < exposure ? 'bright' : 'dark'}: the exposure is now ${goodExposure.toFixed(1)} EV.`);
+    }
+    private useModel(name: string, load: () => Model | Promise<Model>): Promise<boolean> {
+        return this.work(`reading ${name}`, async () => {
+            this.showModel(await load());
+            this.models.set(name, load);
+            for (const sentence of this.model.notes ?? []) this.events.told(`${name}: ${sentence}`);
+        });
+    }
+    chooseModel(name: string): void {
+        const load = this.models.get(name);
+        if (!load || name === this.model.name) return;
+        if (name in builtInModels && this.state.model !== name) this.store.set({model: name});
+        else void this.useModel(name, load);
     }
     /// Has a file made of the environment, and hands its bytes on.
     export(name: string, make: () => Promise<ArrayBuffer>, save: (bytes: ArrayBuffer) => void): Promise<boolean> {
@@ -177,7 +236,9 @@ export class App {
         });
     }
     resetView(): void {
-        const view = viewOf(this.model, this.stage.freeAspect);
+        // The name above and the methods below lie over the picture.
+        const {height, inset} = this.screen, bars = (2 * k_bars * Math.min(2, devicePixelRatio)) / (height - inset.bottom);
+        const view = viewOf(this.model, this.stage.freeAspect, this.state.panel && bars < 0.4 ? 1 / (1 - bars) : 1.05);
         this.store.set({eye: view.eye, target: view.target, fov: view.fovDeg});
     }
 
@@ -245,7 +306,8 @@ export class App {
         const {state} = this, make = builtInModels[state.model];
         if (changed.has('model') && make && state.model !== this.model.name) this.showModel(make());
         if (changed.has('environment') && state.environment !== this.environmentName) this.source = builtIn(state.environment);
-        if (changed.has('environment') || changed.has('furnace') || changed.has('size') || changed.has('projection')) void this.relight();
+        if (changed.has('projection') && this.refused) void this.useLight(this.refused.name, this.refused.source);
+        else if (changed.has('environment') || changed.has('furnace') || changed.has('size') || changed.has('projection')) void this.relight();
         else if (this.bake && this.lacking) void this.work('filtering the environment', () => this.provide());
         if ([...changed].some(key => seenByObjects.has(key))) this.liveCubes.invalidate();
         if (changed.has('live') && !state.live) this.liveCubes.clear();

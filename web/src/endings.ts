@@ -7,6 +7,8 @@ export const environmentEndings = ['.hdr', '.exr', '.ktx2', '.ktx', '.dds', '.en
 export const partEndings = ['.bin', '.webp'];
 /// A set of probes: probes.json with its .ktx2 files.
 export const probeEndings = ['.json'];
+/// Models that the page does not read.
+export const otherModelEndings = ['.obj', '.ply', '.fbx', '.usd', '.usda', '.usdc', '.usdz', '.blend', '.stl', '.3ds', '.dae', '.abc', '.max'];
 export const pictureEndings = ['.hdr', '.exr'];
 
 export const endsIn = (name: string, endings: string[]): boolean => endings.some(ending => name.toLowerCase().endsWith(ending));

@@ -7,8 +7,17 @@ import {studio, sunset, whiteFurnace} from './scene/environments';
 
 export const builtInEnvironments: Record<string, () => Latlong> = {studio, sunset, furnace: whiteFurnace};
 
+/// The mean radiance of a picture that is well exposed.
+const k_mean = 0.5;
+
 /// Where an environment comes from, so that it can be opened again after the white furnace. projection: of files that do not say theirs.
 export type LightSource = (baker: Baker, projection: string) => Promise<EnvironmentInfo>;
+
+/// The exposure that brings the mean radiance to k_mean, in thirds of a stop. sh: coefficients of E.
+export function exposureFor(sh: Float32Array): number {
+    const mean = (0.2126 * sh[0]! + 0.7152 * sh[1]! + 0.0722 * sh[2]!) * 0.282095 / Math.PI;
+    return mean > 0 ? Math.round(3 * Math.min(12, Math.max(-12, Math.log2(k_mean / mean)))) / 3 : 0;
+}
 
 export const builtIn = (name: string): LightSource => baker => baker.use(name, (builtInEnvironments[name] ?? studio)());
 export const fromFile = (file: File): LightSource => async (baker, projection) => baker.open(file.name, await file.arrayBuffer(), projection === 'auto' ? '' : projection);

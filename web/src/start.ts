@@ -49,10 +49,13 @@ export async function start({store, layout, baker, session}: Beginning): Promise
     const choosePicture = chooser('A picture to compare with', pictureEndings, ([file]) => file && void app.openPicture(file));
     const screenshot = () => {
         app.stage.showWhite(app.state);
-        layout.canvas.toBlob(blob => blob && save(`domelight-${app.state.mode}.png`, blob, 'image/png'));
+        // Without what lies below the panel.
+        const {canvas} = layout, {right, bottom} = app.stage.inset, copy = new OffscreenCanvas(Math.max(1, canvas.width - right), Math.max(1, canvas.height - bottom));
+        copy.getContext('2d')!.drawImage(canvas, 0, 0);
+        void copy.convertToBlob().then(blob => save(`domelight-${app.state.mode}.png`, blob, 'image/png'));
         app.redraw();
     };
-    const keys = keyTable(store, {open: choose, help: () => help.showModal(), screenshot, resetView: () => app.resetView(), truth: () => truth.compare()});
+    const keys = keyTable(store, {open: choose, help: () => help.showModal(), screenshot, resetView: () => app.resetView(), nextEnvironment: step => app.nextEnvironment(step), truth: () => truth.compare()});
     const help = helpDialog(keys);
     bindKeys(keys);
 

@@ -145,7 +145,7 @@ struct TextureInfo {
 };
 Result<TextureInfo> read_texture_info(const std::filesystem::path& file);
 /// Reads a texture in one of our encodings, in half R, in half or float RGB, or with a colour of eight bits a channel
-/// (also as BC1, BC2 or BC3). R becomes RG with a green of 0 (also r32f, which becomes rg32f), and RGB becomes RGBA
+/// (also as BC1, BC2, BC3, BC7). R becomes RG with a green of 0 (also r32f, which becomes rg32f), and RGB becomes RGBA
 /// with an alpha of 1. Eight bits a channel become half floats, by the curve that the format of a KTX2 or KTX file
 /// states; in DDS by that of sRGB. The levels of a KTX2 file may be packed with zstd or zlib. Every size and offset is
 /// checked against the file before memory is allocated; a texture that needs more than 2 GiB is refused.

@@ -53,7 +53,9 @@ Result<Cubemap> read_cube_texture(std::span<const std::uint8_t> bytes, std::int6
     if (!texture) return texture.error();
     const bool astc = texture->encoding == Encoding::astc4x4_hdr || texture->encoding == Encoding::astc6x6_hdr;
     if (astc && !has_astc_codec()) return Error{"ASTC is not read by this build", "", "Convert it to BC6H or floats."};
-    if (encoding_channels(texture->encoding) != 3) return Error{"texture has two channels, not a colour", "", ""};
+    if (encoding_channels(texture->encoding) != 3)
+        return Error{"the texture has fewer than three channels, not a colour", "",
+                     "Save it with red, green and blue."};
 
     Cubemap cube(texture->width);
     if (texture->encoding == Encoding::rgba16f || texture->encoding == Encoding::r11g11b10f) repair.largest = 65504;

@@ -28,6 +28,10 @@ Rgba base_color(const Scene& scene, const Material& m, const Corners& c) {
     return base;
 }
 
+Vec3f emission_of(const Scene& scene, const Material& m, const Corners& c) {
+    return product(m.emission, look_up(scene, m.emission_texture, c, true).rgb);
+}
+
 float opacity_of(const Material& m, float alpha) {
     switch (m.alpha_mode) {
         case Material::AlphaMode::opaque:
@@ -131,13 +135,10 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& origin,
 
     const Rgba base = base_color(scene, m, c);
     out.opacity = opacity_of(m, base.a);
-    out.emission = product(m.emission, look_up(scene, m.emission_texture, c, true).rgb);
+    out.emission = m.unlit ? base.rgb : emission_of(scene, m, c);
     out.albedo = base.rgb;
     out.unlit = m.unlit;
-    if (m.unlit) {
-        out.emission = base.rgb;
-        return out;
-    }
+    if (m.unlit) return out;
     const Base below = make_base(scene, m, c, base.rgb, -dot(normal, direction), multiple_scattering);
     out.bsdf = below.bsdf;
     if (!layers || !has_layers(m)) return out;
@@ -151,6 +152,21 @@ SurfacePoint surface_at(const Scene& scene, const Hit& hit, const Vec3f& origin,
         out.emission *= layers->under();
     }
     return out;
+}
+
+Vec3f emission_before_layers(const Scene& scene, const Hit& hit) {
+    const Mesh& mesh = scene.meshes[scene.instances[hit.instance].mesh];
+    const Material& m = scene.materials[mesh.material];
+    const Corners c(mesh, hit);
+    return m.unlit ? base_color(scene, m, c).rgb : emission_of(scene, m, c);
+}
+
+Vec3f emission_at(const Scene& scene, const Hit& hit, const Vec3f& origin, const Vec3f& direction,
+                  bool multiple_scattering) {
+    const Material& m = scene.materials[scene.meshes[scene.instances[hit.instance].mesh].material];
+    if (m.unlit || !has_layers(m)) return emission_before_layers(scene, hit);
+    LayeredBsdf layers;
+    return surface_at(scene, hit, origin, direction, multiple_scattering, &layers).emission;
 }
 
 float opacity_at(const Scene& scene, const Hit& hit) {

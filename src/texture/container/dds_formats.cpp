@@ -183,6 +183,9 @@ std::optional<ScreenTexels> dxgi_screen_texels(std::uint32_t number) {
         case 77:
         case 78:
             return ScreenTexels{Kind::bc3, 0, {}};
+        case 98:
+        case 99:
+            return ScreenTexels{Kind::bc7, 0, {}};
         default:
             return std::nullopt;
     }

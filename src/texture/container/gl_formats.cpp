@@ -162,6 +162,7 @@ std::optional<StatedScreenTexels> gl_format_screen_texels(std::uint32_t internal
         {0x83f1, 0x8c4d, Kind::bc1},  // RGBA_S3TC_DXT1
         {0x83f2, 0x8c4e, Kind::bc2},  // RGBA_S3TC_DXT3
         {0x83f3, 0x8c4f, Kind::bc3},  // RGBA_S3TC_DXT5
+        {0x8e8c, 0x8e8d, Kind::bc7},  // RGBA_BPTC
     };
     for (const Blocks& row : k_blocks)
         if (type == 0 && (internal_format == row.linear || internal_format == row.srgb))

@@ -2,6 +2,7 @@
 
 #include "io/picture/screen_colour.h"
 #include "texture/block/bc123.h"
+#include "texture/block/bc7.h"
 #include "texture/texel/half.h"
 
 #include <algorithm>
@@ -18,6 +19,13 @@ int block_bytes(const ScreenTexels& texels) {
     return texels.kind == ScreenTexels::Kind::bc1 ? 8 : 16;
 }
 
+Rgba8Block decode_block(ScreenTexels::Kind kind, const std::uint8_t* block) {
+    return kind == ScreenTexels::Kind::bc1   ? decode_bc1(block)
+           : kind == ScreenTexels::Kind::bc2 ? decode_bc2(block)
+           : kind == ScreenTexels::Kind::bc3 ? decode_bc3(block)
+                                             : decode_bc7(block);
+}
+
 /// Calls `use(x, y, texel)` for every texel of an image.
 template <typename Use>
 void for_texels(const ScreenTexels& texels, const std::uint8_t* stored, int width, int height, Use use) {
@@ -32,9 +40,7 @@ void for_texels(const ScreenTexels& texels, const std::uint8_t* stored, int widt
     }
     for (int top = 0; top < height; top += 4)
         for (int left = 0; left < width; left += 4, stored += block_bytes(texels)) {
-            const Rgba8Block block = texels.kind == ScreenTexels::Kind::bc1   ? decode_bc1(stored)
-                                     : texels.kind == ScreenTexels::Kind::bc2 ? decode_bc2(stored)
-                                                                              : decode_bc3(stored);
+            const Rgba8Block block = decode_block(texels.kind, stored);
             for (int y = top; y < std::min(top + 4, height); ++y)
                 for (int x = left; x < std::min(left + 4, width); ++x)
                     use(x, y, block[std::size_t((y - top) * 4 + x - left)]);

@@ -12,7 +12,7 @@ namespace domelight {
 
 /// Their layout in a file.
 struct ScreenTexels {
-    enum class Kind { bytes, bc1, bc2, bc3 };
+    enum class Kind { bytes, bc1, bc2, bc3, bc7 };
     Kind kind = Kind::bytes;
     int bytes = 4;                              ///< of a texel, where kind is bytes
     std::array<int, 4> channel = {0, 1, 2, 3};  ///< which byte is red, green, blue and alpha; -1: there is none

@@ -48,7 +48,7 @@ Result<Texture> texture_for(const TextureInfo& info, const std::optional<StoredT
         return Error{
             "cannot decode " + info.format, "",
             "readable: half and float RGBA, RGB, RG and R, RGB9E5, R11G11B10, BC6H (unsigned), ASTC HDR 4x4 and 6x6, "
-            "and eight bits a channel as RGBA, RGB, BC1, BC2 and BC3"};
+            "and eight bits a channel as RGBA, RGB, BC1, BC2, BC3 and BC7"};
     if (info.depth > 1) return Error{"is a three-dimensional texture, which is not supported", "", ""};
     if (info.layers > 1)
         return Error{"is an array of " + std::to_string(info.layers) + " textures, which is not supported", "", ""};

@@ -169,6 +169,7 @@ std::optional<StatedScreenTexels> vulkan_format_screen_texels(std::uint32_t form
         {133, 134, {Kind::bc1, 0, {}}},             // BC1_RGBA
         {135, 136, {Kind::bc2, 0, {}}},             // BC2
         {137, 138, {Kind::bc3, 0, {}}},             // BC3
+        {145, 146, {Kind::bc7, 0, {}}},             // BC7
     };
     for (const Row& row : k_rows)
         if (format == row.unorm || format == row.srgb) return StatedScreenTexels{row.texels, format == row.srgb};

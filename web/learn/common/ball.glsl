@@ -1,15 +1,10 @@
-// A ball of white metal, seen from +Z, by whichever method's shade() came before. Behind web/src/shading/material.glsl.
+// A ball of white metal, seen from +Z, by whichever method's shade() came before. Behind web/src/shading/material.glsl and white_metal.glsl.
 
 uniform vec3 u_normal;
 uniform float u_ball_roughness;
-uniform int u_what;     // 0 the ball, 1 estimates of the point with u_normal, 2 the same with a roughness that grows from column to column
-uniform float u_columns_of_table;
+uniform int u_what;     // 0 the ball, 1 estimates of the point with u_normal
 in vec2 v_point;
 out vec4 out_color;
-
-Surface white_metal(vec3 normal, float roughness) {
-    return Surface(vec3(0.0), normal, vec3(0.0), vec3(1.0), vec3(1.0), vec3(0.0), vec3(0.0), max(roughness, 0.03), 1.0, 1.5, true, false, vec3(0.0), 1.0);
-}
 
 void main() {
     const vec3 view = vec3(0.0, 0.0, 1.0);
@@ -18,7 +13,6 @@ void main() {
         float r2 = dot(p, p);
         out_color = r2 > 1.0 ? vec4(0.0) : vec4(shade(white_metal(vec3(p, sqrt(1.0 - r2)), u_ball_roughness), view), 1.0);
     } else {
-        float roughness = u_what == 1 ? u_ball_roughness : gl_FragCoord.x / u_columns_of_table;
-        out_color = vec4(shade(white_metal(u_normal, roughness), view), 1.0);
+        out_color = vec4(shade(white_metal(u_normal, u_ball_roughness), view), 1.0);
     }
 }

@@ -16,19 +16,20 @@ import ball from './ball.glsl?raw';
 import type {Light} from './light';
 import {luminance} from './maps';
 import show from './show.glsl?raw';
+import whiteMetal from './white_metal.glsl?raw';
 
 /// The text in front of what uses the functions of monte_carlo.glsl.
-export const monteCarloParts = [ownFrame(sphericalEnvmap), sampleEnvmap, bilinear, material, brdf, monteCarlo];
+export const monteCarloParts = [ownFrame(sphericalEnvmap), sampleEnvmap, bilinear, material, brdf, monteCarlo, whiteMetal];
 
 export const ballUniforms = (): Uniforms => ({
-    u_normal: {value: new THREE.Vector3()}, u_ball_roughness: {value: 0.3}, u_what: {value: 0}, u_columns_of_table: {value: 1},
+    u_normal: {value: new THREE.Vector3()}, u_ball_roughness: {value: 0.3}, u_what: {value: 0},
 });
 
 /// strategy: 0 both, 1 the environment, 2 the BRDF.
 export function monteCarloPass(light: Light, shared: Uniforms, strategy: number): Pass {
     return new Pass(fullscreen(...monteCarloParts, ball), {...light.uniforms, ...shared, u_strategy: {value: strategy}, u_tables: {value: 1}, u_samples: {value: 1}, u_frame: {value: 0}});
 }
-export const ballPass = (light: Light, shared: Uniforms, ...method: string[]): Pass => new Pass(fullscreen(...method, ball), {...light.uniforms, ...shared});
+export const ballPass = (light: Light, shared: Uniforms, ...method: string[]): Pass => new Pass(fullscreen(...method, whiteMetal, ball), {...light.uniforms, ...shared});
 
 export function showPass(light: Light): Pass {
     return new Pass(fullscreen(tonemap, show), {u_tonemap: light.uniforms.u_tonemap!, u_exposure: light.uniforms.u_exposure!, u_picture: {value: null}, u_other: {value: null}, u_difference: {value: false}});
@@ -40,10 +41,10 @@ export function normalAt(NdotV: number, aroundDeg: number): [number, number, num
     return [side * Math.cos(a), side * Math.sin(a), NdotV];
 }
 
-/// Mean and standard deviation of the luminance in a column of a table of estimates.
-export function statistics(table: Float32Array, width: number, column: number): {mean: number; deviation: number; count: number} {
+/// Mean and standard deviation of the luminance in a table of estimates.
+export function statistics(table: Float32Array): {mean: number; deviation: number; count: number} {
     let sum = 0, squares = 0, count = 0;
-    for (let k = 4 * column; k < table.length; k += 4 * width, ++count) {
+    for (let k = 0; k < table.length; k += 4, ++count) {
         const l = luminance(table[k]!, table[k + 1]!, table[k + 2]!);
         sum += l;
         squares += l * l;

@@ -13,9 +13,17 @@ export function excerpt(text: string, name: string): string {
     return lines.slice(from, to + 1).join('\n');
 }
 
+/// A line whose rest, where it is too long, is indented more than its beginning.
+function lineOf(text: string): HTMLElement {
+    const line = element('span', {}, `${text}\n`), indent = text.search(/\S|$/) + 4;
+    line.style.paddingLeft = `${indent}ch`;
+    line.style.textIndent = `-${indent}ch`;
+    return line;
+}
+
 /// Shows functions of a file in the element that has this id.
 export function showCode(id: string, file: string, text: string, ...names: string[]): void {
-    const code = element('code', {}, names.map(name => excerpt(text, name)).join('\n\n'));
-    const pre = element('pre', {tabIndex: 0, role: 'region', ariaLabel: `Code of ${file}`}, code);
+    const code = element('code', {}, ...names.map(name => excerpt(text, name)).join('\n\n').split('\n').map(lineOf));
+    const pre = element('pre', {tabIndex: 0, role: 'region', ariaLabel: `Code of ${file}: ${names.join(', ')}`}, code);
     document.getElementById(id)!.append(pre, element('figcaption', {}, 'This text is what runs here: ', element('code', {}, file)));
 }

@@ -8,11 +8,13 @@ import {bindDrops, chooser} from '../../src/ui/files';
 import {environmentNames} from '../../src/ui/labels';
 import {whatIsMissing} from '../../src/ui/missing';
 import {k_rows, Light} from './light';
-import {Painter} from './painter';
+import {Outdated, Painter} from './painter';
 
 const computed = [...environmentNames, ['furnace', 'Radiance 1 from everywhere']] as const;
 /// Stands for a file of the user's, which no address can name.
 const k_file = 'file';
+/// How long a drawing goes on with what was chosen before something else was, so that all its parts are drawn now and then while a slider is dragged.
+const k_patience_ms = 120;
 
 /// The values of a page. They are its address too.
 export interface Choices {
@@ -21,28 +23,40 @@ export interface Choices {
 
 export class Lesson<T extends Choices> {
     readonly light = new Light();
-    readonly painter = new Painter();
+    readonly painter = new Painter(() => this.outdated);
     readonly values: Values<T>;
     /// Numbers of the figures, for tests.
     readonly numbers: Record<string, number> = {};
-    private readonly drawings: (() => void)[] = [];
+    private drawing: () => Promise<void> = async () => {};
+    private refining: () => Promise<boolean> = async () => false;
     private readonly loaders: (() => Promise<void>)[] = [];
     private readonly note = element('p', {className: 'note', role: 'status'});
     private readonly alert = element('div', {id: 'notes', role: 'alert'});
     private select!: SelectControl<T>;
+    /// The last one of the user's that could be read.
+    private file?: File;
+    private opening: Promise<unknown> = Promise.resolve();
     private pending = 0;
+    /// Whether there is a light, something was chosen that is not drawn yet, what was chosen is drawn, and whether something is being drawn or refined.
+    private lit = false;
+    private wanted = false;
     private drawn = false;
+    private running = false;
+    /// When the last drawing began.
+    private begun = 0;
     private failed = false;
 
     constructor(usual: T, words: Words<T> = {}) {
         this.values = new Values({...usual, ...readHash(location.hash, usual, {environment: computed.map(([name]) => name), ...words})}, usual);
         this.layOut();
         this.values.listen(changed => {
-            const hash = writeHash({...this.state, environment: this.state.environment === k_file ? usual.environment : this.state.environment}, usual);
+            const {environment} = this.state, hash = writeHash({...this.state, environment: environment === k_file ? usual.environment : environment}, usual);
             history.replaceState(null, '', hash || location.pathname);
-            if (changed.has('environment') && this.state.environment !== k_file) void this.open(builtIn(this.values.state.environment));
+            this.leadOn();
+            if (changed.has('environment')) void this.open(environment === k_file ? fromFile(this.file!) : builtIn(environment));
             else this.draw();
         });
+        this.leadOn();
         addEventListener('hashchange', () => location.reload());
         this.painter.renderer.domElement.addEventListener('webglcontextrestored', () => this.draw());
         Object.assign(window, {lesson: this});
@@ -53,63 +67,60 @@ export class Lesson<T extends Choices> {
     }
     /// Whether the figures show what was chosen.
     get ready(): boolean {
-        return (this.drawn && this.pending === 0) || this.failed;
+        return (this.drawn && this.pending === 0 && !this.wanted) || this.failed;
+    }
+    private get outdated(): boolean {
+        return (this.wanted || this.pending > 0) && performance.now() - this.begun > k_patience_ms;
     }
 
     /// What has to be computed of each environment, in the order of the calls.
     onLight(load: () => Promise<void>): void {
         this.loaders.push(load);
     }
-    /// What has to be drawn whenever something was chosen.
-    onDraw(draw: () => void): void {
-        this.drawings.push(draw);
+    /// What has to be drawn whenever something was chosen, and then again and again while it returns true and nothing else is chosen. One of them runs at a time.
+    onDraw(draw: () => Promise<void>, refine = this.refining): void {
+        this.drawing = draw;
+        this.refining = refine;
     }
     start(): void {
         void this.open(builtIn(this.state.environment));
     }
 
-    /// Runs work of the worker; the figures are drawn afterwards. Of several with one key, only the last that was asked for counts.
-    async compute<R>(key: string, work: () => Promise<R>, done: (result: R) => void): Promise<void> {
-        const turn = (this.turns.get(key) ?? 0) + 1;
-        this.turns.set(key, turn);
-        await this.busy(async () => {
-            const result = await work();
-            if (this.turns.get(key) === turn) done(result);
-        });
+    /// What the worker answers, in a drawing.
+    async answer<R>(asked: Promise<R>): Promise<R> {
+        const result = await asked;
+        this.painter.check();
+        return result;
     }
-    private readonly turns = new Map<string, number>();
 
     /// Opens a file of the user's. If it cannot be read, the light stays as it is.
     private async openFile(file: File): Promise<void> {
         if (!(await this.open(fromFile(file)))) return;
+        this.file = file;
         this.select.fill([...computed, [k_file, this.light.name]]);
         this.values.state.environment = k_file as T['environment'];
         this.select.querySelector('select')!.value = k_file;
     }
 
-    /// Whether that went well.
+    /// Whether that went well. One environment is opened after the other.
     open(source: LightSource): Promise<boolean> {
-        return this.busy(async () => {
-            await this.light.open(source);
-            for (const load of this.loaders) await load();
-            const {name, readHeight} = this.light;
-            this.note.textContent = readHeight > k_rows ? `${name}, reduced to ${k_rows} rows, so that every number on this page is of the same light.` : `${name}, ${readHeight} rows.`;
-            this.drawn = true;
-        });
-    }
-
-    private async busy(work: () => Promise<void>): Promise<boolean> {
         ++this.pending;
-        let well = true;
-        try {
-            await work();
-        } catch (error) {
-            this.complain((error as Error).message);
-            well = false;
-        }
-        --this.pending;
-        if (this.drawn) this.drawNow();
-        return well;
+        const opened = this.opening.then(() => this.use(source)).then(() => true, (error: Error) => {
+            this.complain(error.message);
+            return false;
+        });
+        this.opening = opened.then(() => {
+            --this.pending;
+            this.draw();
+        });
+        return opened;
+    }
+    private async use(source: LightSource): Promise<void> {
+        await this.light.open(source);
+        for (const load of this.loaders) await load();
+        const {name, readHeight} = this.light;
+        this.note.textContent = readHeight > k_rows ? `${name}, reduced to ${k_rows} rows, so that every number on this page is of the same light.` : `${name}, ${readHeight} rows.`;
+        this.lit = true;
     }
     private complain(sentence: string): void {
         const note = element('div', {className: 'surface'}, element('p', {}, sentence), button('Close', () => note.remove()));
@@ -117,14 +128,42 @@ export class Lesson<T extends Choices> {
         while (this.alert.children.length > 3) this.alert.firstElementChild!.remove();
     }
 
-    private draw(): void {
-        if (this.drawn) this.drawNow();
+    /// Draws, now or after what is being drawn.
+    draw(): void {
+        this.wanted = true;
+        if (!this.running) void this.run();
     }
-    private drawNow(): void {
-        if (this.painter.renderer.getContext().isContextLost()) return;
-        for (const draw of this.drawings) draw();
+    private async run(): Promise<void> {
+        this.running = true;
+        while (this.lit && this.pending === 0 && !this.painter.renderer.getContext().isContextLost()) {
+            try {
+                if (this.wanted) await this.drawOnce();
+                else if (!(await this.refining())) break;
+            } catch (error) {
+                if (error instanceof Outdated) continue;
+                this.complain((error as Error).message);
+                break;
+            }
+        }
+        this.running = false;
+    }
+    private async drawOnce(): Promise<void> {
+        this.drawn = this.wanted = false;
+        this.begun = performance.now();
+        try {
+            await this.drawing();
+            this.drawn = true;
+        } catch (error) {
+            if (error instanceof Outdated) this.wanted = true;
+            throw error;
+        }
     }
 
+    /// The neighbouring pages open with the same environment.
+    private leadOn(): void {
+        const {environment} = this.state, hash = environment === k_file || environment === computed[0][0] ? '' : `environment=${environment}`;
+        for (const link of document.querySelectorAll<HTMLAnchorElement>('footer a[rel]')) link.hash = hash;
+    }
     /// The choice of the environment, and what files are dropped on.
     private layOut(): void {
         const choose = chooser('Your environment', environmentEndings, ([file]) => file && void this.openFile(file));

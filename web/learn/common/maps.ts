@@ -37,3 +37,11 @@ export const luminance = (r: number, g: number, b: number): number => 0.2126 * r
 /// Numbers as the pages write them: four digits.
 export const digits = (value: number): string => (value !== 0 && Math.abs(value) < 1e-3 ? value.toExponential(2).replace('e-', ' · 10⁻').replace(/(\d+)$/, n => [...n].map(d => '⁰¹²³⁴⁵⁶⁷⁸⁹'[+d]).join('')) : value.toPrecision(4));
 export const percent = (value: number): string => `${value > 0 ? '+' : value < 0 ? '−' : ''}${Math.abs(100 * value) < 0.01 ? '< 0.01' : Math.abs(100 * value).toPrecision(2)} %`.replace(/^[+−]?< /, '< ');
+/// A mean with its standard error: the error has two digits, and the mean as many decimals.
+export function withError(mean: number, error: number): string {
+    const decimals = error > 0 ? Math.min(12, Math.max(0, 1 - Math.floor(Math.log10(error)))) : 4;
+    return `${mean.toFixed(decimals)} ± ${error.toFixed(decimals)}`;
+}
+export function percentWithError(value: number, error: number): string {
+    return `(${withError(100 * value, 100 * error).replace(/-/g, '−')}) %`;
+}

@@ -29,7 +29,7 @@ export class Plot {
 
     /// told: what the plot shows, for those who do not see it.
     draw(x: Axis, y: Axis, lines: Line[], told: string): void {
-        const left = 46, right = k_width - 10, top = 24, bottom = this.height - 34;
+        const left = 58, right = k_width - 16, top = 24, bottom = this.height - 34;
         const place = (axis: Axis, value: number, a: number, b: number) => {
             const scale = (v: number) => (axis.log ? Math.log(Math.max(v, 1e-30)) : v);
             const t = (scale(value) - scale(axis.from)) / (scale(axis.to) - scale(axis.from));

@@ -41,31 +41,31 @@ lesson.onLight(async () => {
     exactly = luminance(r!, g!, b!);
 });
 
-lesson.onDraw(() => {
+lesson.onDraw(async () => {
     const {width, height} = light.tables, state = lesson.state;
     u.u_what!.value = 0;
     (u.u_random!.value as THREE.Vector2).set(state.u, state.v);
-    const [x, y, z, density] = painter.compute(pass, 1, 1), found = latlongPoint([x!, y!, z!]);
+    const [x, y, z, density] = await painter.compute(pass, 1, 1), found = latlongPoint([x!, y!, z!]);
     const column = Math.min(width - 1, Math.floor(found[0] * width)), row = Math.min(height - 1, Math.floor(found[1] * height));
-    drawMap(found, row);
+    await drawMap(found, row);
     drawCurve(rowCurve, 120, 360, Array.from({length: height}, (_, j) => light.tables.rows[2 * j]!), state.v, true);
     drawCurve(columnCurve, 720, 120, Array.from({length: width}, (_, i) => light.tables.columns[2 * (row * width + i)]!), state.u, false);
     Object.assign(numbers, {row, column, density});
     facts.set('Row', `${row} of ${height}`);
     facts.set('Column', `${column} of ${width}`);
     facts.set('Density per steradian', digits(density!));
-    facts.set('Over an even one', `× ${digits(density! * 4 * Math.PI)}`);
-    drawErrors();
+    facts.set('Times that of even sampling, 1/4π', digits(density! * 4 * Math.PI));
+    await drawErrors();
 });
 
-function drawMap(found: [number, number], row: number): void {
-    const {count} = lesson.state, context = painter.paint(map, source, 720, 360);
+async function drawMap(found: [number, number], row: number): Promise<void> {
+    const {count} = lesson.state, context = await painter.paint(map, source, 720, 360);
     context.fillStyle = 'rgb(255 255 255 / 0.35)';
     context.fillRect(0, (row / light.tables.height) * 360 - 0.5, 720, 2);
     if (count > 0) {
         u.u_what!.value = 1;
         u.u_count!.value = count;
-        const samples = painter.compute(pass, count, 1);
+        const samples = await painter.compute(pass, count, 1);
         context.fillStyle = '#ff4fd8';
         for (let k = 0; k < 4 * count; k += 4) {
             const [a, b] = latlongPoint([samples[k]!, samples[k + 1]!, samples[k + 2]!]);
@@ -95,9 +95,9 @@ function drawCurve(canvas: HTMLCanvasElement, width: number, height: number, sum
     context.stroke();
 }
 
-function drawErrors(): void {
+async function drawErrors(): Promise<void> {
     u.u_what!.value = 2;
-    const table = painter.compute(pass, k_doublings, 1);
+    const table = await painter.compute(pass, k_doublings, 1);
     const points = Array.from({length: k_doublings}, (_, k) => [2 ** k, Math.abs(luminance(table[4 * k]!, table[4 * k + 1]!, table[4 * k + 2]!) / exactly - 1)] as [number, number]);
     const [n, last] = points.at(-1)!;
     Object.assign(numbers, {exact: exactly, error: last});

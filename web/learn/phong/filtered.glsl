@@ -2,7 +2,7 @@
 // and web/src/shading: material.glsl, diffuse.glsl, phong.glsl.
 
 uniform vec3 u_mirror;
-uniform int u_what;  // 0 the map with the lobe, 1 the filtered map, 2 the filtered light of u_mirror
+uniform int u_what;  // 0 the map with the lobe, 1 the filtered map, 2 the filtered light of u_mirror, 3 the same for exponents that grow from column to column
 in vec2 v_point;
 out vec4 out_color;
 
@@ -19,6 +19,6 @@ void main() {
     } else if (u_what == 1) {
         out_color = vec4(displayed(phong_light(d, u_exponent)), 1.0);
     } else {
-        out_color = vec4(phong_light(u_mirror, u_exponent), 1.0);
+        out_color = vec4(phong_light(u_mirror, u_what == 2 ? u_exponent : exp2(0.25 * floor(gl_FragCoord.x))), 1.0);
     }
 }

@@ -32,14 +32,15 @@ const rgba: TexelFormat = {name: 'rgba32f', channels: 3, bytes: 16}, rg: TexelFo
 const arrayOf = (format: TexelFormat, size: number, values: Float32Array): CubeArray => ({format, size, cubes: k_probes, levels: [new Uint8Array(values.buffer)]});
 
 /// A set of what was captured: RGBA and moments (in the first two of four channels) of k_size texels a face.
-export function setOf(probes: Probe[], radiance: Float32Array, moments: Float32Array): ProbeSet {
+/// irradiance: of irradianceOverPi(), likewise.
+export function setOf(probes: Probe[], radiance: Float32Array, moments: Float32Array, irradiance: Float32Array): ProbeSet {
     const distances = Float32Array.from({length: moments.length / 2}, (_, k) => moments[4 * (k >> 1) + (k & 1)]!);
     return {
         record: {
             scene: '', bounces: 0, grid, probes, roughness: [0], specular: {file: '', size: k_size}, irradiance: {file: '', size: k_irradiance_size}, distance: {file: '', size: k_size},
         },
         maps: {
-            specular: makeAtlas(arrayOf(rgba, k_size, radiance)), irradiance: makeAtlas(arrayOf(rgba, k_irradiance_size, irradianceOverPi(radiance))),
+            specular: makeAtlas(arrayOf(rgba, k_size, radiance)), irradiance: makeAtlas(arrayOf(rgba, k_irradiance_size, irradiance)),
             distances: makeDistances(arrayOf(rg, k_size, distances)), cells: null,
         },
     };
@@ -74,10 +75,12 @@ function texelsOf(size: number): {directions: Triple[]; parts: number[]} {
     return {directions, parts};
 }
 
-/// The mean of the light about a normal, weighted by the cosine: a sum over all texels.
-export function irradianceOverPi(radiance: Float32Array): Float32Array {
+/// Of each texel of the irradiance: the mean of the light about its normal, weighted by the cosine, as a sum over all texels that were captured. pause: lets the page do other things
+/// now and then.
+export async function irradianceOverPi(radiance: Float32Array, pause: () => Promise<void>): Promise<Float32Array> {
     const from = texelsOf(k_size), to = texelsOf(k_irradiance_size), texels = from.parts.length, out = new Float32Array(4 * k_probes * to.parts.length).fill(1);
-    to.directions.forEach((n, t) => {
+    for (const [t, n] of to.directions.entries()) {
+        if (t % 8 === 7) await pause();
         const weights = from.directions.map((d, k) => Math.max(0, n[0] * d[0] + n[1] * d[1] + n[2] * d[2]) * from.parts[k]!), total = weights.reduce((a, b) => a + b);
         const seen = weights.flatMap((w, k) => (w > 0 ? [k] : []));
         for (let probe = 0; probe < k_probes; ++probe) {
@@ -90,6 +93,6 @@ export function irradianceOverPi(radiance: Float32Array): Float32Array {
             }
             out.set([r / total, g / total, b / total], 4 * (probe * to.parts.length + t));
         }
-    });
+    }
     return out;
 }

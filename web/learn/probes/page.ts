@@ -14,7 +14,7 @@ import {showCode} from '../common/code';
 import {drawMark, onDrag} from '../common/direction';
 import {Facts, figure, fill, Lesson, picture} from '../common/lesson';
 import {digits, luminance, mapParts} from '../common/maps';
-import {k_half_wall, k_probes, k_size, placedProbes, rooms, setOf, windowLight} from './capture';
+import {irradianceOverPi, k_half_wall, k_probes, k_size, placedProbes, rooms, setOf, windowLight} from './capture';
 import './probes.css';
 import room from './room.glsl?raw';
 
@@ -52,29 +52,33 @@ showCode('code-visibility', 'web/src/shading/probe_visibility.glsl', probeVisibi
 showCode('code-parallax', 'web/src/shading/probe_light.glsl', probeLight, 'parallax_direction');
 
 /// For which wall and environment the probes were captured last.
-let captured = '', probes = placedProbes(3);
+let captured: {wall?: number; tables?: unknown} = {}, probes = placedProbes(3);
 
 /// Captures all probes, as `domelight probes` does: their places first, then their cubes.
-function capture(wall: number): void {
-    const key = `${wall} ${light.name}`;
-    if (key === captured) return;
-    captured = key;
+async function capture(wall: number): Promise<void> {
+    const {tables} = light;
+    if (captured.wall === wall && captured.tables === tables) return;
+    captured = {};
     probes = placedProbes(wall);
     const empty = new Float32Array(4 * 6 * k_size * k_size * k_probes), run = (what: number) => {
         u.u_what.value = what;
         return painter.compute(pass, k_size, 6 * k_size * k_probes);
     };
-    setProbeUniforms(set, setOf(probes, empty, empty.slice()), k_probes);  // the shader reads the places from it
-    setProbeUniforms(set, setOf(probes, run(5), run(6)), k_probes);
+    setProbeUniforms(set, setOf(probes, empty, empty, empty), k_probes);  // the shader reads the places from it
+    const radiance = await run(5), moments = await run(6);
+    setProbeUniforms(set, setOf(probes, radiance, moments, await irradianceOverPi(radiance, () => painter.pause())), k_probes);
+    captured = {wall, tables};
+    drawnPlans = ['', ''];
 }
 
-const smallPlans = plans.map(() => element('canvas')), drawnPlans = ['', ''];
+const smallPlans = plans.map(() => element('canvas'));
+let drawnPlans = ['', ''];
 
 /// A plan, computed again only if what it depends on has changed. Returns where to draw over it.
-function drawPlan(k: 0 | 1): CanvasRenderingContext2D {
-    const {height, wall, normal, blend, visibility} = lesson.state, small = smallPlans[k]!, key = String([light.name, height, wall, normal, ...(k === 0 ? [blend, visibility] : [])]);
+async function drawPlan(k: 0 | 1): Promise<CanvasRenderingContext2D> {
+    const {height, normal, blend, visibility} = lesson.state, small = smallPlans[k]!, key = String([height, normal, ...(k === 0 ? [blend, visibility] : [])]);
     u.u_what.value = k;
-    if (key !== drawnPlans[k]) painter.paint(small, pass, k_computed, k_computed / 2);
+    if (key !== drawnPlans[k]) await painter.paint(small, pass, k_computed, k_computed / 2);
     drawnPlans[k] = key;
     const canvas = plans[k], context = canvas.getContext('2d')!;
     Object.assign(canvas, {width: k_width, height: k_width / 2});
@@ -112,9 +116,9 @@ function cornersAt(point: number[]): number[] {
     return Array.from({length: 8}, (_, i) => low[0]! + (i & 1) + counts[0] * (low[1]! + ((i >> 1) & 1) + counts[1] * (low[2]! + (i >> 2))));
 }
 
-function tell(point: number[]): number[] {
+async function tell(point: number[]): Promise<number[]> {
     u.u_what.value = 4;
-    const table = painter.compute(pass, k_probes, 3), at = (column: number, row: number) => [...table.subarray(4 * (row * k_probes + column), 4 * (row * k_probes + column) + 4)] as [number, number, number, number];
+    const table = await painter.compute(pass, k_probes, 3), at = (column: number, row: number) => [...table.subarray(4 * (row * k_probes + column), 4 * (row * k_probes + column) + 4)] as [number, number, number, number];
     const weights = Array.from({length: k_probes}, (_, k) => at(k, 1)[0]), corners = cornersAt(point), [r, g, b] = at(0, 2), [tr, tg, tb] = at(1, 2);
     const factors = corners.map((_, i) => at(i, 0)), filled = 1 - corners.reduce((sum, k) => sum + weights[k]!, 0);
     rows.replaceChildren(...corners.map((k, i) => element('tr', {}, element('td', {}, probes[k]!.position.map(v => v.toFixed(1)).join(', ')), ...[...factors[i]!, weights[k]!].map(v => element('td', {}, v.toFixed(3))))));
@@ -128,27 +132,29 @@ function tell(point: number[]): number[] {
     return weights;
 }
 
-lesson.onDraw(() => {
+lesson.onDraw(async () => {
     const {x, z, height, wall, normal, blend, visibility, parallax} = lesson.state, point = [outOfWall(x, wall), height, z];
+    u.u_exposure.value = k_exposure;
     u.u_wall.value = wall;
     u.u_window.value.fromArray(windowLight(light.tables, 4 / (light.mean || 1)));
     u.u_point.value.fromArray(point);
     u.u_facing.value.fromArray(normals[normal]);
-    capture(wall);
+    await capture(wall);
     set.u_probe_most!.value = blend;
     set.u_probe_use_visibility!.value = visibility;
     set.u_probe_use_all!.value = !visibility;
     set.u_probe_parallax!.value = parallax;
-    const weights = tell(point), mark: [number, number] = [point[0]! / rooms[0], z / rooms[2]];
-    const [lit, truth] = [drawPlan(0), drawPlan(1)];
-    markProbes(lit, mark, weights);
-    for (const context of [lit, truth]) drawMark(context, mark);
-    u.u_exposure.value = Math.max(k_exposure, 0.4 / numbers.truth!);
-    balls.forEach((canvas, k) => {
+    const weights = await tell(point), mark: [number, number] = [point[0]! / rooms[0], z / rooms[2]];
+    for (const k of [0, 1] as const) {
+        const context = await drawPlan(k);
+        if (k === 0) markProbes(context, mark, weights);
+        drawMark(context, mark);
+    }
+    for (const [k, canvas] of balls.entries()) {
+        u.u_exposure.value = Math.max(k_exposure, 0.4 / numbers.truth!);
         u.u_what.value = k < 2 ? 2 : 3;
         set.u_probe_parallax!.value = k === 0 && parallax;
-        painter.paint(canvas, pass, k_ball, k_ball);
-    });
-    u.u_exposure.value = k_exposure;
+        await painter.paint(canvas, pass, k_ball, k_ball);
+    }
 });
 lesson.start();

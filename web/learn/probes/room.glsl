@@ -33,7 +33,7 @@ vec3 room_light(vec3 p, vec3 d) {
     vec3 squares = floor(2.0 * (q + 1e-3));
     float checker = mod(squares.x + squares.y + squares.z, 2.0) < 0.5 ? 1.0 : 0.55;
     vec3 window = q - vec3(0.0, 1.4, 1.5);
-    return tint * checker * (bright ? 1.2 / (1.0 + 0.25 * dot(window, window)) : 0.03);
+    return tint * checker * (bright ? 0.3 * u_window / (1.0 + 0.25 * dot(window, window)) : vec3(0.03));
 }
 
 /// E / pi by so many directions about the normal, as dense as the cosine, each turned by the golden angle from the one before.

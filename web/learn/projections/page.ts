@@ -3,6 +3,7 @@
 import * as THREE from 'three';
 import {Pass} from '../../src/render/passes';
 import {fullscreen} from '../../src/render/program';
+import environment from '../../src/shading/environment.glsl?raw';
 import projections from '../../src/shading/projections.glsl?raw';
 import {element} from '../../src/ui/controls';
 import {showCode} from '../common/code';
@@ -25,7 +26,7 @@ const facts = new Facts(), rows = element('tbody');
 const shown = maps.map(({name}, projection) => {
     const canvas = picture(`${name}: the environment with the chosen direction`);
     canvas.classList.add('aimed', 'discs');
-    onDrag(canvas, point => choose(projection, point), true);
+    onDrag(canvas, place => point(projection, place), true);
     return {canvas, still: element('canvas')};
 });
 // The wide ones above, the square ones below.
@@ -33,30 +34,45 @@ fill('maps', ...[0, 3, 1, 2, 4].map(k => figure(shown[k]!.canvas, maps[k]!.name)
 fill('controls', ...directionControls(values, 'Direction'));
 fill('facts', facts.root, element('table', {}, element('caption', {className: 'sr'}, 'The direction in each map'),
     element('thead', {}, element('tr', {}, ...['Map', 'u', 'v', 'Solid angle / 4π per area'].map(text => element('th', {scope: 'col'}, text)))), rows));
-showCode('code', 'web/src/shading/projections.glsl', projections, 'sphere_map_uv', 'paraboloid_uv', 'octahedral_fold', 'octahedral_uv', 'faces_uv');
+showCode('code', 'web/src/shading/environment.glsl and projections.glsl', environment + projections, 'latlong_point', 'sphere_map_uv', 'paraboloid_uv', 'octahedral_fold', 'octahedral_uv', 'faces_uv');
 
+/// The point of a map under the pointer, whose direction the next drawing chooses.
+let pointed: {projection: number; point: [number, number]} | undefined;
+function point(projection: number, point: [number, number]): void {
+    pointed = {projection, point};
+    lesson.draw();
+}
 /// The direction under the pointer, by the shader that draws the map.
-function choose(projection: number, point: [number, number]): void {
+async function choose(): Promise<void> {
+    if (!pointed) return;
     u.u_what!.value = 1;
-    u.u_projection!.value = projection;
-    (u.u_point!.value as THREE.Vector2).fromArray(point);
-    const [x, y, z, isShown] = painter.compute(pass, 1, 1);
+    u.u_projection!.value = pointed.projection;
+    (u.u_point!.value as THREE.Vector2).fromArray(pointed.point);
+    pointed = undefined;
+    const [x, y, z, isShown] = await painter.compute(pass, 1, 1);
     if (isShown) values.set(directionOf([x!, y!, z!]));
 }
 
-lesson.onLight(async () => {
-    u.u_what!.value = 0;
-    shown.forEach(({still}, projection) => {
+/// Which light the pictures show.
+let pictured: unknown;
+async function drawPictures(): Promise<void> {
+    const {tables} = light;
+    if (pictured === tables) return;
+    for (const [projection, {still}] of shown.entries()) {
+        u.u_what!.value = 0;
         u.u_projection!.value = projection;
-        painter.paint(still, pass, maps[projection]!.width, maps[projection]!.height);
-    });
-});
+        await painter.paint(still, pass, maps[projection]!.width, maps[projection]!.height);
+    }
+    pictured = tables;
+}
 
-lesson.onDraw(() => {
+lesson.onDraw(async () => {
+    await choose();
+    await drawPictures();
     const direction = vectorOf(lesson.state), [x, y, z] = direction;
     u.u_what!.value = 2;
     (u.u_direction!.value as THREE.Vector3).fromArray(direction);
-    const table = painter.compute(pass, maps.length, 1), lines: HTMLElement[] = [];
+    const table = await painter.compute(pass, maps.length, 1), lines: HTMLElement[] = [];
     maps.forEach(({name, width, height}, k) => {
         const {canvas, still} = shown[k]!, [a, b, spread] = table.subarray(4 * k) as unknown as [number, number, number];
         if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, {width, height});

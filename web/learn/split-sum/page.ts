@@ -15,7 +15,7 @@ import {RangeControl} from '../../src/ui/controls';
 import {ballPass, ballUniforms, monteCarloParts, monteCarloPass, normalAt, showPass, statistics} from '../common/ball';
 import {showCode} from '../common/code';
 import {Facts, figure, fill, Lesson, picture} from '../common/lesson';
-import {digits, luminance, percent} from '../common/maps';
+import {digits, luminance, percentWithError, withError} from '../common/maps';
 import table from './table.glsl?raw';
 
 const usual = {environment: 'studio', roughness: 0.4, NdotV: 0.2, around: 75, count: 64};
@@ -42,10 +42,11 @@ fill('figure', figure(splitBall, 'Split-sum'), figure(trueBall, 'Monte Carlo, as
 fill('controls', new RangeControl(values, 'roughness', 'Roughness', {min: 0.05, max: 1, step: 0.01, text: v => v.toFixed(2)}),
      new RangeControl(values, 'NdotV', 'Point: n · v', {min: 0.03, max: 1, step: 0.01, text: v => v.toFixed(2)}), new RangeControl(values, 'around', 'Point: around the ball', {min: -180, max: 180, step: 1, text: v => `${v}°`}));
 fill('facts', facts.root);
-fill('lobes', figure(trueLobe, 'The true lobe: half, a tenth and a hundredth of its peak'), figure(mapLobe, 'The lobe of the map. It goes on below the horizon.'));
+fill('lobes', figure(trueLobe, 'The true lobe, f cos θ, from above: more than a half, a tenth and a hundredth of its peak'), figure(mapLobe, 'The lobe of the map, which is round about r; seen from above, what is round becomes narrow near the horizon'));
 fill('table', figure(sampled, 'By N samples'), tableFacts.root);
 fill('table', new RangeControl(values, 'count', 'N: samples of the table', {min: 1, max: 512, step: 1}));
 showCode('code', 'web/src/shading/split_sum.glsl', splitSum, 'lookup_direction', 'shade');
+showCode('lobecode', 'web/learn/split-sum/table.glsl', table, 'true_lobe', 'map_lobe');
 showCode('tablecode', 'web/learn/split-sum/table.glsl', table, 'integrate_brdf');
 
 /// (A, B) of the library, k_table x k_table.
@@ -63,74 +64,76 @@ lesson.onLight(async () => {
     exactTable = Float32Array.from(brdf.texels, THREE.DataUtils.fromHalfFloat);
 });
 
-lesson.onDraw(() => {
+lesson.onDraw(async () => {
     const {roughness, NdotV, around} = lesson.state;
     shared.u_ball_roughness!.value = roughness;
     (shared.u_normal!.value as THREE.Vector3).fromArray(normalAt(NdotV, around));
-    drawPoint();
-    drawTable();
     shared.u_what!.value = 0;
-    split.run(painter.renderer, bySplit);
-    present(splitBall, bySplit.texture);
+    await painter.run(split, bySplit);
+    await present(splitBall, bySplit.texture);
+    await drawPoint();
+    await drawLobes();
+    await drawTable();
     pane.count = 0;
-    refine();
-});
+    await refine();
+}, refine);
 
 /// One more frame of Monte Carlo, until there are enough.
-let scheduled = false;
-function refine(): void {
+async function refine(): Promise<boolean> {
     shared.u_what!.value = 0;
     monteCarlo.uniforms.u_samples!.value = k_samples;
     monteCarlo.uniforms.u_frame!.value = pane.count;
     pane.advance(() => {}, true, () => monteCarlo.run(painter.renderer, painter.renderer.getRenderTarget() as THREE.WebGLRenderTarget));
-    present(trueBall, pane.target.texture);
-    present(difference, bySplit.texture, pane.target.texture);
-    if (pane.count >= k_frames || scheduled) return;
-    scheduled = true;
-    requestAnimationFrame(() => {
-        scheduled = false;
-        refine();
-    });
+    await painter.finish();
+    await present(trueBall, pane.target.texture);
+    await present(difference, bySplit.texture, pane.target.texture);
+    return pane.count < k_frames;
 }
 
-function present(canvas: HTMLCanvasElement, texture: THREE.Texture, other: THREE.Texture | null = null): void {
+async function present(canvas: HTMLCanvasElement, texture: THREE.Texture, other: THREE.Texture | null = null): Promise<void> {
     const u = show.uniforms;
     u.u_picture!.value = texture;
     u.u_other!.value = other;
     u.u_difference!.value = other !== null;
-    painter.paint(canvas, show, k_size, k_size);
+    await painter.paint(canvas, show, k_size, k_size);
 }
 
-/// The light of the chosen point by both, and the lobes there.
-function drawPoint(): void {
-    const {roughness, NdotV} = lesson.state;
+/// The light of the chosen point by both.
+async function drawPoint(): Promise<void> {
     shared.u_what!.value = 1;
     monteCarlo.uniforms.u_samples!.value = 16;
     monteCarlo.uniforms.u_frame!.value = 0;
-    const truth = statistics(painter.compute(monteCarlo, 1, 2048), 1, 0), [r, g, b] = painter.compute(split, 1, 1), approximate = luminance(r!, g!, b!);
-    Object.assign(numbers, {split: approximate, truth: truth.mean, truthError: truth.deviation / Math.sqrt(truth.count)});
-    facts.set('Error of split-sum', percent(approximate / truth.mean - 1));
+    const truth = statistics(await painter.compute(monteCarlo, 1, 2048)), [r, g, b] = await painter.compute(split, 1, 1), approximate = luminance(r!, g!, b!), error = truth.deviation / Math.sqrt(truth.count);
+    Object.assign(numbers, {split: approximate, truth: truth.mean, truthError: error});
+    facts.set('Error of split-sum', percentWithError(approximate / truth.mean - 1, (error / truth.mean) * (approximate / truth.mean)));
     facts.set('By split-sum', digits(approximate));
-    facts.set('By Monte Carlo', `${digits(truth.mean)} ± ${digits(numbers.truthError!)}`);
-    const u = tables.uniforms;
+    facts.set('By Monte Carlo', withError(truth.mean, error));
+}
+
+async function drawLobes(): Promise<void> {
+    const {roughness, NdotV} = lesson.state, u = tables.uniforms;
     u.u_cosine!.value = NdotV;
     u.u_lobe_roughness!.value = roughness;
     for (const [canvas, what] of [[trueLobe, 2], [mapLobe, 3]] as const) {
         u.u_what!.value = what;
-        painter.paint(canvas, tables, k_size, k_size);
+        await painter.paint(canvas, tables, k_size, k_size);
     }
 }
 
-function drawTable(): void {
-    const u = tables.uniforms;
-    u.u_count!.value = lesson.state.count;
+/// How many samples the table was drawn with.
+let tableCount = 0;
+async function drawTable(): Promise<void> {
+    const {count} = lesson.state, u = tables.uniforms;
+    if (count === tableCount) return;
+    u.u_count!.value = count;
     u.u_what!.value = 0;
-    const values = painter.compute(tables, k_table, k_table);
+    const values = await painter.compute(tables, k_table, k_table);
     let sum = 0;
     for (let k = 0; k < values.length; k += 4) for (const c of [0, 1]) sum += (values[k + c]! - exactTable![k + c]!) ** 2;
     numbers.tableError = Math.sqrt(sum / (2 * k_table * k_table));
     tableFacts.set('RMS error of A and B', digits(numbers.tableError));
     u.u_what!.value = 1;
-    painter.paint(sampled, tables, k_table, k_table);
+    await painter.paint(sampled, tables, k_table, k_table);
+    tableCount = count;
 }
 lesson.start();

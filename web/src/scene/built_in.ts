@@ -16,6 +16,8 @@ export interface Model {
     view?: View;
     /// Names of the material variants (KHR_materials_variants).
     variants: string[];
+    /// Sentences on what of its file is not drawn.
+    notes?: string[];
     /// Gives every mesh the material of a variant; null: the file's own.
     useVariant?: (index: number | null) => Promise<void>;
 }

@@ -5,7 +5,8 @@ import type {Model, View} from './built_in';
 
 /// The view for a picture of this shape: the model's own, or one from the front, a little from the right and from above, as
 /// `domelight render` has it.
-export function viewOf(model: Model, aspect: number): View {
+/// margin: how much larger than the model the picture is, where the model has no view of its own.
+export function viewOf(model: Model, aspect: number, margin = 1.05): View {
     if (model.view) {
         const {view} = model;
         const tall = Math.max(1, view.aspect / aspect);
@@ -13,7 +14,7 @@ export function viewOf(model: Model, aspect: number): View {
     }
     const box = new THREE.Box3().setFromObject(model.root, true);
     const middle = box.getCenter(new THREE.Vector3()), back = new THREE.Vector3(0.25, 0.2, 1).normalize();
-    const fovDeg = 35, tanY = Math.tan(radians(fovDeg) / 2) / 1.05;
+    const fovDeg = 35, tanY = Math.tan(radians(fovDeg) / 2) / margin;
     const distance = Math.max(1e-6, framingDistance(box, middle, back, tanY * aspect, tanY));
     return {eye: middle.clone().addScaledVector(back, distance).toArray(), target: middle.toArray(), fovDeg, aspect};
 }

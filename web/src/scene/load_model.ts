@@ -5,6 +5,7 @@ import type {DRACOLoader} from 'three/addons/loaders/DRACOLoader.js';
 import type {GLTF} from 'three/addons/loaders/GLTFLoader.js';
 import type {KTX2Loader} from 'three/addons/loaders/KTX2Loader.js';
 import type {Model} from './built_in';
+import {undrawn} from './undrawn';
 
 /// Reads a model. `siblings`: files that were dropped with it, by name, which a .gltf refers to.
 /// base: the address of its folder, where it was not dropped. renderer: compressed textures become what it can show. Throws an Error with a sentence.
@@ -12,7 +13,8 @@ export async function loadModel(renderer: THREE.WebGLRenderer, name: string, byt
     const {GLTFLoader} = await import('three/addons/loaders/GLTFLoader.js');
     const {MeshoptDecoder} = await import('three/addons/libs/meshopt_decoder.module.js');
     const manager = new THREE.LoadingManager();
-    const urls: string[] = [];
+    const urls: string[] = [], missing = new Set<string>();
+    manager.onError = url => missing.add(decodeURIComponent(url.split('/').pop() ?? url));
     manager.setURLModifier(url => {
         const file = siblings.get(decodeURIComponent(url.split('/').pop() ?? ''));
         if (!file) return url;
@@ -26,7 +28,8 @@ export async function loadModel(renderer: THREE.WebGLRenderer, name: string, byt
     try {
         gltf = await loader.parseAsync(bytes, base);
     } catch (error) {
-        throw new Error(`${name}: the model cannot be read (${sentence(error)}).`);
+        const incomplete = /Failed to load buffer|Couldn't load texture/.test(sentence(error));
+        throw new Error(incomplete ? `${name}: ${sentence(error)}. Open it together with the files that it names, or drop its folder.` : `${name}: the model cannot be read (${sentence(error)}).`);
     } finally {
         urls.forEach(URL.revokeObjectURL);
         decoders.draco?.dispose();
@@ -36,7 +39,7 @@ export async function loadModel(renderer: THREE.WebGLRenderer, name: string, byt
     freeze(gltf.scene);
     gltf.scene.userData.luxPerUnit = gltf.asset.extras?.lux_per_unit;
     gltf.scene.traverse(object => (object.userData.sourceMaterial = (object as THREE.Mesh).material));
-    return {name, root: gltf.scene, variants: variantsOf(gltf), useVariant: index => useVariant(gltf, index)};
+    return {name, root: gltf.scene, variants: variantsOf(gltf), useVariant: index => useVariant(gltf, index), notes: [...undrawn(gltf.parser.json), ...(missing.size > 0 ? [`${[...missing].join(', ')} ${missing.size > 1 ? 'are' : 'is'} missing: open the model together with the files that it names, or drop its folder.`] : [])]};
 }
 
 interface Decoders {

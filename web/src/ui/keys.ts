@@ -16,6 +16,7 @@ export interface Actions {
     help: () => void;
     screenshot: () => void;
     resetView: () => void;
+    nextEnvironment: (step: number) => void;
     /// Puts the path tracer's picture beside the method.
     truth: () => void;
 }
@@ -46,6 +47,7 @@ export function keyTable(store: Store, actions: Actions): Key[] {
         {keys: ['i'], shown: ['I'], what: 'light by the probes, where a set is open, or by the environment', act: () => store.set({probes: !store.state.probes})},
         {keys: ['g'], shown: ['G'], what: 'show where the probes stand', act: () => store.set({probeBalls: !store.state.probeBalls})},
         {keys: ['t'], shown: ['T'], what: 'the path-traced truth beside it, then over the whole picture, where domelight view serves the page', act: actions.truth},
+        {keys: ['n'], shown: ['N'], what: 'the next environment, with Shift the one before: every one that was opened is kept', act: e => actions.nextEnvironment(e.shiftKey ? -1 : 1)},
         {keys: ['o'], shown: ['O'], what: 'open files', act: actions.open},
         {keys: ['p'], shown: ['P'], what: 'save a screenshot', act: actions.screenshot},
         {keys: ['h'], shown: ['H'], what: 'fold the panel away', act: () => store.set({panel: !store.state.panel})},

@@ -51,12 +51,13 @@ export function layOut(store: Store): Layout {
     unfold.setAttribute('aria-label', 'Show the panel');
     const divider = dividerOf(store);
     const progress = element('div', {id: 'progress', hidden: true});
+    const busy = element('div', {className: 'tag surface', id: 'busy', hidden: true});
     const spoken = element('div', {className: 'sr', role: 'status'});
     const notes = element('div', {id: 'notes', role: 'alert'});
     const drop = element('div', {id: 'drop', hidden: true}, element('p', {}, 'Drop environments and models anywhere'));
     view.append(divider, ...tags, status);
     document.body.prepend(view);
-    document.body.append(bar, unfold, aside, notes, drop, progress, spoken);
+    document.body.append(bar, unfold, aside, notes, drop, progress, busy, spoken);
 
     const say = (sentence: string, className: string) => {
         const note = element('div', {className}, element('p', {}, sentence), button('Close', () => note.remove()));
@@ -79,7 +80,8 @@ export function layOut(store: Store): Layout {
             right.style.left = view === 'split' ? `${100 * divider}%` : 'var(--gap)';
         },
         work: what => {
-            progress.hidden = what === '';
+            progress.hidden = busy.hidden = what === '';
+            busy.textContent = what && `${what} …`;
             spoken.textContent = what;
         },
         complain: sentence => say(sentence, 'surface'),

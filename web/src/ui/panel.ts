@@ -2,7 +2,7 @@
 
 import type {App} from '../app';
 import {defaults, projections, tonemaps, type Mode, type State} from '../state';
-import {CheckControl, ChoiceControl, ColourControl, element, onlyWhere, RangeControl, SelectControl} from './controls';
+import {button, CheckControl, ChoiceControl, ColourControl, element, onlyWhere, RangeControl, SelectControl} from './controls';
 import {environmentNames, fixed, modeNotes, signed, tonemapNames} from './labels';
 
 export function section(title: string, open: boolean, ...parts: HTMLElement[]): HTMLDetailsElement {
@@ -13,21 +13,35 @@ export const note = (...text: (string | Node)[]): HTMLParagraphElement => elemen
 
 const models = [['spheres', 'Spheres: gold, plastic'], ['grid', 'Grid: roughness × metalness'], ['ball', 'Ball on a plinth'], ['furnace', 'White metal ball']] as const;
 
+const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
+
+/// A list that opens, with its label.
+function labelled(label: string, id: string): [HTMLElement, HTMLSelectElement] {
+    const select = element('select', {id});
+    return [element('div', {className: 'select'}, element('label', {htmlFor: id}, label), select), select];
+}
+/// Those with a text of their own first, then what was opened.
+function fill(select: HTMLSelectElement, named: readonly (readonly [string, string])[], names: Iterable<string>, chosen: string): void {
+    const own = [...new Set([...names, chosen])].filter(name => !named.some(([value]) => value === name));
+    select.replaceChildren(...[...named, ...own.map(name => [name, name] as const)].map(([value, text]) => element('option', {value}, text)));
+    select.value = chosen;
+}
+
 export function sceneSection(app: App): HTMLElement {
     const {store} = app;
-    const model = new SelectControl(store, 'model', 'Model', models), environment = new SelectControl(store, 'environment', 'Environment', environmentNames);
-    const variant = element('select', {id: 'variant'}), warnings = note();
+    const [modelPart, model] = labelled('Model', 'model'), [environmentPart, environment] = labelled('Environment', 'environment');
+    model.addEventListener('change', () => app.chooseModel(model.value));
+    environment.addEventListener('change', () => app.chooseEnvironment(environment.value));
+    const variant = element('select', {id: 'variant'}), warnings = note(), notes = note();
     const variants = element('div', {className: 'select', hidden: true}, element('label', {htmlFor: 'variant'}, 'Material variant'), variant);
     variant.addEventListener('change', () => void app.useVariant(variant.value === '' ? null : Number(variant.value)));
     app.onOpened(() => {
-        const own = <T extends readonly (readonly [string, string])[]>(list: T, name: string): readonly (readonly [string, string])[] =>
-            list.some(([value]) => value === name) ? list : [...list, [name, name] as const];
-        model.fill(own(models, app.model.name));
-        model.querySelector('select')!.value = app.model.name;
-        environment.fill(own(environmentNames, app.environmentName));
-        environment.querySelector('select')!.value = app.environmentName;
+        fill(model, models, app.models.keys(), app.model.name);
+        fill(environment, environmentNames, [...app.environments.keys()].filter(name => name !== 'furnace'), app.environmentName);
         warnings.hidden = app.warnings.length === 0;
-        warnings.textContent = app.warnings.map(text => `${text.charAt(0).toUpperCase()}${text.slice(1)}.`).join(' ');
+        warnings.textContent = app.warnings.map(text => `${capital(text)}.`).join(' ');
+        notes.hidden = !app.model.notes?.length;
+        notes.textContent = (app.model.notes ?? []).map(capital).join(' ');
         lights.hidden = app.stage.lights === 0;
         variants.hidden = app.model.variants.length === 0;
         variant.replaceChildren(element('option', {value: ''}, 'as in the file'), ...app.model.variants.map((name, k) => element('option', {value: `${k}`}, name)));
@@ -35,13 +49,15 @@ export function sceneSection(app: App): HTMLElement {
     const projection = new SelectControl(store, 'projection', 'Files without a stated projection are', projections.map(name => [name, name === 'auto' ? 'recognised by their shape' : name] as const));
     const lights = new CheckControl(store, 'lights', 'Lights of the model', 'Points, spots and directional lights of the file (KHR_lights_punctual)');
     lights.hidden = true;
-    return section('Scene', true, model, variants, environment, warnings, projection, new CheckControl(store, 'furnace', 'White furnace', 'Light of radiance 1 from everywhere (W)'),
-        lights, new CheckControl(store, 'motion', 'Let it move', 'Balls to and fro, models about the vertical axis (M)'));
+    return section('Scene', true, modelPart, notes, variants, environmentPart, warnings, new CheckControl(store, 'furnace', 'White furnace', 'Light of radiance 1 from everywhere (W)'),
+        lights, new CheckControl(store, 'motion', 'Let it move', 'Balls to and fro, models about the vertical axis (M)'), projection);
 }
 
-export function pictureSection({store}: App, screen: HTMLElement[]): HTMLElement {
+export function pictureSection(app: App, screen: HTMLElement[]): HTMLElement {
+    const {store} = app;
     return section('Light and picture', true,
         new RangeControl(store, 'exposure', 'Exposure', {min: -8, max: 8, step: 0.1, text: v => `${signed(1)(v)} EV`}),
+        element('div', {className: 'row'}, button('Expose for this light', () => store.set({exposure: app.goodExposure}), 'So that the mean of the environment is half of white')),
         new RangeControl(store, 'turn', 'Turn of the light', {min: -180, max: 180, step: 1, text: v => `${v.toFixed(0)}°`, title: 'Shift and drag'}),
         new SelectControl(store, 'tonemap', 'Tone map', tonemaps.map(name => [name, tonemapNames[name]] as const)),
         ...screen,
