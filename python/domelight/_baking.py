@@ -12,7 +12,7 @@ from typing import Any
 from . import _core
 from ._environment import DomelightWarning, Environment, EnvironmentLike, PathLike, light_of, read
 from ._errors import _with_keywords
-from ._progress import Progress, callback
+from ._progress import Progress, reporting
 
 
 class Bake:
@@ -183,8 +183,8 @@ def bake(
     if isinstance(environment, (str, os.PathLike)):
         environment = read(environment)
     reading = environment._reading if isinstance(environment, Environment) else {}
-    with light_of(environment) as light:
-        told = _core.bake(light, os.fspath(folder), options, reading, callback(progress))
+    with light_of(environment) as light, reporting(progress) as tell:
+        told = _core.bake(light, os.fspath(folder), options, reading, tell)
     repairs = environment._told if isinstance(environment, Environment) else []
     for line in told["warnings"]:
         if line not in repairs:

@@ -11,7 +11,7 @@ from . import _core
 from ._converting import read_levels
 from ._environment import ArrayLike, EnvironmentLike, FloatArray, PathLike, light_of
 from ._filtering import Levels
-from ._progress import Progress, callback
+from ._progress import Progress, reporting
 
 
 class Comparison:
@@ -100,7 +100,8 @@ def compare(
         "level": level,
         "threads": threads,
     }
-    return Comparison(_core.compare(_picture(test), _picture(reference), options, callback(progress)))
+    with reporting(progress) as tell:
+        return Comparison(_core.compare(_picture(test), _picture(reference), options, tell))
 
 
 def flip(
@@ -216,7 +217,7 @@ def audit(
         "within": within,
         "threads": threads,
     }
-    with light_of(environment) as light:
-        told = _core.audit(list(levels), light, options, callback(progress))
+    with light_of(environment) as light, reporting(progress) as tell:
+        told = _core.audit(list(levels), light, options, tell)
     told["levels"] = [LevelAudit(**level) for level in told["levels"]]
     return Audit(**told)

@@ -14,7 +14,7 @@ from . import _core, conventions
 from ._environment import ArrayLike, Environment, EnvironmentLike, FloatArray, PathLike, light_of
 from ._errors import Error
 from ._filtering import Levels
-from ._progress import Progress, callback
+from ._progress import Progress, reporting
 
 _TEXTURES = (".ktx2", ".ktx", ".dds")
 
@@ -53,8 +53,8 @@ def convert(
     if turned_deg == 180:  # the picture of the light turned by half a turn about +Y
         matrix = np.diag([-1.0, 1.0, -1.0]) @ matrix
     options = {"size": size, "sharp": sharp, "turn": matrix.tolist(), "threads": threads}
-    with light_of(environment) as light:
-        array: FloatArray = _core.convert(light, name, options, callback(progress))["array"]
+    with light_of(environment) as light, reporting(progress) as tell:
+        array: FloatArray = _core.convert(light, name, options, tell)["array"]
     return array
 
 

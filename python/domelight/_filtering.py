@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._environment import ArrayLike, EnvironmentLike, FloatArray, light_of
-from ._progress import Progress, callback
+from ._progress import Progress, reporting
 
 
 class Levels(Sequence[FloatArray]):
@@ -123,8 +123,8 @@ def prefilter(
         "directions": directions,
         "threads": threads,
     }
-    with light_of(environment) as light:
-        return Levels(_core.prefilter(light, options, callback(progress)))
+    with light_of(environment) as light, reporting(progress) as tell:
+        return Levels(_core.prefilter(light, options, tell))
 
 
 def irradiance(
@@ -161,8 +161,8 @@ def irradiance(
         "directions": directions,
         "threads": threads,
     }
-    with light_of(environment) as light:
-        return _core.irradiance(light, options, callback(progress))
+    with light_of(environment) as light, reporting(progress) as tell:
+        return _core.irradiance(light, options, tell)
 
 
 def spherical_harmonics(
@@ -193,8 +193,8 @@ def spherical_harmonics(
     float64 of shape (sh_bands ** 2, 3).
     """
     options = {"sh_bands": sh_bands, "sh_window": sh_window, "irradiance": irradiance, "threads": threads}
-    with light_of(environment) as light:
-        return _core.spherical_harmonics(light, options, callback(progress))
+    with light_of(environment) as light, reporting(progress) as tell:
+        return _core.spherical_harmonics(light, options, tell)
 
 
 def brdf_table(

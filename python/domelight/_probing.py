@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from ._environment import ArrayLike, EnvironmentLike, FloatArray, PathLike, light_of
 from ._errors import Error
-from ._progress import Progress, callback
+from ._progress import Progress, reporting
 
 if TYPE_CHECKING:
     from . import _probes
@@ -151,5 +151,5 @@ def probes(
         "threads": threads,
     }
     place = None if folder is None else pathlib.Path(os.fspath(folder))
-    with light_of(environment) as light:
-        return ProbeSet._of(_probes.probes(os.fspath(scene), light, place, options, callback(progress)))
+    with light_of(environment) as light, reporting(progress) as tell:
+        return ProbeSet._of(_probes.probes(os.fspath(scene), light, place, options, tell))

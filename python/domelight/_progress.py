@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, Protocol, runtime_checkable
 
 #: ``progress(stage, done)``: the name of a stage and the part of it that is done, 0 to 1. Returning False cancels.
@@ -35,18 +36,23 @@ def _on_bar(bar: ProgressBar) -> ProgressCallback:
     return show
 
 
-def callback(progress: Progress) -> ProgressCallback | None:
-    """A callback from what users pass: a function, a tqdm bar, or True for a new tqdm bar."""
+@contextmanager
+def reporting(progress: Progress) -> Iterator[ProgressCallback | None]:
+    """A callback from what users pass: a function, a tqdm bar, or True for a new tqdm bar, which is full where the work is
+    done, and closed in any case."""
     if progress is None or progress is False:
-        return None
-    if progress is True:
+        yield None
+    elif progress is True:
         from tqdm.auto import tqdm
 
-        return _on_bar(tqdm(total=1, bar_format="{desc} {percentage:3.0f}%|{bar}| {elapsed}"))
-    if isinstance(progress, ProgressBar):
-        return _on_bar(progress)
-    if not callable(progress):
-        from ._errors import wrong_type
+        with tqdm(total=1, bar_format="{desc} {percentage:3.0f}%|{bar}| {elapsed}") as bar:
+            yield _on_bar(bar)
+            bar.n = 1
+    elif isinstance(progress, ProgressBar):
+        yield _on_bar(progress)
+    else:
+        if not callable(progress):
+            from ._errors import wrong_type
 
-        wrong_type("progress", progress, "a function of (stage, done), a tqdm bar or True")
-    return progress
+            wrong_type("progress", progress, "a function of (stage, done), a tqdm bar or True")
+        yield progress

@@ -9,7 +9,7 @@ from typing import Any
 
 from . import _core
 from ._environment import DomelightWarning, EnvironmentLike, FloatArray, PathLike, light_of
-from ._progress import Progress, callback
+from ._progress import Progress, reporting
 
 
 class Render:
@@ -124,8 +124,8 @@ def render(
         "seed": seed,
         "threads": threads,
     }
-    with light_of(environment) as light:
-        told = _render.render(os.fspath(scene), light, options, callback(progress))
+    with light_of(environment) as light, reporting(progress) as tell:
+        told = _render.render(os.fspath(scene), light, options, tell)
     for line in told["warnings"]:
         warnings.warn(line, DomelightWarning, stacklevel=2)
     return Render(told)

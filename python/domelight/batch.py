@@ -26,7 +26,7 @@ from typing import Any, NamedTuple
 from . import _batch
 from ._environment import DomelightWarning, PathLike
 from ._errors import Error, _with_keywords
-from ._progress import Progress, callback
+from ._progress import Progress, reporting
 
 __all__ = ["Job", "Outcome", "Plan", "open_plan", "plan", "run_job"]
 
@@ -93,7 +93,8 @@ class Plan(Sequence[Job]):
     def merge(self, place: str = "link", *, progress: Progress = None) -> Path:
         """Puts the results under the names of their outputs, in the folder `out`, and returns that. `place`: "link", "hardlink"
         or "copy". Raises Error, which names the outputs, where any is missing."""
-        missing, notes = _batch.merge(self._plan, self.folder, place, callback(progress))
+        with reporting(progress) as tell:
+            missing, notes = _batch.merge(self._plan, self.folder, place, tell)
         for note in notes:
             warnings.warn(note, DomelightWarning, stacklevel=2)
         if missing:
@@ -104,11 +105,13 @@ class Plan(Sequence[Job]):
 
     def verify(self, *, threads: int = 0, progress: Progress = None) -> list[tuple[str, str]]:
         """Hashes every file of every result. Returns (output, what is wrong) of each problem."""
-        return _batch.verify(self._plan, self.folder, threads, callback(progress))
+        with reporting(progress) as tell:
+            return _batch.verify(self._plan, self.folder, threads, tell)
 
     def report(self, *, threads: int = 0, progress: Progress = None) -> Path:
         """Writes a page with a picture, the times, size, errors and repairs of each job, and returns its file."""
-        return _batch.report(self._plan, self.folder, threads, callback(progress))
+        with reporting(progress) as tell:
+            return _batch.report(self._plan, self.folder, threads, tell)
 
     def __reduce__(self) -> tuple[Any, tuple[str]]:
         return open_plan, (str(self.folder),)
@@ -145,7 +148,8 @@ def plan(
         An input that is missing.
     """
     words = [(name, json.dumps(value)) for name, value in (options or {}).items()]
-    made = _batch.make_plan(os.fspath(source), os.fspath(folder), kind, words, threads, callback(progress))
+    with reporting(progress) as tell:
+        made = _batch.make_plan(os.fspath(source), os.fspath(folder), kind, words, threads, tell)
     for line in made.warnings:
         warnings.warn(_with_keywords(line), DomelightWarning, stacklevel=2)
     return Plan(folder, made)

@@ -56,7 +56,8 @@ class Synthesis {
     }
 
     Result<void> run(const FilterPlan& plan) {
-        std::size_t next = 0;
+        std::size_t next = 0, all = 0;
+        for (const FilterPlan::Group& group : plan.groups) all += group.levels.size();
         for (const FilterPlan::Group& group : plan.groups)
             for (const std::span<const int> levels : batches_of(group)) {
                 if (prepared_)
@@ -64,8 +65,7 @@ class Synthesis {
                 else
                     synthesise({group, levels, options_, !lights_.empty(), grid_transform(group.band_limit)});
                 done_ += levels.size();
-                if (options_.progress && !options_.progress("filter", double(done_) / (options_.specular.size() + 1)))
-                    return k_cancelled;
+                if (options_.progress && !options_.progress("filter", double(done_) / double(all))) return k_cancelled;
             }
         return {};
     }

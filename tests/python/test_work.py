@@ -19,7 +19,7 @@ import domelight as dl
 def test_progress_is_told(light):
     told = []
     dl.prefilter(light, size=32, levels=4, progress=lambda stage, done: told.append((stage, done)))
-    assert told and told[-1][0] == "filter" and all(0 <= done <= 1 for _, done in told)
+    assert told and told[-1] == ("filter", 1) and all(0 <= done <= 1 for _, done in told)
     assert threading.current_thread() is threading.main_thread()
 
 
@@ -50,6 +50,16 @@ def test_tqdm(light, tmp_path):
             assert bar.n > 0
         text.seek(0)
         assert "%" in text.read()
+
+
+def test_a_bar_of_its_own_is_full_and_closed(light, tmp_path, capfd):
+    pytest.importorskip("tqdm")
+    dl.bake(light, tmp_path / "out", size=32, progress=True)
+    shown = capfd.readouterr().err
+    assert shown.endswith("\n") and "100%" in shown.rsplit("\r", 1)[-1]
+    with pytest.raises(dl.Error):
+        dl.bake(light, tmp_path / "out", size=-1, progress=True)
+    assert capfd.readouterr().err.endswith("\n")
 
 
 def test_another_thread_runs_meanwhile():
