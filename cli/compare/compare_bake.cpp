@@ -60,6 +60,9 @@ void print_text(const BakeWords& w, const StoredBake& bake, const BakeAudit& aud
     }
     print("  orientation   {}\n", o.words);
     if (!as_convention.empty()) print("                that is as ours with --latlong {}\n", as_convention);
+    if (const auto lies = lies_as_read(bake, audit))
+        print("                {}as {} reads it, which looks up {} for direction d = (x, y, z)\n", *lies ? "" : "NOT ",
+              bake.engine->name, cube_mirror_direction(bake.engine->mirror));
     print("                error {}, the next best orientation {}{}\n\n", percent(o.error), percent(o.next_error),
           o.certain || !audit.of_source ? "" : ": the light cannot tell them apart");
     const bool stated = std::any_of(audit.levels.begin(), audit.levels.end(),

@@ -151,6 +151,18 @@ std::vector<std::string> named_layers(const PictureFacts& facts) {
     return names;
 }
 
+/// For pictures whose shape is that of an environment, as renders of every direction are.
+void print_how_to_describe_as_environment(int width, int height) {
+    if (width == height)
+        print(
+            "  environment      where it is one, say which: --projection sphere-map, mirror-ball/fov=DEGREES, "
+            "angular, octahedral, ...\n");
+    else if (width == 2 * height)
+        print("  environment      where it is one, --projection latlong describes its light\n");
+    else if (height == 6 * width || width == 6 * height)
+        print("  environment      where it is one, --projection cube describes its light\n");
+}
+
 void print_picture(const std::string& file, const PictureFacts& facts, const Picture& picture, const PictureSurvey& s) {
     print("{}: {}, {} x {}, a picture\n", file, facts.format, picture.rgb.width(), picture.rgb.height());
     if (!facts.layers.empty()) print("  layers           {}\n", join(named_layers(facts), ", "));
@@ -167,10 +179,7 @@ void print_picture(const std::string& file, const PictureFacts& facts, const Pic
         print("  bad pixels       {} not a number, {} infinite, {} negative\n", s.not_a_number, s.infinite, s.negative);
     else
         print("  bad pixels       none\n");
-    if (picture.rgb.width() == picture.rgb.height())
-        print(
-            "  environment      where it is one, say which: --projection sphere-map, mirror-ball/fov=DEGREES, "
-            "angular, octahedral, ...\n");
+    print_how_to_describe_as_environment(picture.rgb.width(), picture.rgb.height());
 }
 
 Json picture_json(const std::string& file, const PictureFacts& facts, const Picture& picture, const PictureSurvey& s) {
@@ -245,6 +254,7 @@ int info_texture(const std::string& file, const InfoWords& w) {
     print(", {} level{}{}\n", info->levels, info->levels == 1 ? "" : "s",
           info->supercompression.empty() || info->supercompression == "none" ? "" : ", " + info->supercompression);
     for (const auto& [key, value] : info->metadata) print("  {:<24} {}\n", shown(key), shown(value));
+    if (info->faces == 6 && info->layers <= 1 && info->decodable) print("  --projection cube describes its light\n");
     return exit_done;
 }
 
@@ -364,7 +374,8 @@ int run_info(const std::vector<std::string>& words) {
         if (fs::exists(input / k_probes_json, failure)) return info_probes(input, w.common);
         if (input.filename() == k_probes_json && fs::exists(input, failure))
             return info_probes(input.parent_path(), w.common);
-        if (has_texture_ending(input.string())) return info_texture(input.string(), w);
+        if (has_texture_ending(input.string()) && !arguments.given("--projection"))
+            return info_texture(input.string(), w);
         if (is_picture(w, arguments)) return info_picture(w);
     } else if (w.picture) {
         return print_error({fmt::format("goes with one picture, not with {} files", w.inputs.size()), "--picture", ""});

@@ -175,9 +175,8 @@ Result<BatchPlan> plan_batch(const fs::path& source, const BatchPlanOptions& opt
     }
     if (unknown)
         plan.warnings.push_back(
-            fmt::format("{} environments are not pictures that a header tells the size of: their costs are guessed "
-                        "from their bytes",
-                        unknown));
+            fmt::format("the size of {} environment{} is not known from a header: {} guessed from the bytes", unknown,
+                        unknown == 1 ? "" : "s", unknown == 1 ? "its cost is" : "their costs are"));
     return plan;
 }
 

@@ -63,6 +63,7 @@ Json audit_json(const std::vector<std::string>& bake_files, const std::vector<st
               {"roughness_stated_by", bake.stated_by},
               {"levels", levels},
               {"warnings", Json(warnings)}};
+    if (const auto lies = lies_as_read(bake, audit)) json["orientation"]["as_engine_reads"] = *lies;
     if (as_read) json["as_read"] = read_errors_json(*as_read);
     return json;
 }

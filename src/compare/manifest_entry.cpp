@@ -1,5 +1,6 @@
 #include "compare/manifest_entry.h"
 
+#include "domelight/engines/engine.h"
 #include "domelight/projection/projections.h"
 
 #include "io/file/json.h"
@@ -66,6 +67,13 @@ std::optional<std::string> projection_in_manifest(const std::filesystem::path& f
     const auto entry = entry_of(file);
     const auto projection = entry ? text_at(entry->map, "projection") : std::nullopt;
     return projection && projection_from_name(*projection) ? projection : std::nullopt;
+}
+
+ManifestEngine engine_in_manifest(const std::filesystem::path& file) {
+    const auto entry = entry_of(file);
+    if (!entry) return {};
+    return {text_at(entry->manifest["engine"], "name").value_or(""),
+            text_at(entry->map, "container") == name_of(Container::playcanvas_atlas)};
 }
 
 std::map<std::string, std::string> filter_in_manifest(const std::filesystem::path& file) {

@@ -17,4 +17,11 @@ std::optional<std::string> projection_in_manifest(const std::filesystem::path& f
 /// where it says nothing of the file, or where the SHA-256 of the file is not the stated one.
 std::map<std::string, std::string> filter_in_manifest(const std::filesystem::path& file);
 
+/// The engine that the bake was made for, and whether the file is PlayCanvas's atlas, by the same manifest.
+struct ManifestEngine {
+    std::string name;  ///< empty: not known
+    bool atlas = false;
+};
+ManifestEngine engine_in_manifest(const std::filesystem::path& file);
+
 }  // namespace domelight

@@ -90,6 +90,9 @@ Result<StoredBake> read_chain(const std::string& file, int threads) {
     if (!cubes) return cubes.error().at(file);
     const auto info = read_texture_info(file);
     StoredBake bake;
+    bake.is_cube = texture->faces == 6;
+    if (bake.is_cube)
+        if (const auto engine = find_engine(engine_in_manifest(file).name)) bake.engine = *engine;
     bake.format = info ? fmt::format("{}, {}", info->container, info->format) : "texture";
     for (Cubemap& cube : *cubes) bake.levels.emplace_back().cube = std::move(cube);
     // DDS and .env have no place for keys.
@@ -120,6 +123,9 @@ Result<StoredBake> read_pictures(const std::vector<std::string>& words, int thre
     EnvironmentOptions options;
     options.threads = threads;
     for (const std::string& word : words) {
+        if (engine_in_manifest(word).atlas)
+            return Error{"PlayCanvas's atlas cannot be audited: all its levels lie in one picture", word,
+                         "Audit the bake of the same environment for another engine."};
         options.projection = projection_in_manifest(word).value_or("auto");
         const auto picture = open_environment(environment_files({word}), options);
         if (!picture) return picture.error();
@@ -165,8 +171,20 @@ Result<StoredBake> read_stored_bake(const std::vector<std::string>& files, const
     for (int l = 0; l < count; ++l)
         bake->levels[std::size_t(l)].roughness = (*engine)->roughness(l, count, bake->levels[0].cube.size());
     bake->stated_by = w.engine + "'s curve";
+    if (bake->is_cube) bake->engine = *engine;
     bake->level_of = curve_of(**engine, *bake);
     return bake;
+}
+
+std::optional<bool> lies_as_read(const StoredBake& bake, const BakeAudit& audit) {
+    if (!bake.engine || !audit.of_source || !audit.orientation.certain) return std::nullopt;
+    // The engine looks up the light from d in the direction M d, where the bake holds ours of ours_from_theirs M d.
+    const Mat3 seen = audit.orientation.ours_from_theirs * cube_mirror_matrix(bake.engine->mirror);
+    if (seen == Mat3()) return true;
+    const bool upright = seen.row[1] == Vec3d{0, 1, 0},
+               mirrored = dot(cross(seen.row[0], seen.row[1]), seen.row[2]) < 0;
+    if (upright && !mirrored) return std::nullopt;
+    return false;
 }
 
 std::string convention_of(const Mat3& ours_from_theirs, const Mat3& world_to_source) {

@@ -3,6 +3,7 @@
 
 #include "domelight/compare/bake_audit.h"
 #include "domelight/compare/read_error.h"
+#include "domelight/engines/engine.h"
 #include "domelight/environment/environment.h"
 
 #include <functional>
@@ -16,7 +17,9 @@ namespace domelight {
 struct StoredBake {
     std::vector<CubeLevel> levels;
     std::string format;
-    std::string stated_by;  ///< who says which roughness the levels have
+    std::string stated_by;           ///< who says which roughness the levels have
+    bool is_cube = false;            ///< a texture with six faces
+    const Engine* engine = nullptr;  ///< that a cube is for, where the options or a manifest say it
     Lobe lobe = Lobe::ggx;
     Texels texels = Texels::centre;
     std::function<double(double)> level_of;  ///< by the engine's curve; empty: linear between the levels
@@ -34,6 +37,11 @@ Result<StoredBake> read_stored_bake(const std::vector<std::string>& files, const
 
 /// The named lat-long convention by which the baker read the source, where that explains the orientation.
 std::string convention_of(const Mat3& ours_from_theirs, const Mat3& world_to_source);
+
+/// Whether a cube lies as the engine that it is for reads it; false where the light would be mirrored or tilted. Nothing
+/// where no engine is known, where no orientation fits, where the light cannot tell it, or where the light is turned about
+/// +Y alone, as by another lat-long convention of the source.
+std::optional<bool> lies_as_read(const StoredBake& bake, const BakeAudit& audit);
 
 /// The bake as a shader reads it; nothing where no orientation fits.
 Result<std::optional<ReadErrors>> read_errors_of(const StoredBake& bake, const BakeAudit& audit,

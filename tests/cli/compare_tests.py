@@ -111,11 +111,23 @@ def test_compare_knows_the_filter_of_files_without_keys(folder):
         run("bake", "studio.hdr", "-o", engine, "--for", engine, "--size", "64", "--no-preview", folder=folder)
         found = json.loads(run("compare", "--bake", f"{engine}/{name}", "--env", "studio.hdr", "--json", folder=folder).stdout)
         assert found["roughness_stated_by"] == "the manifest beside it" and found["of_source"], found
+        assert found["orientation"]["as_engine_reads"] is True, found["orientation"]
         assert all(level["stated_error"] < 5e-3 for level in found["levels"] if level["size"] <= 2), found["levels"]
         run("bake", "studio.hdr", "-o", "other", "--for", engine, "--size", "64", "--exposure", "1", "--no-preview", folder=folder)
         shutil.copy(folder / engine / name, folder / "other" / name)
         alone = json.loads(run("compare", "--bake", f"other/{name}", "--env", "studio.hdr", "--json", folder=folder).stdout)
         assert alone["of_source"] and not alone["roughness_stated_by"], alone
+
+
+def test_compare_says_whether_a_cube_lies_as_an_engine_reads_it(folder):
+    run("bake", "studio.hdr", "-o", "o", *SMALL, folder=folder)
+    audit = ["compare", "--bake", "o/specular.ktx2", "--env", "studio.hdr"]
+    assert "NOT as three reads it" in run(*audit, "--for", "three", folder=folder).stdout
+    assert "  as filament reads it" in run(*audit, "--for", "filament", folder=folder).stdout
+    turned = json.loads(run(*audit, "--for", "filament", "--latlong", "usd", "--json", folder=folder).stdout)
+    assert "as_engine_reads" not in turned["orientation"], turned
+    run("bake", "studio.hdr", "-o", "p", "--for", "playcanvas", "--no-preview", folder=folder)
+    assert "atlas cannot be audited" in run("compare", "--bake", "p/studio-env-atlas.png", "--env", "studio.hdr", folder=folder, code=1).stderr
 
 
 def test_compare_passes_a_verdict_on_bakes(folder):

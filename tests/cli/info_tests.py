@@ -106,6 +106,11 @@ def test_info_tells_of_any_picture(folder):
     assert "16 x 12, a picture" in text and "layers" in text and "covered" in text, text
     layer = json.loads(run("info", "r.exr", "--layer", "albedo", "--json", folder=folder).stdout)
     assert layer["range"][1] <= 1
+    run("render", "ball", "-o", "cube.exr", "--camera", "cube", "--width", "4", "--spp", "1", folder=folder)
+    assert "--projection cube describes its light" in run("info", "cube.exr", folder=folder).stdout
+    run("convert", "studio.hdr", "-o", "cube.ktx2", "--to", "cube", "--size", "8", folder=folder)
+    assert "--projection cube describes its light" in run("info", "cube.ktx2", folder=folder).stdout
+    assert "irradiance +X" in run("info", "cube.ktx2", "--projection", "cube", folder=folder).stdout
     (folder / "odd.exr").write_bytes(make_exr(7, 5, {3: float("nan")}))
     odd = run("info", "odd.exr", folder=folder).stdout
     assert "7 x 5, a picture" in odd and "1 not a number" in odd, odd
