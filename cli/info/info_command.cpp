@@ -11,6 +11,7 @@
 #include "cli/console/output_endings.h"
 #include "cli/console/print.h"
 #include "cli/info/info_probes.h"
+#include "cli/info/info_scene.h"
 #include "compare/picture_survey.h"
 #include "convert/converted_files.h"
 #include "io/file/json.h"
@@ -351,13 +352,16 @@ int run_info(const std::vector<std::string>& words) {
         "info",
         "Describes an environment (size, projection, range, mean radiance, irradiance by direction, "
         "brightest lights, bad texels), any other picture (layers, range, exposure, opacity, bad pixels), "
-        "a texture (KTX2, KTX, DDS, from any tool), or the folder of a bake or of a set of probes.",
+        "a texture (KTX2, KTX, DDS, from any tool), a scene (size, materials, cameras, lights), or the folder of a "
+        "bake "
+        "or of a set of probes.",
         {"domelight info studio.hdr", "domelight info studio.hdr --json", "domelight info out",
-         "domelight info out/specular.ktx2"});
+         "domelight info out/specular.ktx2", "domelight info ball"});
     arguments.positional(
         "ENV|FILE|FOLDER", w.inputs,
-        fmt::format("an environment, any other picture, a texture, a bake, or a set of probes; without one, {}",
-                    k_built_in_sky));
+        fmt::format(
+            "an environment, any other picture, a texture, a scene, a bake, or a set of probes; without one, {}",
+            k_built_in_sky));
     arguments.group("Pictures");
     arguments.flag(
         "--picture", w.picture,
@@ -376,6 +380,15 @@ int run_info(const std::vector<std::string>& words) {
             return info_probes(input.parent_path(), w.common);
         if (has_texture_ending(input.string()) && !arguments.given("--projection"))
             return info_texture(input.string(), w);
+        if (may_be_scene(input.string()) && !arguments.given("--projection")) {
+            SceneOptions options;
+            options.threads = w.common.threads.value_or(0);
+            if (const auto scene = open_scene(input.string(), options))
+                return info_scene(input.string(), *scene, w.common);
+            // A .gltf without triangles may be an environment of EXT_lights_image_based.
+            else if (!open_environment({input}, {}))
+                return print_error(scene.error());
+        }
         if (is_picture(w, arguments)) return info_picture(w);
     } else if (w.picture) {
         return print_error({fmt::format("goes with one picture, not with {} files", w.inputs.size()), "--picture", ""});

@@ -118,3 +118,17 @@ def test_info_tells_of_any_picture(folder):
     environment = json.loads(run("info", "studio.hdr", "--json", folder=folder).stdout)
     picture = json.loads(run("info", "studio.hdr", "--picture", "--json", folder=folder).stdout)
     assert environment.get("kind") != "picture" and picture["kind"] == "picture"
+
+
+def test_info_describes_a_scene(folder):
+    text = run("info", "spheres", folder=folder).stdout
+    assert "a scene of" in text and "box " in text and "cameras " in text, text
+    (folder / "square.obj").write_text("v 0 0 0\nv 2 0 0\nv 2 3 0\nf 1 2 3\n")
+    said = json.loads(run("info", "square.obj", "--json", folder=folder).stdout)
+    assert (said["kind"], said["triangles"], said["objects"], said["lights"]) == ("scene", 1, 1, []), said
+    assert said["box"] == {"low": [0, 0, 0], "high": [2, 3, 0]}, said["box"]
+    (folder / "empty.obj").write_text("v 0 0 0\n")
+    assert "no triangles" in run("info", "empty.obj", folder=folder, code=1).stderr
+    run("bake", "studio.hdr", "-o", "g", "--for", "gltf", "--no-preview", folder=folder)
+    light = json.loads(run("info", "g/studio.gltf", "--json", folder=folder).stdout)
+    assert light["kind"] == "environment", light
