@@ -7,6 +7,8 @@ import os
 import re
 from typing import NoReturn
 
+from .conventions import CONVENTIONS
+
 #: What errors call a file that is in memory.
 IN_MEMORY = "the bytes"
 
@@ -71,9 +73,9 @@ def from_library(what: str, where: str, hint: str) -> Error:
     if what == "cancelled":
         return Cancelled("cancelled by the progress callback")
     message, place, advice = _with_keywords(what), _with_keywords(where), _with_keywords(hint)
+    if message.startswith("unknown projection"):
+        advice = f"{advice.rstrip('.')}; or the convention of a project: {', '.join(CONVENTIONS)}."
     field = place if re.fullmatch(r"`[a-z_]+`", where) else ""
-    if where == "fov":  # of a mirror ball, in the name of its projection
-        return Error(f"{where}: {message}", "projection", advice, "projection")
     if where and not field:
         return FileError(message, place, advice)
     return Error(message, place, advice, field)

@@ -92,12 +92,30 @@ def render(
         "mis", "env" or "brdf".
     camera_position, camera_target, fov_deg
         Where the scene's camera is not wanted; the vertical field of view.
-    background
-        "environment", "blurred", "colour" or "transparent".
+    background, background_colour, background_roughness
+        What is seen where there is no surface: "environment", "blurred" (by the roughness, 0 to 1), "colour" (linear RGB) or
+        "transparent".
+    occlusion
+        False: no shadows, no indirect light and no occlusion maps, to compare with a shader that has none.
+    multiple_scattering
+        Gives back the energy that single scattering loses on rough surfaces.
+    lookup, lookup_size
+        "mirror", "refract": the texture through which the environment is looked up, "environment" (none), "cube", "latlong",
+        "sphere-map" or "dual-paraboloid", and its size in texels.
+    diffuse_weight
+        "split-sum", "stretched": "energy" (1 - (F0 scale + F90 bias)) or "fresnel" (1 - F(NdotV)).
+    noise, time
+        See `spp`.
     seed
         Another randomisation; the same seed gives the same bits on any number of threads.
+    threads
+        0: all cores.
+    progress
+        A function of (stage, done), a tqdm bar, or True.
 
-    The other keywords are those of ``domelight render --help``.
+    Returns
+    -------
+    `Render`, with the picture in linear light.
     """
     from . import _render  # loads Embree
 

@@ -132,8 +132,8 @@ class Sampler:
         Parameters
         ----------
         points
-            How many, at the points of `sequence`; or the points themselves, of shape (n, 2): float32 or float64 from 0 to
-            below 1, or uint32, which is read as a multiple of 2⁻³² and in place.
+            How many, at the points of `sequence`; or the points themselves, of shape (n, 2): numbers from 0 to below 1, or
+            uint32, which is read as a multiple of 2⁻³² and in place.
         sequence
             "random", "stratified", "hammersley", "halton", "sobol" or "r2".
         seed
@@ -143,7 +143,7 @@ class Sampler:
         threads
             0: all cores. The result does not depend on it.
         """
-        if isinstance(points, (int, np.integer)):
+        if isinstance(points, (int, np.integer)) and not isinstance(points, bool):
             if points < 0:
                 from ._errors import Error
 
@@ -151,8 +151,14 @@ class Sampler:
             room = _core.sample_room(int(points)) if out is None else out
             self._sampler.sample_sequence(int(points), {"sequence": sequence, "seed": seed}, room, threads)
         else:
+            if isinstance(points, (list, tuple)):
+                points = np.asarray(points, np.float64)
             shape = np.shape(points)
-            room = _core.sample_room(shape[0] if shape else 0) if out is None else out
+            if not shape:
+                from ._errors import wrong_type
+
+                wrong_type("points", points, "a whole number or an array of shape (n, 2)")
+            room = _core.sample_room(shape[0]) if out is None else out
             self._sampler.sample_points(points, room, threads)
         return Samples(room, self)
 

@@ -44,7 +44,7 @@ CASES = [
     (lambda light: dl.Sampler(light).pdf([1, 2]), "directions", "shape is (2,), expected (..., 3)"),
     (lambda light: dl.lights(light, max_lights=-1), "max_lights", "-1 is not from 0 to 1024"),
     (lambda light: dl.convert(light, "mercator"), "to", 'unknown projection "mercator"'),
-    (lambda light: dl.Environment(light[:, :32], "mirror-ball/fov=200"), "projection", "fov: a mirror ball's fov must lie"),
+    (lambda light: dl.Environment(light[:, :32], "mirror-ball/fov=200"), "projection", "a mirror ball's fov must lie"),
     (lambda light: dl.convert(light, size=0), "size", "0 is not from 1 to 32768"),
     (lambda light: dl.convert(light, turn=np.ones((3, 3))), "turn", "expected an orthogonal 3 x 3 matrix"),
     (lambda light: dl.compare(light, light[:, :8]), "test", "is 64 x 32, but the reference is 8 x 32"),
@@ -70,6 +70,9 @@ TYPES = [
     (lambda light: dl.prefilter(light, roughness=0.5), "roughness", "0.5 is a float, expected a sequence of numbers"),
     (lambda light: dl.prefilter(light, lobe=3), "lobe", "3 is an int, expected a str"),
     (lambda light: dl.prefilter(light, progress=3), "progress", "3 is an int, expected a function"),
+    (lambda light: dl.Sampler(light).sample(2.5), "points", "2.5 is a float, expected a whole number or an array"),
+    (lambda light: dl.Sampler(light).sample(True), "points", "True is a bool, expected a whole number or an array"),
+    (lambda light: dl.Sampler(light).sample(None), "points", "None is a NoneType, expected a whole number or an array"),
 ]
 
 
@@ -133,6 +136,11 @@ def test_a_tensor_that_requires_a_gradient(light):
     torch = pytest.importorskip("torch", reason="PyTorch is not installed")
     error = error_of(lambda: dl.prefilter(torch.from_numpy(light).requires_grad_(), size=8))
     assert "requires a gradient" in error.message and "detach" in error.hint
+
+
+def test_a_misspelt_projection_is_told_of_the_projects_conventions(light):
+    error = error_of(lambda: dl.Environment(light, "nvdifrec"))
+    assert error.field == "projection" and "latlong" in error.hint and "nvdiffrec" in error.hint
 
 
 def test_files(tmp_path):
