@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the browser app to build/web: the modules of the lock file from npm, fetched again only if that file changes, and then Vite.
-# DOMELIGHT_WASM: the library's WebAssembly module (build/wasm/domelight-files.wasm).
+# DOMELIGHT_WASM: the library's WebAssembly module with the readers of files (build/wasm/domelight-files.wasm); the one that bakes files lies beside it.
 set -uo pipefail
 here=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
 root=$(dirname "$here")

@@ -11,13 +11,15 @@ const here = (name: string) => fileURLToPath(new URL(name, import.meta.url));
 
 // The WebAssembly module of the library that also reads files (the preset `wasm`).
 const module = process.env.DOMELIGHT_WASM ?? here('../build/wasm/domelight-files.wasm');
+// The one that also writes files: beside it.
+const baking = path.join(path.dirname(module), 'domelight-bake.wasm');
 // Files that are made before the build.
 const made = here('../build/web-made'), table = path.join(made, 'brdf_table.bin'), transcoder = path.join(made, 'basis_transcoder.js');
 
 // The app, and every page that teaches.
 const pages = fs.readdirSync(here('learn'), {recursive: true, encoding: 'utf8'}).filter(name => name.endsWith('index.html'));
 const input = [here('index.html'), ...pages.map(name => here(`learn/${name}`))];
-const alias = {'domelight.wasm': module, 'brdf_table.bin': table, 'basis_transcoder.js': transcoder};
+const alias = {'domelight.wasm': module, 'domelight-bake.wasm': baking, 'brdf_table.bin': table, 'basis_transcoder.js': transcoder};
 
 // All paths are relative, so that the files can be served from any folder of any host. The shaders that the app shares with
 // the documentation lie in docs/shaders, outside this folder.

@@ -2,10 +2,12 @@
 
 import type {Baker} from './bake/baker';
 import {brdfTable} from './bake/brdf_table';
-import type {Bake, BrdfTable} from './bake/types';
+import type {Bake, BrdfTable, Source} from './bake/types';
+import {bakeFiles} from './export/bake_files';
+import type {BakedFiles} from './export/export_worker';
 import {endsIn, modelEndings, otherModelEndings} from './endings';
 import {Jobs, type JobEvents} from './jobs';
-import {builtIn, builtInEnvironments, exposureFor, fromFile, fromServed, type LightSource} from './light_source';
+import {builtIn, builtInEnvironments, exposureFor, fromFile, fromServed, openSource, type LightSource} from './light_source';
 import {LiveCubes} from './render/live_cubes';
 import {loadProbes, splitFiles} from './probes/load';
 import {readPane} from './render/read_back';
@@ -209,9 +211,10 @@ export class App {
         if (name in builtInModels && this.state.model !== name) this.store.set({model: name});
         else void this.useModel(name, load);
     }
-    /// Has a file made of the environment, and hands its bytes on.
-    export(name: string, make: () => Promise<ArrayBuffer>, save: (bytes: ArrayBuffer) => void): Promise<boolean> {
-        return this.work(`making ${name}`, async () => save(await make()));
+    /// Has the files of an engine baked. size: of level 0; 0: the engine's own. show: is given them.
+    export(engine: string, size: number, show: (baked: BakedFiles) => void): Promise<boolean> {
+        const what = `baking for ${engine}`, tell = (part: number) => this.events.working(`${what}, ${Math.floor(100 * part)} %`);
+        return this.work(what, async () => show(await bakeFiles({source: await this.shownSource(), engine, size}, tell)));
     }
     /// A picture of the truth, to compare with.
     openPicture(file: File): Promise<boolean> {
@@ -260,10 +263,13 @@ export class App {
         this.scheduled = true;
     }
 
+    private shownSource(): Promise<Source> {
+        return (this.state.furnace ? builtIn('furnace') : this.source)(this.state.projection);
+    }
     /// Reads and filters the environment that is chosen now. Whether that went well.
     private relight(what = 'filtering the environment'): Promise<boolean> {
         return this.work(what, async () => {
-            const info = await (this.state.furnace ? builtIn('furnace') : this.source)(this.baker, this.state.projection);
+            const info = await openSource(this.baker, await this.shownSource());
             for (const warning of info.warnings) this.events.told(`${info.name}: ${warning}`);
             const [bake, map] = await Promise.all([this.baker.bake(this.state.size), this.stage.upload(info)]);
             ++this.light;

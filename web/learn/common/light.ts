@@ -3,7 +3,7 @@
 import * as THREE from 'three';
 import {Baker} from '../../src/bake/baker';
 import type {Latlong, Tables} from '../../src/bake/types';
-import type {LightSource} from '../../src/light_source';
+import {openSource, type LightSource} from '../../src/light_source';
 import {tableTexture} from '../../src/render/maps';
 import type {Uniforms} from '../../src/render/surfaces';
 
@@ -28,7 +28,7 @@ export class Light {
 
     /// Opens an environment. The worker keeps the map of at most k_rows rows too, so that its integrals are those of what the shaders read.
     async open(source: LightSource): Promise<void> {
-        const info = await source(this.baker, 'auto'), tables = await this.baker.tables(k_rows);
+        const info = await openSource(this.baker, await source('auto')), tables = await this.baker.tables(k_rows);
         if (info.height > k_rows) await this.baker.use(info.name, rgbOf(tables));
         this.name = info.name;
         this.readHeight = info.height;

@@ -46,10 +46,6 @@ export class Baker {
     samples(count: number): Promise<Float32Array> {
         return this.ask({kind: 'samples', count});
     }
-    /// A chain of GGX levels for an engine. mirrored: to be looked up at (-x, y, z).
-    chain(sizes: number[], roughness: number[], mirrored: boolean): Promise<Chain> {
-        return this.ask({kind: 'chain', sizes, roughness, mirrored});
-    }
     /// Filters a cube that was drawn in the scene (Stage.drawCube): RGBA floats, of which the environment shows through where alpha is below 1.
     live(size: number, texels: Float32Array): Promise<Bake> {
         return this.ask({kind: 'live', size, texels}, [texels.buffer as ArrayBuffer]);

@@ -14,9 +14,6 @@ export function levelRoughness(level: number, levels: number): number {
     return Math.max(0.6, 0.08 ** (1 / Math.max(1, last - 1))) ** (last - level);
 }
 
-/// The roughness of a level of three.js (src/engines/three.cpp): read at level = last r (2 - r).
-export const threeRoughness = (level: number, levels: number): number => 1 - Math.sqrt(1 - level / Math.max(1, levels - 1));
-
 /// The exponent of a level of a modified Phong chain (src/engines/engine.cpp, default_phong_exponents).
 export function levelExponent(level: number): number {
     return level === 0 ? Infinity : Math.max(1, 2 ** (13 - 2 * level), 2 ** (7 - level));

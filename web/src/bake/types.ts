@@ -7,6 +7,9 @@ export interface Latlong {
     pixels: Float32Array;
 }
 
+/// An environment as it was opened: a file, whose projection is empty where it says it, or pixels that the page has computed.
+export type Source = {name: string; bytes: ArrayBuffer; projection: string} | {name: string; latlong: Latlong};
+
 /// A cube of half floats, RGBA, its faces +X -X +Y -Y +Z -Z one after the other.
 export interface CubeLevel {
     size: number;
@@ -90,7 +93,6 @@ export type Request =
     | {kind: 'survey'; rows: number}
     | {kind: 'samples'; count: number}
     | {kind: 'filtered'; lobe: Lobe; parameter: number; directions: Float64Array}
-    | {kind: 'chain'; sizes: number[]; roughness: number[]; mirrored: boolean}
     | {kind: 'live'; size: number; texels: Float32Array}
     | {kind: 'picture'; name: string; bytes: ArrayBuffer};
 
@@ -105,7 +107,6 @@ export interface Replies {
     samples: Float32Array;
     /// RGB of each direction.
     filtered: Float32Array;
-    chain: Chain;
     live: Bake;
     picture: Latlong;
 }

@@ -79,8 +79,6 @@ async function answer(request: Request): Promise<Replies[Request['kind']]> {
             return keep(request.name, 'computed in the page', loaded.environment(request.latlong), request.latlong, start);
         case 'bake':
             return bake(opened(), request.size, 16, 32);
-        case 'chain':
-            return opened().prefilter('ggx', request.sizes, request.roughness, 0, 'read', request.mirrored).chain;
         case 'live':
             return live(request.size, request.texels, loaded);
         case 'phong': {
