@@ -8,6 +8,7 @@
 #include "io/file/file_reader.h"
 #include "io/file/sha256.h"
 #include "io/image_reader.h"
+#include "scene/scene_files.h"
 
 #include <fmt/format.h>
 
@@ -123,6 +124,36 @@ Result<void> check_scene(const JobKind& kind, const PlanEntry& entry) {
     return Error{"needs one scene", entry.place, "A file as the key \"scene\", or a built-in one as the option scene."};
 }
 
+/// The files that the jobs' scenes name are inputs, too. Each scene is read once.
+class FilesOfScenes {
+  public:
+    explicit FilesOfScenes(fs::path root) : root_(std::move(root)) {}
+
+    Result<void> add_to(std::vector<BatchInput>& inputs) {
+        for (std::size_t i = 0, count = inputs.size(); i < count; ++i) {
+            if (inputs[i].role != "scene") continue;
+            const auto named = of(inputs[i].file);
+            if (!named) return named.error();
+            for (const std::string& file : **named) inputs.push_back({"scene_file", file, "", 0});
+        }
+        return {};
+    }
+
+  private:
+    Result<const std::vector<std::string>*> of(const std::string& scene) {
+        const auto [known, is_new] = named_.emplace(scene, std::vector<std::string>());
+        if (!is_new) return &known->second;
+        const auto files = files_named_by_scene(root_ / scene);
+        if (!files) return files.error();
+        for (const fs::path& file : *files)
+            known->second.push_back((fs::path(scene).parent_path() / file).generic_string());
+        return &known->second;
+    }
+
+    fs::path root_;
+    std::unordered_map<std::string, std::vector<std::string>> named_;
+};
+
 }  // namespace
 
 Result<BatchPlan> plan_batch(const fs::path& source, const BatchPlanOptions& options) {
@@ -132,6 +163,7 @@ Result<BatchPlan> plan_batch(const fs::path& source, const BatchPlanOptions& opt
     BatchPlan plan{version(), asked->root, {}, asked->warnings};
     Inputs inputs(asked->root);
     CheckedOptions checked;
+    FilesOfScenes scenes(asked->root);
     plan.jobs.reserve(asked->entries.size());
     for (PlanEntry& entry : asked->entries) {
         const JobKind& kind = **find_job_kind(entry.kind);
@@ -142,6 +174,7 @@ Result<BatchPlan> plan_batch(const fs::path& source, const BatchPlanOptions& opt
             job.output = (fs::path(job.output).parent_path() /
                           kind.file_name(entry.options, fs::path(job.output).filename().string()))
                              .generic_string();
+        if (auto ok = scenes.add_to(job.inputs); !ok) return ok.error();
         for (const BatchInput& input : job.inputs) inputs.add(input.file);
         plan.jobs.push_back(std::move(job));
     }

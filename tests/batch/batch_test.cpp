@@ -100,6 +100,46 @@ TEST_CASE("batch: a plan that is read is the one that was written") {
     CHECK(plan.jobs[0].id != plan.jobs[1].id);
 }
 
+TEST_CASE("batch: what a scene names is an input of its jobs, and changes them") {
+    const domelight::test::TemporaryFolder folder;
+    std::filesystem::create_directories(folder / "s/maps");
+    SkyOptions sky;
+    sky.height = 8;
+    REQUIRE(write_hdr(folder / "a.hdr", *make_sky(sky)));
+    const auto write = [&](const char* name, const std::string& text) { std::ofstream(folder / name) << text; };
+    write("s/room.obj", "mtllib room.mtl\nmtllib not there.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    write("s/room.mtl", "newmtl wall\nmap_Kd -s 2 2 1 maps/brick.png\nmap_Ke maps/brick.png\n");
+    write("s/maps/brick.png", "red");
+    write("s/lamp post.bin", "1234");
+    write("s/lamp.gltf", R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "lamp%20post.bin"}, {"uri": "data:,"}],
+                            "images": [{"uri": "maps/brick.png"}, {"uri": "../a.hdr"}, {"bufferView": 0}]})");
+    write("jobs.jsonl", R"({"kind": "render", "environment": "a.hdr", "scene": "s/room.obj", "output": "room"}
+{"kind": "render", "environment": "a.hdr", "scene": "s/lamp.gltf", "output": "lamp"}
+)");
+    const auto planned = [&] {
+        auto plan = plan_batch(folder / "jobs.jsonl", {});
+        REQUIRE_MESSAGE(plan, plan.error().format());
+        return *plan;
+    };
+    const auto named = [](const BatchJob& job) {
+        std::string text;
+        for (const BatchInput& input : job.inputs)
+            if (input.role == "scene_file") text += input.file + "|";
+        return text;
+    };
+    const BatchPlan before = planned();
+    REQUIRE(before.jobs.size() == 2);
+    const auto job = [](const BatchPlan& plan, const char* name) {
+        return *std::ranges::find_if(plan.jobs, [&](const BatchJob& j) { return j.output.starts_with(name); });
+    };
+    CHECK(named(job(before, "room")) == "s/room.mtl|s/maps/brick.png|");
+    CHECK(named(job(before, "lamp")) == "s/lamp post.bin|s/maps/brick.png|");
+    write("s/lamp post.bin", "4321");
+    const BatchPlan after = planned();
+    CHECK(job(after, "lamp").id != job(before, "lamp").id);
+    CHECK(job(after, "room").id == job(before, "room").id);
+}
+
 TEST_CASE("batch: a job that is run twice is done once, and a lock keeps another run from it") {
     const domelight::test::TemporaryFolder folder;
     const BatchPlan plan = small_plan(folder);
