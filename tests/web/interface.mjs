@@ -72,6 +72,25 @@ async function testStart({browser, watch, server, claim, work, program}) {
     await page.close();
 }
 
+/// The camera by the mouse, and what a folded panel changes.
+async function testView({open, claim}) {
+    const page = await open('#fullResolution=true', {viewport: {width: 720, height: 300}}), target = () => state(page, 'target'), before = await target();
+    await page.waitForFunction(() => domelight.stage.panes[0].count >= 6, undefined, {timeout: 30_000});
+    await page.evaluate(() => domelight.store.set({panel: false}));
+    await page.waitForFunction(() => domelight.stage.inset.right === 0 && domelight.stage.panes[0].count > 0, undefined, {timeout: 10_000});
+    const count = await page.evaluate(() => domelight.stage.panes[0].count);
+    claim('view: frames of a panel that is open and folded are not mixed', count < 6 ? [] : [`${count} frames are in the mean`]);
+    await page.mouse.dblclick(360, 105);
+    await settle(page);
+    const near = await target(), eye = await state(page, 'eye');
+    claim('view: a double click comes nearer to the ball there', near[1] > 0.3 && near[2] > 0.2 && Math.hypot(...eye.map((v, k) => v - near[k])) < 11 ? [] : [`${near}, seen from ${eye}`]);
+    await page.mouse.dblclick(655, 140);
+    await settle(page);
+    claim('view: a double click beside the model shows all of it', String(await target()) === String(before) ? [] : [String(await target())]);
+    claim('view: the console is silent', page.complaints);
+    await page.close();
+}
+
 async function testAddress({open, claim}) {
     const page = await open('#mode=refract&lookup=sphere-map&exposure=1.5&eye=1,2,3&size=nonsense&unknown=7&tonemap=wrong');
     const wrong = [];
@@ -362,7 +381,7 @@ async function testTab({open, claim}) {
 }
 
 export async function testInterface(app) {
-    for (const test of [testStart, testKeys, testAddress, testBadFiles, testModels, testProjections, testFlip, testExport, testLists, testLive, testLostContext, testPhone, testAccessibility, testTab]) {
+    for (const test of [testStart, testKeys, testView, testAddress, testBadFiles, testModels, testProjections, testFlip, testExport, testLists, testLive, testLostContext, testPhone, testAccessibility, testTab]) {
         const start = performance.now();
         try {
             await test(app);

@@ -238,6 +238,12 @@ export class App {
             this.stage.setModel(this.model.root);
         });
     }
+    /// Comes nearer to the surface at a point of the picture, which becomes the middle; beside the model, shows all of it. x, y: 0 to 1, from the upper left corner.
+    lookCloser(x: number, y: number): void {
+        const point = this.stage.surfaceAt(x, y)?.toArray(), {eye, target} = this.state;
+        if (!point) return this.resetView();
+        this.store.set({target: point, eye: point.map((v, k) => v + 0.5 * (eye[k]! - target[k]!)) as [number, number, number]});
+    }
     resetView(): void {
         // The name above and the methods below lie over the picture.
         const {height, inset} = this.screen, bars = (2 * k_bars * Math.min(2, devicePixelRatio)) / (height - inset.bottom);

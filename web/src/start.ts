@@ -67,6 +67,7 @@ export async function start({store, layout, baker, session}: Beginning): Promise
     layout.panel.append(sceneSection(app), pictureSection(app, new ScreenSection(app, layout.canvas).parts), methodSection(app), probesSection(app), noise.root, materialSection(app, levelOf), truth.root, compare.root, map.root, levelsSection(app), exportSection(app));
 
     const status = new Status(app, layout.status), hover = new Hover(app, status, map);
+    layout.canvas.addEventListener('dblclick', event => app.lookCloser(event.clientX / innerWidth, event.clientY / innerHeight));
     bindPointer(layout.canvas, store, (x, y) => hover.at(x, y), () => hover.leave());
     const name = () => layout.name(store.state, store.state.other === 'truth' ? truth.progress || 'on its way' : '', app.stage.mapped);
     const drawn = () => {

@@ -89,6 +89,8 @@ export class Stage {
 
     /// Takes effect with the next frame.
     resize(width: number, height: number, inset: {right: number; bottom: number}): void {
+        // Another view of the model: what was drawn does not belong to it.
+        if (this.inset.right !== inset.right || this.inset.bottom !== inset.bottom) this.restart();
         this.size = {width, height};
         this.inset = inset;
     }
@@ -266,6 +268,14 @@ export class Stage {
         this.camera.updateProjectionMatrix();
     }
 
+    /// The point of the model's surface that is seen at a point of the picture, 0 to 1 from the upper left corner; null beside the model.
+    surfaceAt(x: number, y: number): THREE.Vector3 | null {
+        const {width, height} = this.panes[0], ray = new THREE.Raycaster();
+        this.look(0, 0, width, height);
+        this.camera.updateMatrixWorld();
+        ray.setFromCamera(new THREE.Vector2(2 * x - 1, 1 - 2 * y), this.camera);
+        return ray.intersectObjects(this.meshes.map(({mesh}) => mesh), false)[0]?.point ?? null;
+    }
     /// One more frame of a pane.
     advance(pane: Pane, mode: Mode): void {
         this.camera.updateMatrixWorld();

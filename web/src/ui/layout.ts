@@ -120,13 +120,14 @@ export function helpDialog(keys: ReturnType<typeof keyTable>): HTMLDialogElement
     const line = (shown: (Node | string)[], what: string) => list.append(element('dt', {}, ...shown), element('dd', {}, what));
     line(['Drag'], 'orbit; with Shift, turn the light; with the right button or two fingers, move');
     line(['Wheel, pinch'], 'nearer, farther');
+    line(['Double click'], 'look closer at that point; beside the model, at all of it');
     for (const {shown, what} of keys)
         if (what) line(shown.flatMap(key => (key === '…' ? [' … '] : [element('kbd', {}, key), ' '])), what);
-    const dialog = element('dialog', {ariaLabel: 'Help'}, element('h2', {}, 'Domelight'),
+    const dialog = element('dialog', {ariaLabel: 'Help'}, element('h2', {tabIndex: -1, autofocus: true}, 'Domelight'),
         element('p', {}, 'See a model lit by a photograph, by every method of image-based lighting, and the error of each. Drop an environment and a model ' +
                          '(.glb, .gltf with its files) anywhere. Everything is computed in this page: nothing is uploaded.'),
         element('p', {}, 'How it works: ', element('a', {href: 'learn/index.html'}, 'short interactive pages'), ', each with its equation and its code.'),
-        list, element('form', {method: 'dialog'}, element('button', {autofocus: true}, 'Close')));
+        list, element('form', {method: 'dialog'}, element('button', {}, 'Close')));
     dialog.addEventListener('close', () => (document.activeElement as HTMLElement | null)?.blur());
     document.body.append(dialog);
     return dialog;
