@@ -5,6 +5,7 @@
 #include "batch/job_kind.h"
 #include "batch/plan_file.h"
 #include "batch/plan_source.h"
+#include "compare/manifest_entry.h"
 #include "io/file/file_reader.h"
 #include "io/file/sha256.h"
 #include "io/image_reader.h"
@@ -124,29 +125,39 @@ Result<void> check_scene(const JobKind& kind, const PlanEntry& entry) {
     return Error{"needs one scene", entry.place, "A file as the key \"scene\", or a built-in one as the option scene."};
 }
 
-/// The files that the jobs' scenes name are inputs, too. Each scene is read once.
-class FilesOfScenes {
+/// Files that decide a result though no job names them: those that a scene names, and the manifest beside a bake, by
+/// which an audit knows how the bake was made. Each scene is read once.
+class FurtherInputs {
   public:
-    explicit FilesOfScenes(fs::path root) : root_(std::move(root)) {}
+    explicit FurtherInputs(fs::path root) : root_(std::move(root)) {}
 
     Result<void> add_to(std::vector<BatchInput>& inputs) {
         for (std::size_t i = 0, count = inputs.size(); i < count; ++i) {
-            if (inputs[i].role != "scene") continue;
-            const auto named = of(inputs[i].file);
-            if (!named) return named.error();
-            for (const std::string& file : **named) inputs.push_back({"scene_file", file, "", 0});
+            const std::string role = inputs[i].role, file = inputs[i].file;
+            if (role != "scene" && role != "bake") continue;
+            const auto further = of(role, file);
+            if (!further) return further.error();
+            for (const std::string& name : **further) inputs.push_back({further_role(role), name, "", 0});
         }
         return {};
     }
 
   private:
-    Result<const std::vector<std::string>*> of(const std::string& scene) {
-        const auto [known, is_new] = named_.emplace(scene, std::vector<std::string>());
+    static const char* further_role(const std::string& role) { return role == "scene" ? "scene_file" : "manifest"; }
+
+    Result<const std::vector<std::string>*> of(const std::string& role, const std::string& file) {
+        const auto [known, is_new] = named_.emplace(role + " " + file, std::vector<std::string>());
         if (!is_new) return &known->second;
-        const auto files = files_named_by_scene(root_ / scene);
+        if (role == "bake") {
+            if (const auto manifest = manifest_naming(root_ / file))
+                known->second.push_back(
+                    (fs::path(file).is_absolute() ? *manifest : manifest->lexically_relative(root_)).generic_string());
+            return &known->second;
+        }
+        const auto files = files_named_by_scene(root_ / file);
         if (!files) return files.error();
-        for (const fs::path& file : *files)
-            known->second.push_back((fs::path(scene).parent_path() / file).generic_string());
+        for (const fs::path& name : *files)
+            known->second.push_back((fs::path(file).parent_path() / name).generic_string());
         return &known->second;
     }
 
@@ -163,7 +174,7 @@ Result<BatchPlan> plan_batch(const fs::path& source, const BatchPlanOptions& opt
     BatchPlan plan{version(), asked->root, {}, asked->warnings};
     Inputs inputs(asked->root);
     CheckedOptions checked;
-    FilesOfScenes scenes(asked->root);
+    FurtherInputs further(asked->root);
     plan.jobs.reserve(asked->entries.size());
     for (PlanEntry& entry : asked->entries) {
         const JobKind& kind = **find_job_kind(entry.kind);
@@ -174,7 +185,7 @@ Result<BatchPlan> plan_batch(const fs::path& source, const BatchPlanOptions& opt
             job.output = (fs::path(job.output).parent_path() /
                           kind.file_name(entry.options, fs::path(job.output).filename().string()))
                              .generic_string();
-        if (auto ok = scenes.add_to(job.inputs); !ok) return ok.error();
+        if (auto ok = further.add_to(job.inputs); !ok) return ok.error();
         for (const BatchInput& input : job.inputs) inputs.add(input.file);
         plan.jobs.push_back(std::move(job));
     }

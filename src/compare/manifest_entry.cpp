@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 namespace domelight {
 namespace {
@@ -40,13 +41,25 @@ std::optional<Entry> entry_in(const std::filesystem::path& manifest, const std::
     return std::nullopt;
 }
 
-/// By the manifest in the file's folder, or in the one above it.
-std::optional<Entry> entry_of(const std::filesystem::path& file) {
+/// A manifest that may describe a file, and the file's name in it.
+struct Candidate {
+    std::filesystem::path manifest;
+    std::string name;
+};
+/// In the file's folder, and in the one above it.
+std::vector<Candidate> candidates(const std::filesystem::path& file) {
     const std::filesystem::path folder = file.parent_path();
     const std::string name = file.filename().generic_string();
-    if (auto found = entry_in(folder / "manifest.json", name)) return found;
-    if (!folder.has_filename()) return std::nullopt;
-    return entry_in(folder.parent_path() / "manifest.json", (folder.filename() / name).generic_string());
+    std::vector<Candidate> all{{folder / "manifest.json", name}};
+    if (folder.has_filename())
+        all.push_back({folder.parent_path() / "manifest.json", (folder.filename() / name).generic_string()});
+    return all;
+}
+
+std::optional<Entry> entry_of(const std::filesystem::path& file) {
+    for (const Candidate& c : candidates(file))
+        if (auto found = entry_in(c.manifest, c.name)) return found;
+    return std::nullopt;
 }
 
 /// The numbers of all levels, "0 0.25 0.5"; nothing where a level has none.
@@ -62,6 +75,12 @@ std::string numbers_of_levels(const Json& map, const char* key) {
 }
 
 }  // namespace
+
+std::optional<std::filesystem::path> manifest_naming(const std::filesystem::path& file) {
+    for (const Candidate& c : candidates(file))
+        if (entry_in(c.manifest, c.name)) return c.manifest;
+    return std::nullopt;
+}
 
 std::optional<std::string> projection_in_manifest(const std::filesystem::path& file) {
     const auto entry = entry_of(file);

@@ -8,6 +8,9 @@
 
 namespace domelight {
 
+/// The manifest.json, in the file's folder or the one above it, that describes the file. Nothing where there is none.
+std::optional<std::filesystem::path> manifest_naming(const std::filesystem::path& file);
+
 /// The projection that the bake's manifest.json, in the file's folder or the one above it, states for a lat-long file:
 /// "latlong/usd". Nothing where there is no manifest, or where it says nothing of the file.
 std::optional<std::string> projection_in_manifest(const std::filesystem::path& file);

@@ -92,7 +92,8 @@ Result<StoredBake> read_chain(const std::string& file, int threads) {
     StoredBake bake;
     bake.is_cube = texture->faces == 6;
     if (bake.is_cube)
-        if (const auto engine = find_engine(engine_in_manifest(file).name)) bake.engine = *engine;
+        if (const auto engine = find_engine(engine_in_manifest(file).name); engine && *engine != &engines().front())
+            bake.engine = *engine;  // `generic` reads nothing
     bake.format = info ? fmt::format("{}, {}", info->container, info->format) : "texture";
     for (Cubemap& cube : *cubes) bake.levels.emplace_back().cube = std::move(cube);
     // DDS and .env have no place for keys.
