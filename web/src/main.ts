@@ -20,6 +20,7 @@ bindDrops(layout.drop, files => open(files));
 
 async function begin(): Promise<void> {
     const {start} = await import('./start'), openFiles = await start({store, layout, baker, session});
+    document.body.classList.add('started');
     if (openFiles) open = openFiles;
     if (openFiles && waiting.length > 0) openFiles(waiting);
 }
