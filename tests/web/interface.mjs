@@ -95,7 +95,7 @@ async function testView({open, claim}) {
     await page.close();
 }
 
-async function testAddress({open, claim}) {
+async function testAddress({open, claim, work}) {
     const page = await open('#mode=refract&lookup=sphere-map&exposure=1.5&eye=1,2,3&size=nonsense&unknown=7&tonemap=wrong');
     const wrong = [];
     for (const [key, value] of Object.entries({mode: 'refract', lookup: 'sphere-map', exposure: 1.5, eye: [1, 2, 3], size: 256, tonemap: 'agx'})) {
@@ -109,6 +109,14 @@ async function testAddress({open, claim}) {
     claim('address: it follows what is chosen', /mode=phong/.test(hash) && /tonemap=neutral/.test(hash) && !/exposure/.test(hash) ? [] : [hash]);
     claim('address: the console is silent', page.complaints);
     await page.close();
+    // With a scene that the program serves, too.
+    const session = path.join(work, 'api/session'), before = fs.readFileSync(session, 'utf8');
+    fs.writeFileSync(session, JSON.stringify({...JSON.parse(before), scene: {name: 'draco.glb', url: '/models/draco.glb'}}));
+    const served = await open('#eye=1,2,3');
+    fs.writeFileSync(session, before);
+    const [name, eye] = await served.evaluate(() => [domelight.app.model.name, domelight.store.state.eye]);
+    claim('address: a view of a served scene is kept', name === 'draco.glb' && String(eye) === '1,2,3' ? [] : [`${name} from ${eye}`]);
+    await served.close();
 }
 
 /// Writes a file into the folder that the server serves; its address.

@@ -132,7 +132,8 @@ export class App {
     }
 
     async start(): Promise<void> {
-        this.showModel((builtInModels[this.state.model] ?? builtInModels.spheres!)(), this.state.eye.some(v => v !== 0));
+        const keepView = this.state.eye.some(v => v !== 0);  // that of the address
+        this.showModel((builtInModels[this.state.model] ?? builtInModels.spheres!)(), keepView);
         const {served} = this, table = this.work('fetching the BRDF table', async () => this.stage.setBrdf((this.brdf = await brdfTable())));
         if (served?.environment[0]) this.source = fromServed(served.environment[0]);
         if (!(await this.relight()) && served?.environment[0]) {
@@ -140,7 +141,7 @@ export class App {
             await this.relight();
         } else if (served?.environment[0]) this.environments.set(served.environment[0].name, this.source);
         const {scene} = served ?? {};
-        if (scene) await this.useModel(scene.name, async () => loadModel(this.stage.renderer, scene.name, await (await fetchFile(scene)).arrayBuffer(), new Map(), scene.url.replace(/[^/]*$/, '')));
+        if (scene) await this.useModel(scene.name, async () => loadModel(this.stage.renderer, scene.name, await (await fetchFile(scene)).arrayBuffer(), new Map(), scene.url.replace(/[^/]*$/, '')), keepView);
         if (served?.probes.length) await this.work('reading the probes', async () => this.openProbes(await Promise.all(served.probes.map(fetchFile))));
         await table;
     }
@@ -198,9 +199,9 @@ export class App {
         this.store.set({exposure: (this.adapted = goodExposure)});
         this.events.told(`${this.environmentName} is ${goodExposure < exposure ? 'bright' : 'dark'}: the exposure is now ${goodExposure.toFixed(1)} EV.`);
     }
-    private useModel(name: string, load: () => Model | Promise<Model>): Promise<boolean> {
+    private useModel(name: string, load: () => Model | Promise<Model>, keepView = false): Promise<boolean> {
         return this.work(`reading ${name}`, async () => {
-            this.showModel(await load());
+            this.showModel(await load(), keepView);
             this.models.set(name, load);
             for (const sentence of this.model.notes ?? []) this.events.told(`${name}: ${sentence}`);
         });

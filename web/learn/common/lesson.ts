@@ -118,7 +118,7 @@ export class Lesson<T extends Choices> {
     private async use(source: LightSource): Promise<void> {
         await this.light.open(source);
         for (const load of this.loaders) await load();
-        const {name, readHeight} = this.light;
+        const {readHeight} = this.light, name = computed.find(([key]) => key === this.light.name)?.[1].replace(/ \(.*/, '') ?? this.light.name;
         this.note.textContent = readHeight > k_rows ? `${name}, reduced to ${k_rows} rows, so that every number on this page is of the same light.` : `${name}, ${readHeight} rows.`;
         this.lit = true;
     }
