@@ -15,14 +15,14 @@ const [program, chromium, model, sunrise, meadow, ...names] = process.argv.slice
 const here = path.dirname(fileURLToPath(import.meta.url)), root = path.resolve(here, '../../..');
 const work = fs.mkdtempSync(path.join(os.tmpdir(), 'screenshots-'));
 const run = (command, ...args) => execFileSync(command, args.map(String), {stdio: ['ignore', 'ignore', 'inherit']});
-const k_patience_ms = 300_000;
+const k_patience_ms = 900_000;
 
 /// The rooms of docs/probes.md, with probes between which there are tetrahedra.
 function makeRooms() {
     const [scene, light, probes] = ['rooms.glb', 'rooms.hdr', 'probes'].map(name => path.join(work, name));
     run('/usr/bin/python3', path.join(root, 'docs/figures/probes/rooms.py'), scene);
     run(program, 'sky', '-o', light, '--quiet');
-    run(program, 'probes', scene, '--env', light, '-o', probes, '--auto', 40, '--size', 32, '--spp', 32, '--quiet');
+    run(program, 'probes', scene, '--env', light, '-o', probes, '--auto', 40, '--size', 16, '--spp', 16, '--quiet');
     return [scene, light, '--probes', probes];
 }
 
@@ -40,12 +40,18 @@ const pictures = {
     difference: {
         files: () => [model, meadow], address: '#fullResolution=true&mode=split-sum&other=monte-carlo&view=flip', size: [1200, 720],
         prepare: async page => {
-            await page.waitForFunction(() => [...document.querySelectorAll('#panel .note')].some(n => /mean FLIP/.test(n.textContent)), undefined, {timeout: k_patience_ms});
+            const note = page.locator('#panel .note', {hasText: 'mean FLIP'});
+            await note.waitFor({state: 'attached', timeout: k_patience_ms});
+            await note.evaluate(element => {
+                const details = element.closest('details');
+                details.open = true;
+                details.scrollIntoView();
+            });
         },
     },
-    probes: {files: makeRooms, address: '#fullResolution=true&probeBalls=true&eye=0.5,1.7,3.4&target=6,0.9,1&fov=65&exposure=-3&panel=false', size: [800, 450]},
+    probes: {files: makeRooms, address: '#fullResolution=true&probeBalls=true&eye=0.5,1.7,3.4&target=6,0.9,1&fov=65&exposure=-3.3&panel=false', size: [800, 450]},
     irradiance: {files: () => [], page: 'irradiance', address: '#environment=sunset&k=32&j=8', size: [1060, 860]},
-    importance: {files: () => [], page: 'importance', address: '', size: [1060, 860]},
+    importance: {files: () => [], page: 'importance', address: '', size: [1060, 940]},
     mis: {files: () => [], page: 'mis', address: '', size: [1060, 780]},
 };
 
