@@ -1,6 +1,7 @@
 // The library in a worker: every call is a promise, and the page keeps moving. index.d.ts has the types, with units and shapes.
 
 import {aborted, DomelightError} from './errors.js';
+import {checkPixels} from './pixels.js';
 
 export {DomelightError};
 
@@ -21,7 +22,9 @@ export function configure({module, files, bake, worker} = {}) {
 async function startWorker(url) {
     if (isNode) {
         const {Worker} = await import('node:worker_threads');
-        const worker = new Worker(url);
+        // A worker inherits the options of Node, and --input-type (of `node -e`) is none for files.
+        const evaluated = process.execArgv.some(option => option.startsWith('--input-type'));
+        const worker = new Worker(url, evaluated ? {execArgv: []} : {});
         worker.unref();
         return {
             listen: (onMessage, onEnd) => {
@@ -64,6 +67,8 @@ class Host {
 
     /// Calls a function of worker.js. `prepare` makes what it is given, when its turn has come.
     call(name, prepare, {progress, signal, transfer} = {}) {
+        if (signal !== undefined && signal !== null && typeof signal.addEventListener !== 'function')
+            return Promise.reject(new DomelightError('is not an AbortSignal', 'signal'));
         if (signal?.aborted) return Promise.reject(aborted(signal));
         if (progress !== undefined && typeof progress !== 'function') return Promise.reject(new DomelightError('is not a function', 'progress'));
         return new Promise((resolve, reject) => {
@@ -124,9 +129,13 @@ class Host {
         if (!worker) return Promise.reject(new DomelightError('The worker ended before the work began', '', 'The next call starts another.'));
         return new Promise((resolve, reject) => {
             worker.waiting ??= new Map();
+            try {
+                worker.post({id, name, given}, transfer ?? []);
+            } catch (error) {
+                throw new DomelightError(`An argument of ${name}() cannot be given to the worker (${error.message})`);
+            }
             worker.waiting.set(id, {resolve, reject, progress});
             worker.busy(true);
-            worker.post({id, name, given}, transfer ?? []);
         });
     }
 
@@ -303,10 +312,10 @@ export async function read(source, {signal, ...options} = {}) {
     return made((worker, baking) => worker.send('read', {source: bytes, options: {name, ...options}, baking}), signal);
 }
 
-export async function fromPixels(pixels, options) {
+export async function fromPixels(pixels, {signal, ...options} = {}) {
     // The worker gets a copy, and so does this object, in case that the worker ends.
-    const copy = {...pixels, data: pixels?.data?.slice?.()};
-    return made((worker, baking) => worker.send('fromPixels', {pixels: copy, options, baking}));
+    const checked = checkPixels(pixels), copy = {...checked, data: checked.data.slice()};
+    return made((worker, baking) => worker.send('fromPixels', {pixels: copy, options, baking}), signal);
 }
 
 function check(environment, kind = Environment) {
@@ -340,7 +349,10 @@ export async function write(what, {signal, ...options} = {}) {
 }
 
 export const brdfTable = ({signal, ...options} = {}) => host.call('brdfTable', () => ({options}), {signal});
-export const encode = (levels, {signal, ...options} = {}) => host.call('encode', () => ({levels, options}), {signal});
+export async function encode(levels, {signal, ...options} = {}) {
+    const checked = (Array.isArray(levels) ? levels : [levels]).map(checkPixels);
+    return host.call('encode', () => ({levels: checked, options}), {signal});
+}
 
 /// Bakes many cubes of one size, such as the probes of a scene that moves: what depends on the size alone is computed once.
 export class ProbeFilter extends Remote {
@@ -354,8 +366,9 @@ export class ProbeFilter extends Remote {
         return new ProbeFilter(make, first);
     }
     /// What bake() gives of a cube's pixels: {data, width, height, faces: 6, channels}.
-    bake(pixels, {signal} = {}) {
-        return host.call('bakeProbe', async worker => ({id: await this.in(worker), pixels}), {signal});
+    async bake(pixels, {signal} = {}) {
+        const checked = checkPixels(pixels);
+        return host.call('bakeProbe', async worker => ({id: await this.in(worker), pixels: checked}), {signal});
     }
 }
 

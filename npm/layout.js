@@ -49,7 +49,7 @@ const readers = {
     i32: (view, at) => view.getInt32(at, true),
     u32: (view, at) => view.getUint32(at, true),
     f32: (view, at) => view.getFloat32(at, true),
-    i64: (view, at) => Number(view.getBigInt64(at, true)),
+    i64: (view, at) => 2 ** 32 * view.getInt32(at + 4, true) + view.getUint32(at, true),
     f64: (view, at) => view.getFloat64(at, true),
 };
 

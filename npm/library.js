@@ -451,11 +451,10 @@ export class LibrarySampler extends Handle {
 
 /// The bytes of a file, as a view.
 export function bytesOf(bytes) {
-    const array = bytes instanceof ArrayBuffer ? new Uint8Array(bytes) : ArrayBuffer.isView(bytes) ? new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.byteLength) : undefined;
-    if (!array) throw new DomelightError('The file is neither an ArrayBuffer nor a view of one');
-    if (bytes instanceof ArrayBuffer ? bytes.detached || isDetached(bytes) : isDetached(bytes.buffer))
-        throw new DomelightError('The buffer of the file has been transferred to another thread, and is empty');
-    return array;
+    const buffer = bytes instanceof ArrayBuffer ? bytes : ArrayBuffer.isView(bytes) ? bytes.buffer : undefined;
+    if (!buffer) throw new DomelightError('The file is neither an ArrayBuffer nor a view of one');
+    if (isDetached(buffer)) throw new DomelightError('The buffer of the file has been transferred to another thread, and is empty');
+    return bytes === buffer ? new Uint8Array(buffer) : new Uint8Array(buffer, bytes.byteOffset, bytes.byteLength);
 }
 
 const isDetached = buffer => {

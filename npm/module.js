@@ -15,6 +15,7 @@ const isNode = typeof process === 'object' && !!process.versions?.node;
 export async function compile(source) {
     if (source instanceof WebAssembly.Module) return source;
     if (source instanceof ArrayBuffer || ArrayBuffer.isView(source)) return compiled(WebAssembly.compile(source), 'the bytes that `module` holds');
+    if (typeof source !== 'string' && !(source instanceof URL)) throw new DomelightError(`${source} is neither a URL, bytes nor a WebAssembly.Module`, 'module');
     const url = new URL(source, globalThis.location?.href ?? import.meta.url);
     if (isNode && url.protocol === 'file:') {
         const {readFile} = await import('node:fs/promises');

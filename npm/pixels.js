@@ -5,7 +5,7 @@ import {pixelsStruct} from './layout.js';
 import {check} from './options.js';
 
 /// The shape of pixels, which must fit the array.
-function checkPixels(pixels) {
+export function checkPixels(pixels) {
     const {data, width, height, faces = 1, channels = 3} = check(pixels, 'data', 'width', 'height', 'faces', 'channels', 'roughness', 'exponent', 'lobe', 'size');
     const known = data instanceof Float32Array || data instanceof Uint16Array || (typeof Float16Array === 'function' && data instanceof Float16Array);
     if (!known) throw new DomelightError('is neither a Float32Array nor a Uint16Array of half floats', 'data');

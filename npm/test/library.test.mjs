@@ -48,6 +48,29 @@ test('bake encodes what an engine loads', () => {
     assert.ok(Math.abs(specs[1].roughness - (1 - Math.sqrt(2 / 3))) < 1e-12);
 });
 
+test('half floats are the nearest ones, ties to even, down to the smallest', () => {
+    const half = k => ((k >> 10) === 0 ? (k & 1023) * 2 ** -24 : (1024 + (k & 1023)) * 2 ** ((k >> 10) - 25));
+    const bits = new Uint32Array(1), float = new Float32Array(bits.buffer), values = [], expected = [];
+    const add = (value, k) => (values.push(value), expected.push(k));
+    for (let k = 0; k < 0x7bff; ++k) {
+        float[0] = (half(k) + half(k + 1)) / 2;  // exact
+        const middle = float[0];
+        add(half(k), k);
+        add(middle, k + (k & 1));
+        ++bits[0];
+        add(float[0], k + 1);
+        bits[0] -= 2;
+        add(float[0], k);
+    }
+    add(65504, 0x7bff);
+    add(1e9, 0x7bff);  // clipped
+    while (values.length % 24) add(1, 0x3c00);
+    const {levels: [{data, clippedTexels}]} = dl.encode({data: Float32Array.from(values), width: values.length / 6, height: 2}, {encoding: 'rgba16f'});
+    const stored = new Uint16Array(data.buffer).filter((_, i) => i % 4 !== 3);
+    assert.equal(stored.findIndex((v, i) => v !== expected[i]), -1);
+    assert.equal(clippedTexels, 1);
+});
+
 test('samples have the density that a lookup states, and look up their radiance', () => {
     const sampler = dl.sampler(dl.fromPixels(patch()));
     const drawn = sampler.sample({count: 512, sequence: 'sobol', seed: 7});

@@ -143,7 +143,8 @@ HWY_INLINE void for_each_place(const GridView& grid, const TapTable& table, cons
             }
             px = bx, py = by, pz = bz;
         }
-        grid_coordinates(grid, px, py, pz, k_block, column, row);
+        constexpr int k_most_lanes = 8;
+        grid_coordinates(grid, px, py, pz, (n + k_most_lanes - 1) / k_most_lanes * k_most_lanes, column, row);
         for (int k = 0; k < n; ++k) {
             Place place(grid, table, column[k], row[k]);
             use(i + k, place);

@@ -35,6 +35,40 @@ struct HalfCoder {
     static constexpr int k_bytes = 8;
     static constexpr bool k_exact = false;
     static constexpr float k_min = -k_half_max, k_max = k_half_max, k_max_blue = k_half_max;
+#if HWY_TARGET == HWY_WASM
+    // WebAssembly has no such conversion: half_from_float() and float_from_half() with vectors.
+    template <typename D, typename V = hn::Vec<D>>
+    static Rgb<V> store(D d, const Rgb<V>& v, std::uint8_t* out) {
+        const hn::Rebind<std::uint16_t, D> du16;
+        const auto r = half(d, v.r), g = half(d, v.g), b = half(d, v.b);
+        hn::StoreInterleaved4(hn::TruncateTo(du16, r), hn::TruncateTo(du16, g), hn::TruncateTo(du16, b),
+                              hn::Set(du16, std::uint16_t(0x3c00)), du16, reinterpret_cast<std::uint16_t*>(out));
+        return {decoded(d, r), decoded(d, g), decoded(d, b)};
+    }
+
+  private:
+    template <typename D, typename V = hn::Vec<D>>
+    static hn::Vec<hn::Rebind<std::uint32_t, D>> half(D d, V value) {
+        const hn::Rebind<std::uint32_t, D> du;
+        const auto all = hn::BitCast(du, value), bits = hn::And(all, hn::Set(du, 0x7fffffffu));
+        const auto sign = hn::And(hn::ShiftRight<16>(all), hn::Set(du, 0x8000u));
+        const auto sum = hn::Add(hn::BitCast(d, bits), hn::Set(d, 0.5f));
+        const auto subnormal = hn::Sub(hn::BitCast(du, sum), hn::Set(du, 0x3f000000u));
+        const auto odd = hn::And(hn::ShiftRight<13>(bits), hn::Set(du, 1u));
+        const auto normal = hn::ShiftRight<13>(hn::Add(hn::Add(bits, hn::Set(du, 0xc8000fffu)), odd));
+        const auto is_normal = hn::Ge(hn::BitCast(d, bits), hn::Set(d, 0x1p-14f));
+        return hn::Or(sign, hn::IfThenElse(hn::RebindMask(du, is_normal), normal, subnormal));
+    }
+    template <typename D, typename U>
+    static hn::Vec<D> decoded(D d, U half) {
+        const hn::Rebind<std::uint32_t, D> du;
+        const auto sign = hn::ShiftLeft<16>(hn::And(half, hn::Set(du, 0x8000u)));
+        // The exponent's bias is 112 larger; the product is exact, also of subnormal halves.
+        const auto magnitude = hn::ShiftLeft<13>(hn::And(half, hn::Set(du, 0x7fffu)));
+        const auto value = hn::Mul(hn::BitCast(d, magnitude), hn::Set(d, 0x1p112f));
+        return hn::BitCast(d, hn::Or(sign, hn::BitCast(du, value)));
+    }
+#else
     template <typename D, typename V = hn::Vec<D>>
     static Rgb<V> store(D d, const Rgb<V>& v, std::uint8_t* out) {
         const hn::Rebind<hwy::float16_t, D> dh;
@@ -44,6 +78,7 @@ struct HalfCoder {
                               hn::Set(du, std::uint16_t(0x3c00)), du, reinterpret_cast<std::uint16_t*>(out));
         return {hn::PromoteTo(d, r), hn::PromoteTo(d, g), hn::PromoteTo(d, b)};
     }
+#endif
 };
 
 struct FloatCoder {
@@ -241,8 +276,9 @@ EncodeSums compare_row_here(const float* rgb, const float* stored, int count, co
 EncodeSums encode_row_here(Encoding encoding, const float* rgb, int count, const float* weight, float log_floor,
                            std::uint8_t* out) {
     switch (encoding) {
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_NEON
-        // Only where the processor converts: Highway's own emulation rounds differently.
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL || HWY_TARGET == HWY_NEON || \
+    HWY_TARGET == HWY_WASM
+        // Only where the processor converts, or the coder does: Highway's own emulation rounds differently.
         case Encoding::rgba16f:
             return encode_row_with<HalfCoder>(encoding, rgb, count, weight, log_floor, out);
 #endif
