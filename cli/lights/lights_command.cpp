@@ -217,7 +217,12 @@ void print_summary(const LightsWords& w, const Outcome& o) {
             l.angular_diameter_deg, l.irradiance.x, l.irradiance.y, l.irradiance.z);
     }
     if (o.found.lights.empty()) print("  no light stands out\n");
-    if (r.left_out) print("  {} weaker ones stay in the remainder\n", r.left_out);
+    if (r.left_out)
+        print("  {} {} in the remainder\n", r.left_out,
+              o.found.lights.empty() ? (r.left_out == 1 ? "small bright place is too weak and stays"
+                                                        : "small bright places are too weak and stay")
+              : r.left_out == 1      ? "weaker one stays"
+                                     : "weaker ones stay");
     print("{}: lights.json, lights.gltf, {}{}; lights and remainder have the power of the original to {:.1g}\n",
           w.output, o.remainder_file, w.no_preview ? "" : ", preview.png", r.unaccounted);
 }

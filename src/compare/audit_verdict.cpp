@@ -9,6 +9,7 @@ namespace domelight {
 namespace {
 
 constexpr int k_least_decisive_size = 4;
+constexpr double k_sure_of_source = 0.05;  ///< the error of averaged faces that no other environment has
 
 std::string percent(double v) {
     return fmt::format("{:.2g} %", 100 * v);
@@ -38,8 +39,12 @@ std::string verdict_on_another(const BakeAudit& audit, double same) {
                            percent(audit.orientation.error));
     const std::size_t l =
         worst_by(audit.levels, [&](const LevelAudit& level) { return decides(level, audit) ? level.broad_error : -1; });
-    return fmt::format("not a bake of this environment: level {} is {} off at every roughness", l,
-                       percent(audit.levels[l].broad_error));
+    const double first = audit.levels[0].broad_error;
+    return fmt::format("not a bake of this environment: level {} is {} off at every roughness{}", l,
+                       percent(audit.levels[l].broad_error),
+                       l > 0 && first <= k_sure_of_source
+                           ? fmt::format(", or very noisy, because level 0 is only {} off", percent(first))
+                           : "");
 }
 
 /// "as ours", followed by the brightness if that differs.

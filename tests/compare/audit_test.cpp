@@ -64,6 +64,11 @@ std::vector<CubeLevel> bake(const ImageF& light, std::vector<Wanted> wanted, con
     return bake_levels(light, specs, m, scale);
 }
 
+/// 0.05 to 20, different for each number.
+float noise_of(std::ptrdiff_t i) {
+    return std::exp(3 * float(std::sin(12.9898 * double(i) + 1)));
+}
+
 const std::vector<Wanted> k_chain = {{32, 0}, {32, 0.37}, {16, 0.65}, {8, 1}};
 
 Environment source_of(const ImageF& light) {
@@ -221,6 +226,18 @@ TEST_SUITE("bake") {
             CHECK(audit->verdict.starts_with("not a bake of this environment"));
             CHECK(audit->levels.size() == levels.size());
         }
+    }
+
+    TEST_CASE("audit: a level that fits nothing is told of as such where the others fit") {
+        const ImageF light = environment(64);
+        std::vector<CubeLevel> levels = bake(light, {{32, 0}, {16, 0.37}, {8, 0.65}});
+        std::ptrdiff_t i = 0;
+        for (float& v : levels[1].cube.pixels()) v *= noise_of(i++);
+        const auto audit = audit_bake(levels, source_of(light));
+        REQUIRE(bool(audit));
+        CHECK_FALSE(audit->passed());
+        CHECK(audit->verdict.find("level 1 is") != std::string::npos);
+        CHECK(audit->verdict.find("or very noisy, because level 0 is only") != std::string::npos);
     }
 
     TEST_CASE("audit: roughnesses below the ladder's first are found, 0 among them") {

@@ -584,7 +584,7 @@ std::string hint_for_folder(const std::filesystem::path& folder) {
         return "It holds the lights of an environment (lights.json): name the remainder in it.";
     if (std::filesystem::exists(folder / "manifest.json", ignored))
         return "It holds a bake (manifest.json): name one of the files in it.";
-    return "Name an image, or six files px, nx, py, ny, pz, nz.";
+    return "Name an image, or six files px, nx, py, ny, pz, nz. A folder of environments is a batch.";
 }
 
 }  // namespace
