@@ -3,6 +3,7 @@
 #include "domelight/base/parallel.h"
 #include "domelight/projection/projection.h"
 
+#include "filtering/resample/cube_resize.h"
 #include "filtering/resample/cube_to_latlong.h"
 
 #include <algorithm>
@@ -178,6 +179,22 @@ bool permutes_axes(const Mat3& m) {
     return true;
 }
 
+/// The same texels in other places: the cube in axes that `world_to_source`, which permutes and mirrors, exchanges.
+Cubemap turned_cube(const Cubemap& source, const Mat3& world_to_source, int threads) {
+    assert(source.channels() == 3);
+    const int size = source.size();
+    Cubemap out(size);
+    parallel_for(6 * size, threads, [&](int row) {
+        for (int x = 0; x < size; ++x) {
+            const CubePoint p =
+                cube_point(world_to_source * cube_direction(row / size, {(x + 0.5) / size, (row % size + 0.5) / size}));
+            const float* from = source.face(p.face).at(int(p.uv.u * size), int(p.uv.v * size));
+            std::copy(from, from + 3, out.strip().at(x, row));
+        }
+    });
+    return out;
+}
+
 void store(float* to, const Vec3d& g, std::pair<double, double> range) {
     to[0] = float(std::clamp(g.x, range.first, range.second));
     to[1] = float(std::clamp(g.y, range.first, range.second));
@@ -192,6 +209,21 @@ std::pair<double, double> range_of(const Cubemap& source) {
 }
 
 }  // namespace
+
+Cubemap plain_cube_to_cube(const Cubemap& source, int size, const Mat3& world_to_source, int threads) {
+    assert(source.channels() == 3);
+    Cubemap out(size);
+    const CubeIntegrator integrator(source);
+    const auto range = range_of(source);
+    parallel_for(6 * size, threads, [&](int row) {
+        for (int x = 0; x < size; ++x) {
+            const Vec3d flux =
+                integrator.integrate(cube_texel_border(row / size, x, row % size, size, world_to_source));
+            store(out.strip().at(x, row), flux / cube_solid_angle(x, row % size, size), range);
+        }
+    });
+    return out;
+}
 
 ImageF plain_cube_to_latlong(const Cubemap& source, int out_height, const Mat3& world_to_source, int threads) {
     assert(source.channels() == 3);
@@ -221,30 +253,10 @@ ImageF plain_cube_to_latlong(const Cubemap& source, int out_height, const Mat3& 
 namespace domelight {
 
 Cubemap area_resample_cube(const Cubemap& source, int size, const Mat3& world_to_source, int threads) {
-    assert(source.channels() == 3);
-    Cubemap out(size);
-    if (size == source.size() && area::permutes_axes(world_to_source)) {
-        // The same texels in other places. Averaging the reconstruction would blur them for no gain.
-        parallel_for(6 * size, threads, [&](int row) {
-            for (int x = 0; x < size; ++x) {
-                const CubePoint p = cube_point(
-                    world_to_source * cube_direction(row / size, {(x + 0.5) / size, (row % size + 0.5) / size}));
-                const float* from = source.face(p.face).at(int(p.uv.u * size), int(p.uv.v * size));
-                std::copy(from, from + 3, out.strip().at(x, row));
-            }
-        });
-        return out;
-    }
-    const area::CubeIntegrator integrator(source);
-    const auto range = area::range_of(source);
-    parallel_for(6 * size, threads, [&](int row) {
-        for (int x = 0; x < size; ++x) {
-            const Vec3d flux =
-                integrator.integrate(area::cube_texel_border(row / size, x, row % size, size, world_to_source));
-            area::store(out.strip().at(x, row), flux / cube_solid_angle(x, row % size, size), range);
-        }
-    });
-    return out;
+    if (!area::permutes_axes(world_to_source)) return area::plain_cube_to_cube(source, size, world_to_source, threads);
+    // At the same size averaging the reconstruction would blur the texels for no gain.
+    Cubemap turned = area::turned_cube(source, world_to_source, threads);
+    return size == source.size() ? std::move(turned) : area::resize_cube(turned, size, threads);
 }
 
 ImageF area_resample_cube_to_latlong(const Cubemap& source, int out_height, const Mat3& world_to_source, int threads) {

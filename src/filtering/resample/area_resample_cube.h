@@ -41,7 +41,9 @@ class CubeIntegrator {
     BorderedCube source_;
 };
 
-/// area_resample_cube_to_latlong in any orientation, texel by texel: what the fast version is tested against.
+/// area_resample_cube and area_resample_cube_to_latlong in any orientation and at any size, texel by texel: what the fast
+/// versions are tested against.
+Cubemap plain_cube_to_cube(const Cubemap& source, int size, const Mat3& world_to_source, int threads);
 ImageF plain_cube_to_latlong(const Cubemap& source, int out_height, const Mat3& world_to_source, int threads);
 
 }  // namespace domelight::area
