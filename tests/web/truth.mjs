@@ -34,7 +34,7 @@ export async function testTruth({program, root, work, browser, watch, claim}) {
         }
         claim('truth: T puts it beside the method, then in its place, then takes it away', String(seen) === 'split,other,one' ? [] : [String(seen)]);
         await setState(page, {view: 'other', other: 'truth'});
-        await page.waitForFunction(() => /· 64 samples/.test([...document.querySelectorAll('.tag')].at(-1).textContent), undefined, {timeout: 60_000});
+        await page.waitForFunction(() => /· 64 samples/.test([...document.querySelectorAll('#view .tag')].at(-1).textContent), undefined, {timeout: 60_000});
         const truth = await page.evaluate(() => {
             const {width, height, data} = domelight.stage.pictures.truth.image, rgb = [];
             for (let y = height - 1; y >= 0; --y) for (let x = 0; x < width; ++x) rgb.push(...data.subarray(4 * (y * width + x), 4 * (y * width + x) + 3));
@@ -48,7 +48,7 @@ export async function testTruth({program, root, work, browser, watch, claim}) {
         const under = await page.textContent('#status span:nth-child(2) b'), expected = truth.rgb.slice(3 * (80 * width + 300), 3 * (80 * width + 300) + 3).map(v => v.toPrecision(3)).join('  ');
         claim('truth: the pixel under the pointer is one of it', under === expected ? [] : [`${under}, not ${expected}`]);
         await setState(page, {turn: 30});
-        const waiting = await page.evaluate(() => [...document.querySelectorAll('.tag')].at(-1).textContent);
+        const waiting = await page.evaluate(() => [...document.querySelectorAll('#view .tag')].at(-1).textContent);
         claim('truth: an earlier picture is not shown when the view has changed', /on its way/.test(waiting) ? [] : [waiting]);
         claim('truth: the console is silent', page.complaints);
     } finally {

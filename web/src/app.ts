@@ -245,6 +245,12 @@ export class App {
         if (!point) return this.resetView();
         this.store.set({target: point, eye: point.map((v, k) => v + 0.5 * (eye[k]! - target[k]!)) as [number, number, number]});
     }
+    /// Comes nearer or goes farther; without a model, sees less or more of the environment. factor: of the distance.
+    zoom(factor: number): void {
+        const {eye, target, fov} = this.state;
+        if (this.model.name === 'none') this.store.set({fov: Math.min(120, Math.max(2, fov * factor))});
+        else this.store.set({eye: eye.map((v, k) => target[k]! + (v - target[k]!) * factor) as [number, number, number]});
+    }
     resetView(): void {
         // The name above and the methods below lie over the picture.
         const {height, inset} = this.screen, bars = (2 * k_bars * Math.min(2, devicePixelRatio)) / (height - inset.bottom);

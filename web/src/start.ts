@@ -55,7 +55,7 @@ export async function start({store, layout, baker, session}: Beginning): Promise
         void copy.convertToBlob().then(blob => save(`domelight-${app.state.mode}.png`, blob, 'image/png'));
         app.redraw();
     };
-    const keys = keyTable(store, {open: choose, help: () => help.showModal(), screenshot, resetView: () => app.resetView(), nextEnvironment: step => app.nextEnvironment(step), truth: () => truth.compare()});
+    const keys = keyTable(store, {open: choose, help: () => help.showModal(), screenshot, resetView: () => app.resetView(), zoom: factor => app.zoom(factor), nextEnvironment: step => app.nextEnvironment(step), truth: () => truth.compare()});
     const help = helpDialog(keys);
     bindKeys(keys);
 
@@ -68,7 +68,7 @@ export async function start({store, layout, baker, session}: Beginning): Promise
 
     const status = new Status(app, layout.status), hover = new Hover(app, status, map);
     layout.canvas.addEventListener('dblclick', event => app.lookCloser(event.clientX / innerWidth, event.clientY / innerHeight));
-    bindPointer(layout.canvas, store, (x, y) => hover.at(x, y), () => hover.leave());
+    bindPointer(layout.canvas, store, factor => app.zoom(factor), (x, y) => hover.at(x, y), () => hover.leave());
     const name = () => layout.name(store.state, store.state.other === 'truth' ? truth.progress || 'on its way' : '', app.stage.mapped);
     const drawn = () => {
         name();
@@ -89,8 +89,9 @@ export async function start({store, layout, baker, session}: Beginning): Promise
     });
     store.listen(changed => changed.has('panel') && resize());
     app.onOpened(() => {
-        layout.caption.textContent = `${app.model.name} · ${app.environmentName}`;
-        document.title = `${app.model.name} under ${app.environmentName} – Domelight`;
+        const {model: {name}, environmentName} = app, alone = name === 'none';
+        layout.caption.textContent = alone ? environmentName : `${name} · ${environmentName}`;
+        document.title = alone ? `${environmentName} – Domelight` : `${name} under ${environmentName} – Domelight`;
     });
     let timer = 0;
     store.listen(() => {

@@ -10,11 +10,15 @@ import type {Stage} from './stage';
 export const shapes = ['ball', 'faces', 'latlong'] as const;
 export type Shape = (typeof shapes)[number];
 
+/// Pixels of such a picture.
+export function sizeOf(shape: Shape): {width: number; height: number} {
+    return shape === 'ball' ? {width: 128, height: 128} : {width: 192, height: shape === 'faces' ? 128 : 96};
+}
+
 export interface LevelOptions {
     map: 'specular' | 'phong' | 'irradiance' | 'sh';
     level: number;
     shape: Shape;
-    width: number;
 }
 
 export class LevelPictures {
@@ -29,8 +33,8 @@ export class LevelPictures {
         });
     }
 
-    async draw(canvas: HTMLCanvasElement, state: State, {map, level, shape, width}: LevelOptions): Promise<void> {
-        const height = shape === 'ball' ? width : shape === 'faces' ? Math.round((width * 2) / 3) : width / 2, u = this.pass.uniforms;
+    async draw(canvas: HTMLCanvasElement, state: State, {map, level, shape}: LevelOptions): Promise<void> {
+        const {width, height} = sizeOf(shape), u = this.pass.uniforms;
         u.u_cube!.value = this.stage.uniforms[map === 'phong' ? 'u_phong' : map === 'specular' ? 'u_specular' : 'u_irradiance']!.value;
         if (!u.u_cube!.value) return;
         u.u_level!.value = level;

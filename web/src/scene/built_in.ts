@@ -91,4 +91,7 @@ function furnace(): Model {
 
 const degrees = (radians: number) => (radians * 180) / Math.PI;
 
-export const builtInModels: Record<string, () => Model> = {spheres, grid, ball, furnace};
+/// The environment alone, seen from within.
+const none = (): Model => ({name: 'none', root: new THREE.Group(), view: {eye: [0, 0, 1], target: [0, 0, 0], fovDeg: 60, aspect: 1}, variants: []});
+
+export const builtInModels: Record<string, () => Model> = {spheres, grid, ball, furnace, none};

@@ -1,7 +1,7 @@
 // Keys, and what the help says of them.
 
 import {isPicture, modes, type Store} from '../state';
-import {orbit, turnLight, zoom} from './pointer';
+import {orbit, turnLight} from './pointer';
 
 interface Key {
     /// As KeyboardEvent.key has it, in lower case.
@@ -16,6 +16,8 @@ export interface Actions {
     help: () => void;
     screenshot: () => void;
     resetView: () => void;
+    /// factor: of the distance.
+    zoom: (factor: number) => void;
     nextEnvironment: (step: number) => void;
     /// Puts the path tracer's picture beside the method.
     truth: () => void;
@@ -38,8 +40,8 @@ export function keyTable(store: Store, actions: Actions): Key[] {
             else orbit(store, -step * side, 0);
         }},
         {keys: ['arrowup', 'arrowdown'], shown: ['↑', '↓'], what: 'look from higher or lower', act: e => orbit(store, 0, e.key === 'ArrowUp' ? step : -step)},
-        {keys: ['+', '='], shown: ['+', '−'], what: 'nearer, farther', act: () => zoom(store, 0.9)},
-        {keys: ['-'], shown: [], what: '', act: () => zoom(store, 1 / 0.9)},
+        {keys: ['+', '='], shown: ['+', '−'], what: 'nearer, farther', act: () => actions.zoom(0.9)},
+        {keys: ['-'], shown: [], what: '', act: () => actions.zoom(1 / 0.9)},
         {keys: ['r'], shown: ['R'], what: 'show the whole model', act: actions.resetView},
         {keys: ['w'], shown: ['W'], what: 'white furnace: light of 1 from everywhere', act: () => store.set({furnace: !store.state.furnace})},
         {keys: ['l'], shown: ['L'], what: 'objects see their neighbours, by live cubes', act: () => store.set({live: !store.state.live})},

@@ -2,11 +2,11 @@
 
 import type {App} from '../app';
 import {levelExponent, levelRoughness} from '../bake/chain';
-import {LevelPictures, type LevelOptions, type Shape} from '../render/level_pictures';
+import {LevelPictures, sizeOf, type LevelOptions, type Shape} from '../render/level_pictures';
 import {button, element} from './controls';
 import {section} from './panel';
 
-type Figure = Omit<LevelOptions, 'shape' | 'width'> & {text: string};
+type Figure = Omit<LevelOptions, 'shape'> & {text: string};
 
 export function levelsSection(app: App): HTMLElement {
     const pictures = new LevelPictures(app.stage), grid = element('div', {className: 'levels ball'});
@@ -32,13 +32,16 @@ export function levelsSection(app: App): HTMLElement {
     /// Draws one level after the other, when the graphics card has done its work, until it is asked to draw again.
     const draw = async () => {
         if (!root.open || !app.stage.uniforms.u_specular!.value) return;
-        const turn = ++drawing, all = figures().map(({text, ...options}) => ({options, text, canvas: element('canvas', {role: 'img', ariaLabel: text})}));
+        const turn = ++drawing, all = figures().map(({text, ...options}) => ({options, text, canvas: element('canvas', {role: 'img', ariaLabel: text, ...sizeOf(shape)})}));
+        const place = () => grid.replaceChildren(...all.map(({canvas, text}) => element('figure', {}, canvas, element('figcaption', {}, text))));
+        if (grid.childElementCount !== all.length || grid.dataset.shape !== shape) place();  // otherwise the earlier pictures stay until there are new ones
+        grid.dataset.shape = shape;
         for (const {canvas, options} of all) {
             await app.stage.backlog.emptied();
             if (turn !== drawing) return;
-            await pictures.draw(canvas, app.state, {...options, shape, width: shape === 'ball' ? 128 : 192});
+            await pictures.draw(canvas, app.state, {...options, shape});
         }
-        if (turn === drawing) grid.replaceChildren(...all.map(({canvas, text}) => element('figure', {}, canvas, element('figcaption', {}, text))));
+        if (turn === drawing) place();
     };
     root.addEventListener('toggle', () => void draw());
     app.onOpened(() => void draw());

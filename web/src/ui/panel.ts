@@ -11,7 +11,7 @@ export function section(title: string, open: boolean, ...parts: HTMLElement[]): 
 
 export const note = (...text: (string | Node)[]): HTMLParagraphElement => element('p', {className: 'note'}, ...text);
 
-const models = [['spheres', 'Spheres: gold, plastic'], ['grid', 'Grid: roughness × metalness'], ['ball', 'Ball on a plinth'], ['furnace', 'White metal ball']] as const;
+const models = [['spheres', 'Spheres: gold, plastic'], ['grid', 'Grid: roughness × metalness'], ['ball', 'Ball on a plinth'], ['furnace', 'White metal ball'], ['none', 'None: the environment alone']] as const;
 
 const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
 

@@ -13,11 +13,6 @@ export function orbit(store: Store, rightward: number, upward: number): void {
     store.set({eye: offset.setFromSpherical(place).add(new THREE.Vector3(...target)).toArray()});
 }
 
-export function zoom(store: Store, factor: number): void {
-    const {eye, target} = store.state;
-    store.set({eye: eye.map((v, k) => target[k]! + (v - target[k]!) * factor) as [number, number, number]});
-}
-
 export function turnLight(store: Store, byDeg: number): void {
     store.set({turn: ((((store.state.turn + byDeg + 180) % 360) + 360) % 360) - 180});
 }
@@ -31,7 +26,7 @@ function pan(store: Store, right: number, up: number): void {
     store.set({eye: e.add(move).toArray(), target: t.add(move).toArray()});
 }
 
-export function bindPointer(canvas: HTMLCanvasElement, store: Store, hover: (x: number, y: number) => void, leave: () => void): void {
+export function bindPointer(canvas: HTMLCanvasElement, store: Store, zoom: (factor: number) => void, hover: (x: number, y: number) => void, leave: () => void): void {
     const pointers = new Map<number, {x: number; y: number}>();
     canvas.addEventListener('pointerdown', event => {
         canvas.setPointerCapture(event.pointerId);
@@ -47,7 +42,7 @@ export function bindPointer(canvas: HTMLCanvasElement, store: Store, hover: (x: 
         if (pointers.size === 2) {
             const other = [...pointers].find(([id]) => id !== event.pointerId)![1];
             const before = Math.hypot(last.x - other.x, last.y - other.y), after = Math.hypot(event.clientX - other.x, event.clientY - other.y);
-            if (after > 0) zoom(store, before / after);
+            if (after > 0) zoom(before / after);
             pan(store, dx / 2 / height, dy / 2 / height);
         } else if (event.shiftKey) turnLight(store, (-dx / height) * 180);
         else if (event.buttons & 6 || event.ctrlKey) pan(store, dx / height, dy / height);
@@ -58,6 +53,6 @@ export function bindPointer(canvas: HTMLCanvasElement, store: Store, hover: (x: 
     canvas.addEventListener('pointerover', event => hover(event.clientX, event.clientY));  // after a change of the page also without a move
     canvas.addEventListener('wheel', event => {
         event.preventDefault();
-        zoom(store, Math.exp(Math.min(0.5, Math.max(-0.5, event.deltaY * 0.0012))));
+        zoom(Math.exp(Math.min(0.5, Math.max(-0.5, event.deltaY * 0.0012))));
     }, {passive: false});
 }
