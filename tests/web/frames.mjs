@@ -14,13 +14,13 @@ const cases = [
     {name: 'stretched', state: {mode: 'stretched'}, options: ['--shading', 'stretched']},
     {name: 'phong', state: {mode: 'phong'}, options: ['--shading', 'phong'], lobe: 'phong'},
     {name: 'mirror', state: {mode: 'mirror', lookup: 'environment'}, options: ['--shading', 'mirror']},
-    ...['cube', 'latlong', 'sphere-map', 'dual-paraboloid'].map(lookup => ({
-        name: `refract-${lookup}`, state: {mode: 'refract', lookup, lookupSize: 256},
-        options: ['--shading', 'refract', '--lookup', lookup, '--lookup-size', 256],
-    })),
+    ...['mirror', 'refract'].flatMap(mode => ['cube', 'latlong', 'sphere-map', 'dual-paraboloid'].map(lookup => ({
+        name: `${mode}-${lookup}`, state: {mode, lookup, lookupSize: 256}, options: ['--shading', mode, '--lookup', lookup, '--lookup-size', 256],
+    }))),
 ];
 
-const usual = ['split-sum', 'stretched', 'phong', 'mirror', 'refract-cube'];
+// Every method by both models, and every texture of reflection mapping by one of them.
+const usual = ['split-sum', 'stretched', 'phong', 'mirror', 'refract-cube'], usualTextured = ['split-sum', 'stretched', 'phong', 'mirror-dual-paraboloid', 'mirror-latlong', 'refract-sphere-map'];
 
 /// The mean of a pane's first frames: RGB floats, rows from the top.
 export async function readPane(page, frames, pane = 0) {
@@ -73,12 +73,12 @@ export async function testFrames({all, program, work, open, claim, data}) {
         const error = displayedError(await readPane(page, frames), readHdr(file).rgb);
         claim(`${name}: the app draws what the renderer draws, within 2/255`, error <= 2 ? [] : [`the RMS error is ${error.toFixed(2)}/255`], `${error.toFixed(2)}/255`);
     };
-    const chosen = all ? cases : cases.filter(({name}) => usual.includes(name));
-    for (const one of chosen) await compare('spheres', one);
+    const chosen = names => (all ? cases : cases.filter(({name}) => names.includes(name)));
+    for (const one of chosen(usual)) await compare('spheres', one);
     // With textures and lights of its own.
     await openFile(page, '/work/textured.glb', 'textured.glb');
     await setState(page, {eye: [1.5, 1, 4], target: [0, 0, 0], fov: 34});
-    for (const one of chosen)
+    for (const one of chosen(usualTextured))
         await compare(path.join(work, 'textured.glb'), {...one, name: `textured-${one.name}`}, ['--camera-position', '1.5,1,4', '--camera-target', '0,0,0', '--fov-deg', 34]);
     claim('all modes: the console is silent', page.complaints);
     await page.close();

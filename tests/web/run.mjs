@@ -11,6 +11,7 @@ import {testHdr} from './hdr.mjs';
 import {testInterface} from './interface.mjs';
 import {testLearn} from './learn.mjs';
 import {testMonteCarlo} from './monte_carlo.mjs';
+import {testOverlays} from './overlays.mjs';
 import {testProbes} from './probes.mjs';
 import {testTruth} from './truth.mjs';
 import {Claims} from '../engines/browser/claims.mjs';
@@ -51,7 +52,7 @@ async function open(hash = '', options = {}, prepare = () => {}, inBrowser = bro
     return page;
 }
 
-const tests = {interface: testInterface, hdr: testHdr, truth: testTruth, frames: testFrames, 'monte-carlo': testMonteCarlo, probes: testProbes, learn: testLearn};
+const tests = {interface: testInterface, hdr: testHdr, truth: testTruth, frames: testFrames, 'monte-carlo': testMonteCarlo, overlays: testOverlays, probes: testProbes, learn: testLearn};
 const withWebGpu = () => launch(path.join(root, 'web/node_modules'), chromium, webGpu);
 const app = {all, program, root, work, server, browser, withWebGpu, open, watch, claim, skip, data: process.env.DOMELIGHT_DATA};
 for (const [name, test] of Object.entries(tests)) {

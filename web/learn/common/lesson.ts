@@ -168,7 +168,7 @@ export class Lesson<T extends Choices> {
     private layOut(): void {
         const choose = chooser('Your environment', environmentEndings, ([file]) => file && void this.openFile(file));
         this.select = new SelectControl(this.values as never, 'environment', 'Environment', computed) as never;
-        const open = button('Open a file…', choose, 'A lat-long map, .hdr or .exr. It stays on this machine.');
+        const open = button('Open a file…', choose, 'An environment: .hdr, .exr, .ktx2, .dds and others, lat-long or a cube. It stays on this machine.');
         document.querySelector('.lead')!.after(element('section', {id: 'light', ariaLabel: 'Environment'}, this.select, open, this.note));
         const drop = element('div', {id: 'drop', hidden: true}, element('p', {}, 'Drop an environment anywhere'));
         bindDrops(drop, files => void this.openFile(files[0]!));
