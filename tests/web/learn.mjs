@@ -112,6 +112,12 @@ const lessons = {
             claim('mis: both together are never far from the better one',
                   [smooth, rough].filter(n => !(n.both < 2 * Math.min(n.brdf, n.environment))).map(n => `both ${n.both}, BRDF ${n.brdf}, environment ${n.environment}`),
                   [smooth, rough].map(n => `BRDF ${n.brdf.toFixed(2)}, environment ${n.environment.toFixed(2)}, both ${n.both.toFixed(2)}`).join('; '));
+            await slide(page, 'Roughness', 0.3);
+            await page.getByRole('combobox', {name: 'Environment'}).selectOption('sunset');
+            await settled(page);
+            const sun = await numbers(page);
+            claim('mis: a sun that the BRDF hardly ever finds is in its noise', sun.brdf > 2 * sun.both && sun.brdfMean < sun.bothMean ? [] : [`BRDF ${sun.brdf}, both ${sun.both}; means ${sun.brdfMean}, ${sun.bothMean}`],
+                  `${sun.brdf.toFixed(1)}, of ${sun.brdfMeasured.toFixed(1)} in 512 pixels; both ${sun.both.toFixed(1)}`);
         },
     },
     probes: {

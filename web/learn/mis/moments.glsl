@@ -3,7 +3,7 @@
 
 uniform vec3 u_normal;
 uniform float u_columns_of_table;
-uniform int u_directions;  // of each pixel and strategy
+uniform int u_directions;  // of each pixel, by each of three densities
 in vec2 v_point;
 out vec4 out_color;
 
@@ -14,27 +14,46 @@ struct Moments {
     vec2 parts;         // ∫ g p_a/(p_a + p_b) dω and ∫ g p_b/(p_a + p_b) dω: together the light itself
 };
 
-/// Adds a direction that was drawn with p_a or p_b: its part of each integral, over p_a + p_b.
-void add_direction(inout Moments m, vec3 f_cosine, EnvmapSample light, float pb) {
-    float pa = light.pdf_solid_angle, g = dot(f_cosine * light.radiance, vec3(0.2126, 0.7152, 0.0722)), q = pa + pb;
+/// Adds a direction that was drawn by one of three densities, whose sum is q: its part of each integral, over q.
+void add_direction(inout Moments m, vec3 f_cosine, EnvmapSample light, float pb, float q) {
+    float pa = light.pdf_solid_angle, g = dot(f_cosine * light.radiance, vec3(0.2126, 0.7152, 0.0722));
     if (!(g > 0.0 && pa > 0.0 && pb > 0.0)) return;
     m.brdf += g * g / pb / q;
     m.environment += g * g / pa / q;
-    m.both += g * g / q / q;
-    m.parts += g * vec2(pa, pb) / q / q;
+    m.both += g * g / (pa + pb) / q;
+    m.parts += g * vec2(pa, pb) / (pa + pb) / q;
+}
+
+/// The third density: a direction of the environment's strategy, moved to one of the nine texels around it. Beside a small lamp, light that is bilinear between texels is bright where
+/// the density is that of a dark texel, and neither strategy goes there.
+float moved_pdf(vec2 point) {
+    ivec2 size = textureSize(u_envmap, 0), texel = min(ivec2(point * vec2(size)), size - 1);
+    float sum = 0.0;
+    for (int k = 0; k < 9; ++k) {
+        ivec2 from = texel + ivec2(k % 3, k / 3) - 1;
+        if (from.y >= 0 && from.y < size.y) sum += envmapWeight((from.x + size.x) % size.x, from.y, size.y);
+    }
+    return sum / 9.0 / u_total_average / (2.0 * k_pi * k_pi * max(sin(k_pi * point.y), 1e-7));
 }
 
 Moments integrate_moments(Surface s, vec3 view, int count) {
     mat3 frame = frame_of(s.normal);
     vec3 v = view * frame;
     float share = specular_share(s, v.z);
+    vec2 texel = 1.0 / vec2(textureSize(u_envmap, 0));
     Moments m = Moments(0.0, 0.0, 0.0, vec2(0.0));
-    for (int i = 0; i < count; ++i) {
-        EnvmapSample light = sample_guided(random4().xy);
-        vec3 l = light.direction * frame;
-        add_direction(m, brdf_cosine(s, v, l, 0.0), light, brdf_pdf(s, share, v, l));
-        l = sample_brdf(s, share, v, random4());
-        add_direction(m, brdf_cosine(s, v, l, 0.0), look_up(frame * l), brdf_pdf(s, share, v, l));
+    for (int i = 0; i < 3 * count; ++i) {
+        vec4 random = random4();
+        vec3 direction = i % 3 == 1 ? frame * sample_brdf(s, share, v, random) : sample_guided(random.xy).direction;
+        if (i % 3 == 2) {
+            vec2 moved = domelight_latlong_point(direction) + texel * (floor(3.0 * random.zw) - 1.0);
+            if (moved.y < 0.0 || moved.y > 1.0) continue;
+            direction = domelight_latlong_direction(vec2(fract(moved.x), moved.y));
+        }
+        EnvmapSample light = look_up(direction);
+        vec3 l = direction * frame;
+        float pb = brdf_pdf(s, share, v, l);
+        add_direction(m, brdf_cosine(s, v, l, 0.0), light, pb, light.pdf_solid_angle + pb + moved_pdf(domelight_latlong_point(direction)));
     }
     return m;
 }
