@@ -53,6 +53,23 @@ std::vector<Arc> clip(std::span<const Arc> border, const Vec3d& normal) {
     return kept;
 }
 
+/// The face that a border lies in, or -1 if it may cross the edge of one. Where both ends of a great arc are inside the
+/// planes through the centre and the edges, so is the arc; another arc bulges from it by s^2 / 8 at most.
+int face_around(std::span<const Arc> border) {
+    const int face = cube_point(border[0].at(border[0].s0)).face;
+    const Plane plane = plane_of(face);
+    for (const Arc& arc : border) {
+        const double bulge = arc.is_great() ? 1e-12 : 0.25 * (arc.s1 - arc.s0) * (arc.s1 - arc.s0) + 1e-12;
+        for (const double s : {arc.s0, arc.s1}) {
+            const Vec3d p = arc.at(s);
+            const double depth = dot(p, plane.normal),
+                         beside = std::max(std::abs(dot(p, plane.right)), std::abs(dot(p, plane.down)));
+            if (!(depth - beside > bulge)) return -1;
+        }
+    }
+    return face;
+}
+
 }  // namespace
 
 struct CubeIntegrator::Flux {
@@ -153,18 +170,26 @@ void CubeIntegrator::add_arc(int face, const Arc& arc, int reference, Flux& sum)
     }
 }
 
+void CubeIntegrator::add_face(int face, std::span<const Arc> part, Flux& sum) const {
+    const Plane plane = plane_of(face);
+    const Vec3d start = part[0].at(part[0].s0);
+    const double u = 0.5 * (dot(start, plane.right) / dot(start, plane.normal) + 1);
+    const int reference = std::clamp(int(std::floor(u * size_ - 0.5)), -1, size_ - 1);
+    for (const Arc& arc : part) add_arc(face, arc, reference, sum);
+}
+
 Vec3d CubeIntegrator::integrate(std::span<const Arc> border) const {
     Flux sum;
+    if (const int face = face_around(border); face >= 0) {
+        add_face(face, border, sum);
+        return sum.solid_angle < 0 ? -sum.light : sum.light;
+    }
     for (int f = 0; f < 6; ++f) {
         const Plane plane = plane_of(f);
         std::vector<Arc> part(border.begin(), border.end());
         for (const Vec3d& side : {plane.right, -plane.right, plane.down, -plane.down})
             part = clip(part, plane.normal + side);
-        if (part.empty()) continue;
-        const Vec3d start = part[0].at(part[0].s0);
-        const double u = 0.5 * (dot(start, plane.right) / dot(start, plane.normal) + 1);
-        const int reference = std::clamp(int(std::floor(u * size_ - 0.5)), -1, size_ - 1);
-        for (const Arc& arc : part) add_arc(f, arc, reference, sum);
+        if (!part.empty()) add_face(f, part, sum);
     }
     return sum.solid_angle < 0 ? -sum.light : sum.light;
 }

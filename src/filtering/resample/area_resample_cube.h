@@ -31,6 +31,7 @@ class CubeIntegrator {
   private:
     struct Flux;
     struct Cell;
+    void add_face(int face, std::span<const Arc> part, Flux& sum) const;
     void add_arc(int face, const Arc& arc, int reference, Flux& sum) const;
     void add_piece(int face, const Arc& arc, double a, double b, Cell cell, int reference, Flux& sum) const;
     Flux along_row(int face, double s, Cell cell, double v, double t, int reference) const;

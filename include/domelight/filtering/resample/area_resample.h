@@ -33,10 +33,10 @@ std::unique_ptr<AreaResampler> area_resample_to_latlong(int width, int height, i
 /// From a cube, reconstructed bilinearly across its edges, to another size and orientation. The mean is kept. If the
 /// size stays the same and axes are only exchanged or mirrored, the texels are moved unchanged, because averaging would
 /// blur them for no gain. If axes are only exchanged or mirrored, 1024^2 texels from 512^2 take 0.25 s of CPU time; any
-/// other orientation takes about 150 times as long.
+/// other orientation takes about 70 times as long.
 Cubemap area_resample_cube(const Cubemap& source, int size, const Mat3& world_to_source, int threads);
 /// The same to a lat-long image of 2 out_height x out_height texels: 0.22 s of CPU time for faces of 512^2 texels and an
-/// image as fine, if its polar axis is an axis of the cube. Any other orientation takes about 70 times as long.
+/// image as fine, if its polar axis is an axis of the cube. Any other orientation takes about 40 times as long.
 ImageF area_resample_cube_to_latlong(const Cubemap& source, int out_height, const Mat3& world_to_source, int threads);
 
 }  // namespace domelight
