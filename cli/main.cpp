@@ -165,8 +165,8 @@ int main(int argc, char** argv) {
     domelight::remove_temporaries_on_signals();
     try {
         const int status = domelight::cli::run({argv + 1, argv + argc});
-        // A full disk or a closed pipe behind stdout shows only now.
-        if (std::fflush(stdout) != 0 || std::ferror(stdout))
+        // A full disk or a closed pipe behind stdout shows only now, unless the command has told of it.
+        if ((std::fflush(stdout) != 0 || std::ferror(stdout)) && status == domelight::cli::exit_done)
             return domelight::cli::print_error({"results cannot be written", "stdout", ""});
         return status;
     } catch (const std::bad_alloc&) {

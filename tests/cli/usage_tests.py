@@ -292,9 +292,10 @@ def test_quiet_says_nothing(folder):
 
 
 def test_stdout_that_is_full_is_an_error(folder):
-    with open("/dev/full", "w") as full:
-        result = subprocess.run([PROGRAM, "info", "studio.hdr"], cwd=folder, stdout=full, stderr=subprocess.PIPE, text=True)
-    assert result.returncode == 1 and "stdout" in result.stderr
+    for words in [["info", "studio.hdr"], ["sample", "studio.hdr", "-n", "100000"]]:
+        with open("/dev/full", "w") as full:
+            result = subprocess.run([PROGRAM, *words], cwd=folder, stdout=full, stderr=subprocess.PIPE, text=True)
+        assert result.returncode == 1 and result.stderr == "error: stdout: results cannot be written\n", result
 
 
 def test_no_command_destroys_what_it_reads(folder):
