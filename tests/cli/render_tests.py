@@ -315,3 +315,9 @@ def webp_frames(data):
             durations.append(number(12))
         at += 8 + length + (length & 1)
     return *size, durations
+
+
+def test_render_says_whose_maps_it_cannot_read(folder):
+    run("bake", "studio.hdr", "-o", "o", "--for", "three", "--size", "16", "--no-preview", folder=folder)
+    said = run("render", "ball", "-o", "x.exr", "--shading", "split-sum", "--maps", "o", *TINY, folder=folder, code=1).stderr
+    assert "is a bake for three" in said and "Bake for generic" in said, said

@@ -64,6 +64,17 @@ Result<std::vector<Cubemap>> read_cubes(const std::filesystem::path& file) {
     return levels;
 }
 
+/// The files of other engines have other names, and some are mirrored.
+Result<void> check_generic(const Json& manifest, const std::filesystem::path& folder) {
+    const Json& file = manifest["specular"]["file"];
+    if (file == Json("specular.ktx2")) return {};
+    const Json& engine = manifest["engine"]["name"];
+    return Error{fmt::format("is a bake for {}{}, and only the KTX2 files for generic are read here",
+                             engine.is_string() ? engine.get<std::string>() : "another engine",
+                             file.is_string() ? fmt::format(" with the map {}", file.get<std::string>()) : ""),
+                 folder.string(), "Bake for generic, which is what `domelight bake` does unless told otherwise."};
+}
+
 }  // namespace
 
 float matching_roughness(double exponent) {
@@ -88,6 +99,7 @@ Result<LightMaps> LightMaps::load(const std::filesystem::path& folder) {
     Impl& impl = *maps.impl_;
     const auto manifest = read_json(folder / "manifest.json");
     if (!manifest) return manifest.error();
+    if (auto ok = check_generic(*manifest, folder); !ok) return ok.error();
     const auto specular = read_cubes(folder / "specular.ktx2");
     if (!specular) return specular.error();
     const auto irradiance = read_cubes(folder / "irradiance.ktx2");
