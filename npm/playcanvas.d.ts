@@ -11,11 +11,11 @@ export interface PlayCanvasClasses<Texture> {
  *     import * as pc from 'playcanvas';
  *     app.scene.envAtlas = await bakeEnvironment(app.scene, file, {pc});
  *
- * source: a file, a lat-long texture of the loader of .hdr files, or an Environment.
+ * source: a file, a lat-long texture of the loader of .hdr files, a cube texture or a render target of floats, half floats or RGBE, or an Environment.
  * pc: if left out, the global one of a script.
  */
 export function bakeEnvironment<Texture = any>(
     scene: object,
-    source: string | URL | Blob | Response | ArrayBuffer | ArrayBufferView | {readonly cubemap: boolean} | Environment,
+    source: string | URL | Blob | Response | ArrayBuffer | ArrayBufferView | {readonly cubemap: boolean} | {readonly colorBuffer: unknown} | Environment,
     options?: Work & {file?: ReadOptions; pc?: PlayCanvasClasses<Texture>},
 ): Promise<Texture>;

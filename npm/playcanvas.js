@@ -1,13 +1,13 @@
 // PlayCanvas: what scene.envAtlas takes, in place of EnvLighting.generateAtlas.
 
 import {DomelightError, encode, fromPixels, prefilter, read} from './index.js';
-import {latlongPixels, withEnvironment} from './source.js';
+import {cubePixels, latlongPixels, mirroredX, withEnvironment} from './source.js';
 
 /// Filters an environment exactly, in a worker.
 ///
 /// scene      the Scene whose envAtlas it will be
-/// source     a file (URL, File, Blob, Response, ArrayBuffer), a lat-long Texture of PlayCanvas, as its loader of .hdr files gives it, or an Environment of
-///            this package
+/// source     a file (URL, File, Blob, Response, ArrayBuffer), a lat-long Texture of PlayCanvas, as its loader of .hdr files gives it, a cube Texture or a
+///            RenderTarget of either kind, of floats, half floats or RGBE, or an Environment of this package
 /// options    progress and signal; those of read() in `file`; and PlayCanvas itself in `pc`, of which Texture and its constants are used: where it is left
 ///            out, the global pc of a script
 /// returns    a Texture of 512² texels in RGBP, whose maximum is 64. destroy() it as any other
@@ -25,17 +25,23 @@ export async function bakeEnvironment(scene, source, {file, pc = globalThis.pc, 
 }
 
 function open(pc, source, options) {
-    return source?.impl && source.device ? openTexture(pc, source) : read(source, options);
+    const texture = source?.colorBuffer ?? source;
+    return texture?.impl && texture.device ? openTexture(pc, texture) : read(source, options);
 }
 
-/// A lat-long picture that PlayCanvas has loaded: +Z in its middle, -X to the right of that.
+/// A lat-long picture that PlayCanvas has loaded, +Z in its middle and -X to the right of that, or a cube, which it looks up by (-x, y, z).
 async function openTexture(pc, texture) {
     const {width, height} = texture, rgbe = texture.type === pc.TEXTURETYPE_RGBE;
-    if (texture.cubemap || !(rgbe || [pc.PIXELFORMAT_RGBA16F, pc.PIXELFORMAT_RGBA32F].includes(texture.format)))
-        throw new DomelightError('The texture is not a lat-long map of floats, half floats or RGBE', '', 'Give its file itself: read() decodes it.');
-    const pixels = await texture.read(0, 0, width, height, {immediate: true});
-    const data = rgbe ? fromRgbe(pixels) : pixels;
-    return fromPixels(latlongPixels({data, width, height}, true), {worldToSource: [0, 0, 1, 0, 1, 0, -1, 0, 0]});
+    if (!(rgbe || [pc.PIXELFORMAT_RGBA16F, pc.PIXELFORMAT_RGBA32F].includes(texture.format)))
+        throw new DomelightError('The texture does not hold floats, half floats or RGBE', '', 'Give its file itself: read() decodes it.');
+    const pixels = async face => {
+        const data = await texture.read(0, 0, width, height, {immediate: true, face});
+        return rgbe ? fromRgbe(data) : data;
+    };
+    if (!texture.cubemap) return fromPixels(latlongPixels({data: await pixels(), width, height}, true), {worldToSource: [0, 0, 1, 0, 1, 0, -1, 0, 0]});
+    const faces = [];
+    for (let face = 0; face < 6; ++face) faces.push(await pixels(face));
+    return fromPixels(cubePixels(faces, width), {worldToSource: mirroredX});
 }
 
 /// As PlayCanvas decodes it.

@@ -51,6 +51,9 @@ export function latlongPixels({data, width, height}, topFirst) {
     return {width, height, channels: found.channels, data: repaired(topFirst ? found.data : flipped(found.data, width * found.channels))};
 }
 
+/// worldToSource of cubes that an engine looks up by (-x, y, z) for the light from direction (x, y, z).
+export const mirroredX = [-1, 0, 0, 0, 1, 0, 0, 0, 1];
+
 /// Six arrays of a face each, one after the other.
 export function cubePixels(faces, size) {
     const length = faces[0].length, data = new faces[0].constructor(6 * length);

@@ -1,4 +1,4 @@
-import type {Texture as ThreeTexture, WebGLCubeRenderTarget, WebGLRenderer} from 'three';
+import type {Texture as ThreeTexture, WebGLCubeRenderTarget, WebGLRenderer, WebGLRenderTarget} from 'three';
 import type {BakeOptions, Environment, ReadOptions} from './index.js';
 
 /**
@@ -7,10 +7,11 @@ import type {BakeOptions, Environment, ReadOptions} from './index.js';
  *     scene.environment = await bakeEnvironment(renderer, file);
  *
  * renderer: only asked for pixels where `source` is a render target; otherwise it may be null.
- * source: a file, an equirectangular texture of HDRLoader or EXRLoader, a cube that three.js has drawn, or an Environment.
+ * source: a file, an equirectangular texture of HDRLoader or EXRLoader, a CubeTexture of floats or half floats, a render target of floats or half floats
+ * (a cube, or an equirectangular picture), or an Environment.
  */
 export function bakeEnvironment(
     renderer: WebGLRenderer | null,
-    source: string | URL | Blob | Response | ArrayBuffer | ArrayBufferView | ThreeTexture | WebGLCubeRenderTarget | Environment,
+    source: string | URL | Blob | Response | ArrayBuffer | ArrayBufferView | ThreeTexture | WebGLCubeRenderTarget | WebGLRenderTarget | Environment,
     options?: Omit<BakeOptions, 'engine' | 'encoding' | 'layout'> & {file?: ReadOptions},
 ): Promise<ThreeTexture>;

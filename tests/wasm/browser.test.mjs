@@ -106,3 +106,9 @@ test('a cube that three.js has drawn is baked as it lies', {skip: without}, asyn
     near(1, [0.5, 0.25, 1]);
     near(3, [0.5, 0.25, 1]);
 });
+
+test('a cube of pictures and an equirectangular render target are baked as three.js shows them', {skip: without}, async () => {
+    const page = await open('three_page'), {theirs, ours, picture, target} = await page.evaluate(() => window.tested.cubes());
+    ours[0].forEach((v, k) => assert.ok(Math.abs(v - theirs[0][k]) < 0.02 || k % 4 === 3, `axis ${k >> 2}: ${ours[0].slice(k & ~3, (k & ~3) + 3)}, three.js ${theirs[0].slice(k & ~3, (k & ~3) + 3)}`));
+    for (const level of [0, 1]) target[level].forEach((v, k) => assert.ok(Math.abs(v - picture[level][k]) < 2e-3, `level ${level}, axis ${k >> 2}`));
+});

@@ -91,5 +91,7 @@ test('PlayCanvas draws with the texture as with the file of the program', {skip:
     execFileSync(program, ['convert', path.join(work, 'noon_grass.hdr'), '--exposure', String(exposure), '-o', path.join(work, 'dim.hdr'), '--quiet']);
     const theirs = await picture(page, {atlas: bakedFile('playcanvas', '.png', '--latlong', 'usd')});
     agree(context, 'of a lat-long texture', await picture(page, {source: '/files/dim.hdr', loads: true}), theirs, 2);
+    agree(context, 'of a cube texture', await picture(page, {source: '/files/dim.hdr', loads: 'cube'}), theirs, 3);
+    agree(context, 'of a render target', await picture(page, {source: '/files/dim.hdr', loads: 'target'}), theirs, 3);
     await page.close();
 });

@@ -102,3 +102,29 @@ export async function probe() {
     const texture = await bakeEnvironment(renderer, target, {size: 64});
     return readAt(texture, true, Float32Array.from([1, 0, 0, -1, 0, 0, 0, 1, 0, 0, 0, -1]), [0, 3]);
 }
+
+/// A cube of pictures in memory, whose faces have one colour each, as its own PMREM and ours show it along the axes and at a corner; and an equirectangular
+/// render target into which three.js has copied a picture.
+export async function cubes() {
+    const colours = [[4, 0, 0], [0, 4, 0], [0, 0, 4], [1, 1, 0], [0, 1, 1], [1, 0, 1]], size = 32, axes = Float32Array.from([1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1]);
+    const faces = colours.map(([r, g, b]) => {
+        const data = Float32Array.from({length: 4 * size * size}, (_, k) => [r, g, b, 1][k % 4]);
+        return new THREE.DataTexture(data, size, size, THREE.RGBAFormat, THREE.FloatType);
+    });
+    const cube = new THREE.CubeTexture(faces);
+    Object.assign(cube, {type: THREE.FloatType, format: THREE.RGBAFormat, colorSpace: THREE.LinearSRGBColorSpace, minFilter: THREE.LinearFilter, magFilter: THREE.LinearFilter, generateMipmaps: false, needsUpdate: true});
+    faces.forEach(face => { face.needsUpdate = true; });
+    const theirs = new THREE.PMREMGenerator(renderer).fromCubemap(cube).texture;
+
+    const width = 64, height = 32, rgb = Float32Array.from({length: 3 * width * height}, (_, k) => 1 + (k % 3) + Math.floor(k / 3 / width) / height);
+    const picture = textureOf(rgb, width, height), target = new THREE.WebGLRenderTarget(width, height, {type: THREE.FloatType}), scene = new THREE.Scene();
+    const copying = new THREE.ShaderMaterial({uniforms: {picture: {value: picture}}, vertexShader: 'varying vec2 at; void main() { at = uv; gl_Position = vec4(position.xy, 0.0, 1.0); }',
+                                              fragmentShader: 'uniform sampler2D picture; varying vec2 at; void main() { gl_FragColor = texture2D(picture, at); }'});
+    scene.add(new THREE.Mesh(new THREE.PlaneGeometry(2, 2), copying));
+    scene.children[0].frustumCulled = false;
+    renderer.setRenderTarget(target);
+    renderer.render(scene, new THREE.OrthographicCamera());
+    renderer.setRenderTarget(null);
+    const bake = async source => readAt(await bakeEnvironment(renderer, source, {size: 64}), true, axes, [0, 3]);
+    return {colours, theirs: readAt(theirs, false, axes, [0]), ours: await bake(cube), picture: await bake(picture), target: await bake(target)};
+}

@@ -21,7 +21,8 @@ const loaded = asset => new Promise((resolve, reject) => {
     app.assets.load(asset);
 });
 
-/// Of a file that is an atlas, or of a source by the npm package's adapter, which is given the file, or the texture that PlayCanvas loads of it.
+/// Of a file that is an atlas, or of a source by the npm package's adapter, which is given the file, or (`loads`) the
+/// texture that PlayCanvas loads of it: true, or turned into a cube ("cube"), or that cube as a render target ("target").
 export async function load({atlas: url, source, loads, options}) {
     if (source) return bake(source, loads, options);
     // docs/engines/playcanvas.md
@@ -32,12 +33,17 @@ export async function load({atlas: url, source, loads, options}) {
     // end
 }
 
+const pictures = new Map();
 async function bake(source, loads, options) {
     const {bakeEnvironment} = await import('/npm/domelight/playcanvas.js');
     if (loads) {
-        const asset = new pc.Asset('picture', 'texture', {url: source});
-        await loaded(asset);
+        // A second asset of the same file would share its texture, and make it one of RGBA bytes.
+        if (!pictures.has(source)) pictures.set(source, new pc.Asset('picture', 'texture', {url: source}));
+        const asset = pictures.get(source);
+        if (!asset.loaded) await loaded(asset);
         source = asset.resource;
+        if (loads === 'cube') source = pc.EnvLighting.generateLightingSource(source, {size: 256});
+        if (loads === 'target') source = new pc.RenderTarget({colorBuffer: pc.EnvLighting.generateLightingSource(source, {size: 256}), depth: false});
     }
     app.scene.envAtlas = await bakeEnvironment(app.scene, source, {pc, ...options});
 }
