@@ -1,6 +1,7 @@
 #include "environment.h"
 
 #include "domelight/environment/sky/sky.h"
+#include "domelight/filtering/resample/area_resample.h"
 #include "domelight/io/environment/convert.h"
 #include "domelight/io/environment/open_environment.h"
 #include "domelight/projection/projections.h"
@@ -231,6 +232,8 @@ std::vector<Vec3d> directions_of(nb::handle array, const char* keyword) {
 }
 
 Result<ImageF> world_latlong(const Environment& environment, int height, int threads) {
+    if (const Cubemap* cube = environment.cube())
+        return area_resample_cube_to_latlong(*cube, height, environment.world_to_source, threads);
     if (environment.world_to_source == Mat3() && environment.storage() == Environment::Storage::rows &&
         height == environment.latlong_height()) {
         const auto image = environment.latlong();

@@ -118,6 +118,15 @@ def test_an_audit_recognises_a_mirrored_bake(light):
     assert abs(found.levels[2].roughness - 1) < 0.1
 
 
+def test_a_cube_as_a_lat_long_map_is_what_its_sampler_reads(light):
+    cube = dl.Environment(dl.convert(light, "cube", size=16))
+    latlong = cube.latlong()
+    height, width, _ = latlong.shape
+    theta, phi = np.meshgrid((np.arange(height) + 0.5) / height * np.pi, ((np.arange(width) + 0.5) / width - 0.5) * 2 * np.pi, indexing="ij")
+    directions = np.stack([np.sin(theta) * np.cos(phi), np.cos(theta), np.sin(theta) * np.sin(phi)], -1)
+    assert np.allclose(dl.Sampler(cube).radiance(directions), latlong, rtol=1e-4, atol=1e-5)
+
+
 def test_files_come_back(light, tmp_path):
     for name, tolerance in [("a.exr", 1e-3), ("a.hdr", 1e-2), ("a.ktx2", 1e-3)]:
         dl.write(tmp_path / name, light)
