@@ -6,12 +6,15 @@ set(domelight_common_headers <algorithm> <array> <cmath> <cstdint> <filesystem> 
 
 file(GLOB_RECURSE domelight_unassigned CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/src/*.cpp)
 
+include(cmake/compile_together.cmake)
+
 configure_file(include/domelight/base/version.h.in include/domelight/base/version.h @ONLY)
 
-# domelight_component(NAME ROOMS folder ... [USES component ...] [LINKS library ...])
+# domelight_component(NAME ROOMS folder ... [USES component ...] [LINKS library ...] [SEPARATE])
+# SEPARATE: its files are compiled one by one, because parts of the same kind have functions of the same names.
 # Takes the sources below those folders of src/ that no earlier component took.
 function(domelight_component name)
-  cmake_parse_arguments(PARSE_ARGV 1 component "" "" "ROOMS;USES;LINKS")
+  cmake_parse_arguments(PARSE_ARGV 1 component "SEPARATE" "" "ROOMS;USES;LINKS")
   list(JOIN component_ROOMS "|" rooms)
   set(sources ${domelight_unassigned})
   list(FILTER sources INCLUDE REGEX "^(${rooms})/")
@@ -20,6 +23,9 @@ function(domelight_component name)
   list(TRANSFORM component_USES PREPEND domelight_)
 
   add_library(domelight_${name} ${sources})
+  if(NOT component_SEPARATE)
+    domelight_compile_together(domelight_${name})
+  endif()
   add_library(domelight::${name} ALIAS domelight_${name})
   target_include_directories(domelight_${name} PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include;${PROJECT_BINARY_DIR}/include>" $<INSTALL_INTERFACE:include>
                              PRIVATE ${PROJECT_SOURCE_DIR}/src)
@@ -74,7 +80,7 @@ domelight_component(view ROOMS view USES render LINKS fmt::fmt PkgConfig::httpli
 domelight_component(bake ROOMS bake compare convert USES io preview LINKS fmt::fmt)
 domelight_component(capture ROOMS capture USES render bake LINKS fmt::fmt)
 domelight_component(study ROOMS study USES render bake LINKS fmt::fmt)
-domelight_component(batch ROOMS batch USES capture LINKS fmt::fmt)
+domelight_component(batch SEPARATE ROOMS batch USES capture LINKS fmt::fmt)
 include(cmake/c_interface.cmake)
 if(domelight_unassigned)
   message(FATAL_ERROR "These files of src/ are in no component of cmake/components.cmake: ${domelight_unassigned}")

@@ -10,6 +10,7 @@
 #include "cli/console/field_options.h"
 #include "cli/console/output_endings.h"
 #include "cli/console/print.h"
+#include "cli/console/vector_json.h"
 #include "cli/info/info_probes.h"
 #include "cli/info/info_scene.h"
 #include "compare/picture_survey.h"
@@ -38,9 +39,6 @@ struct InfoWords {
 
 const char* const k_axes[] = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
 
-Json vector_json(const Vec3d& v) {
-    return Json::array({v.x, v.y, v.z});
-}
 std::string rgb(const Vec3d& v) {
     return fmt::format("{:9.4g} {:9.4g} {:9.4g}", v.x, v.y, v.z);
 }

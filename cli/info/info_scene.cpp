@@ -5,6 +5,7 @@
 #include "domelight/render/render.h"
 
 #include "cli/console/print.h"
+#include "cli/console/vector_json.h"
 #include "io/file/json.h"
 
 #include <fmt/core.h>
@@ -48,10 +49,6 @@ std::ptrdiff_t emitting_materials(const Scene& scene) {
     return std::ranges::count_if(scene.materials, [](const Material& m) {
         return m.unlit || std::max({m.emission.x, m.emission.y, m.emission.z}) > 0;
     });
-}
-
-Json vector_json(const Vec3f& v) {
-    return Json::array({v.x, v.y, v.z});
 }
 
 Json document(const std::string& name, const Scene& scene, const std::vector<std::string>& left_out) {

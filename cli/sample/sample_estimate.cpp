@@ -4,6 +4,7 @@
 #include "domelight/io/write_image.h"
 #include "domelight/study/strategy_study.h"
 
+#include "cli/console/vector_json.h"
 #include "io/file/json.h"
 #include "io/file/printable.h"
 #include "preview/plot.h"
@@ -20,9 +21,6 @@ namespace {
 /// Infinity as null, because JSON has no infinity.
 Json number_json(double v) {
     return std::isfinite(v) ? Json(v) : Json(nullptr);
-}
-Json vector_json(const Vec3d& v) {
-    return Json::array({v.x, v.y, v.z});
 }
 std::string surface_text(const SampleWords& w) {
     const double cosine = dot(w.normal_world, w.view_world), angle = std::acos(std::min(1.0, cosine)) * 180 / k_pi;

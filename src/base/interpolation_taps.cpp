@@ -1,13 +1,12 @@
 #include "base/interpolation_taps.h"
 
+#include "domelight/base/vec.h"
+
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
 namespace domelight {
 namespace {
-
-constexpr double k_pi = std::numbers::pi;
 
 /// Solves A x = b (n x n, row-major) in place by elimination with partial pivoting; b has `columns` right-hand sides.
 void solve(std::vector<double>& a, std::vector<double>& b, int n, int columns) {

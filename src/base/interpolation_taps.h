@@ -5,6 +5,9 @@
 
 namespace domelight {
 
+/// How far the spectrum of a filtered environment has fallen at its band limit, at the least: the `decay` below.
+inline constexpr double k_filtered_decay = 16;
+
 /// Weights that interpolate a band-limited function between equally spaced samples, as polynomials of the position
 /// between two of them.
 ///

@@ -2,6 +2,7 @@
 
 #include "domelight/io/file/atomic_file.h"
 
+#include "batch/json_values.h"
 #include "io/file/path_inside.h"
 #include "io/file/sha256.h"
 
@@ -35,16 +36,6 @@ std::string record_text(const ResultRecord& record) {
     return Json{{"job", record.job}, {"kind", record.kind}, {"files", files}, {"report", report_json(record.report)}}
                .dump(1) +
            "\n";
-}
-
-std::string text_in(const Json& json, const char* key) {
-    const Json* value = json.find(key);
-    return value && value->is_string() ? value->get<std::string>() : std::string();
-}
-
-double number_in(const Json& json, const char* key, double fallback) {
-    const Json* value = json.find(key);
-    return value && value->is_number() ? value->get<double>() : fallback;
 }
 
 std::optional<ResultRecord> record_of(const Json& json, const std::string& job) {

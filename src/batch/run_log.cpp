@@ -1,5 +1,7 @@
 #include "batch/run_log.h"
 
+#include "batch/json_values.h"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -13,16 +15,6 @@ namespace domelight {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string text_in(const Json& json, const char* key) {
-    const Json* value = json.find(key);
-    return value && value->is_string() ? value->get<std::string>() : std::string();
-}
-
-double number_in(const Json& json, const char* key) {
-    const Json* value = json.find(key);
-    return value && value->is_number() ? value->get<double>() : 0;
-}
 
 void read_line(const std::string& line, std::map<std::string, LoggedJob>& jobs) {
     const auto json = Json::parse(line);

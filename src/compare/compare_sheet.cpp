@@ -2,8 +2,10 @@
 
 #include "domelight/base/parallel.h"
 
+#include "compare/mask.h"
 #include "image/draw.h"
 #include "preview/colour_map.h"
+#include "preview/dark_page.h"
 #include "preview/tonemap.h"
 
 #include <fmt/format.h>
@@ -15,14 +17,9 @@
 namespace domelight {
 namespace {
 
-constexpr Colour8 k_background{24, 25, 28}, k_bright{232, 234, 238}, k_text{205, 208, 214}, k_quiet{139, 144, 153},
-    k_edge{52, 54, 60}, k_masked{70, 72, 78};
-constexpr int k_margin = 24, k_gap = 16,
+constexpr Colour8 k_edge{52, 54, 60}, k_masked{70, 72, 78};
+constexpr int k_border = 24,
               k_scale_height = 44;  ///< pixels; the height of a colour scale with its numbers
-
-bool counts(const Mask& mask, int x, int y) {
-    return !mask.data || mask.at(x, y)[0] > 0;
-}
 
 Colour8 colour_of(const HeatMap& map, float value) {
     const float t = float(value / map.high);
@@ -151,17 +148,17 @@ Image<std::uint8_t> compare_sheet(const CompareSheet& sheet, int threads) {
     const int columns = w > 1.6 * h ? 2 : 4, room = columns == 2 ? 760 : 440;
     const Fit fit(w, h, room);
     const int cell = std::max(fit.width, 300), cell_height = fit.height + 34 + k_scale_height + 8, header = 76;
-    Image<std::uint8_t> image(2 * k_margin + columns * cell + (columns - 1) * k_gap,
-                              header + (4 / columns) * cell_height + k_margin, 3);
+    Image<std::uint8_t> image(2 * k_border + columns * cell + (columns - 1) * k_gap,
+                              header + (4 / columns) * cell_height + k_border, 3);
     const auto view = image.view();
     fill(view, {0, 0, image.width(), image.height()}, k_background);
-    const int inner = image.width() - 2 * k_margin;
-    draw_text(view, k_margin, 38, fit_text(sheet.title, FontSize::large, inner), FontSize::large, k_bright);
-    draw_text(view, k_margin, 62, fit_text(sheet.subtitle, FontSize::small, inner), FontSize::small, k_quiet);
+    const int inner = image.width() - 2 * k_border;
+    draw_text(view, k_border, 38, fit_text(sheet.title, FontSize::large, inner), FontSize::large, k_bright);
+    draw_text(view, k_border, 62, fit_text(sheet.subtitle, FontSize::small, inner), FontSize::small, k_quiet);
 
     const Display display{sheet.tone_map ? Tonemap::neutral : Tonemap::none, float(std::exp2(sheet.exposure_ev))};
     const auto at = [&](int i) {
-        return std::pair(k_margin + i % columns * (cell + k_gap), header + i / columns * cell_height);
+        return std::pair(k_border + i % columns * (cell + k_gap), header + i / columns * cell_height);
     };
     const auto label = [&](int i, const std::string& text) {
         const auto [x, y] = at(i);

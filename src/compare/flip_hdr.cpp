@@ -15,16 +15,16 @@ namespace {
 // The filmic curve of ACES in Narkowicz's fit, with the input multiplied by 0.6 (section 3.2): (k0 x^2 + k1 x + k2) /
 // (k3 x^2 + k4 x + k5).
 constexpr double k0 = 0.36 * 2.51, k1 = 0.6 * 0.03, k2 = 0, k3 = 0.36 * 2.43, k4 = 0.6 * 0.59, k5 = 0.14;
-constexpr double k_bright = 0.85;  ///< the tone mapper counts as saturated from here on
+constexpr double k_saturated = 0.85;  ///< the tone mapper counts as saturated from here on
 
 float aces(float x) {
     const float y = (float(k0) * x * x + float(k1) * x + float(k2)) / (float(k3) * x * x + float(k4) * x + float(k5));
     return std::clamp(y, 0.0f, 1.0f);
 }
 
-/// The radiance that maps to k_bright: the larger root of (k0 - t k3) x^2 + (k1 - t k4) x + (k2 - t k5).
+/// The radiance that maps to k_saturated: the larger root of (k0 - t k3) x^2 + (k1 - t k4) x + (k2 - t k5).
 double saturating_radiance() {
-    const double a = k0 - k_bright * k3, b = k1 - k_bright * k4, c = k2 - k_bright * k5;
+    const double a = k0 - k_saturated * k3, b = k1 - k_saturated * k4, c = k2 - k_saturated * k5;
     return (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
 }
 

@@ -2,6 +2,8 @@
 
 #include "domelight/base/parallel.h"
 
+#include "compare/mask.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -10,10 +12,6 @@
 
 namespace domelight {
 namespace {
-
-bool counts(const Mask& mask, int x, int y) {
-    return !mask.data || mask.at(x, y)[0] > 0;
-}
 
 float tone_mapped(float v) {
     return v > 0 ? v / (1 + v) : 0;

@@ -5,6 +5,7 @@
 
 #include "image/draw.h"
 #include "preview/agx_display.h"
+#include "preview/dark_page.h"
 #include "preview/preview_map.h"
 #include "preview/tonemap.h"
 
@@ -21,9 +22,8 @@
 namespace domelight {
 namespace {
 
-constexpr Colour8 k_background{24, 25, 28}, k_bright{232, 234, 238}, k_text{205, 208, 214}, k_quiet{139, 144, 153},
-    k_edge{52, 54, 60};
-constexpr int k_margin = 32, k_gap = 16, k_line = 20;  // pixels; k_line: from one line of small text to the next
+constexpr Colour8 k_edge{52, 54, 60};
+constexpr int k_line = 20;  // pixels, from one line of small text to the next
 constexpr double k_key = 0.18;
 constexpr double k_smooth_alpha = 0.03;  // lobes wider than this have no detail as fine as the pixels of the chrome
                                          // balls

@@ -5,6 +5,7 @@
 
 #include "image/draw.h"
 #include "preview/agx_display.h"
+#include "preview/dark_page.h"
 #include "preview/preview_map.h"
 #include "preview/tonemap.h"
 
@@ -16,9 +17,8 @@
 namespace domelight {
 namespace {
 
-constexpr Colour8 k_background{24, 25, 28}, k_bright{232, 234, 238}, k_text{205, 208, 214}, k_quiet{139, 144, 153},
-    k_mark{255, 96, 64};
-constexpr int k_margin = 32, k_gap = 16, k_line = 22;  // pixels
+constexpr Colour8 k_mark{255, 96, 64};
+constexpr int k_table_line = 22;  // pixels, from one line to the next
 
 void draw_environment(ImageView<std::uint8_t> sheet, Rect where, PreviewMap map, const AgxDisplay& look, int threads) {
     map.transform([&](const Texel4& radiance) { return look.primaries(radiance); });
@@ -84,7 +84,8 @@ std::string describe(const ExtractedLight& light, int number) {
 Image<std::uint8_t> lights_sheet(const LightsSheetInput& in) {
     const int width = std::max(in.width, 800), picture = (width - 2 * k_margin - k_gap) / 4 * 2, height = picture / 2;
     const int listed = std::min(int(in.lights.size()), 32);
-    const int top = k_margin + 44, list = top + height + 46, total = list + std::max(listed, 1) * k_line + k_margin - 8;
+    const int top = k_margin + 44, list = top + height + 46,
+              total = list + std::max(listed, 1) * k_table_line + k_margin - 8;
     Image<std::uint8_t> sheet(width, total, 3);
     fill(sheet.view(), {0, 0, width, total}, k_background);
 
@@ -109,7 +110,7 @@ Image<std::uint8_t> lights_sheet(const LightsSheetInput& in) {
     draw_text(sheet.view(), left.x, top + height + 20, "environment and its lights", FontSize::small, k_quiet);
     draw_text(sheet.view(), right.x, top + height + 20, "remainder", FontSize::small, k_quiet);
     for (int i = 0; i < listed; ++i)
-        draw_text(sheet.view(), k_margin, list + i * k_line + 14,
+        draw_text(sheet.view(), k_margin, list + i * k_table_line + 14,
                   fit_text(describe(in.lights[i], i + 1), FontSize::small, width - 2 * k_margin), FontSize::small,
                   k_text);
     if (listed == 0) draw_text(sheet.view(), k_margin, list + 14, "no light stands out", FontSize::small, k_text);

@@ -1,5 +1,6 @@
 #include "preview/plot.h"
 
+#include "preview/light_page.h"
 #include "preview/strokes.h"
 
 #include <fmt/format.h>
@@ -10,13 +11,12 @@
 namespace domelight {
 namespace {
 
-constexpr Colour8 k_paper{255, 255, 255}, k_ink{30, 34, 40}, k_quiet{110, 116, 124}, k_grid{218, 221, 226},
-    k_fine_grid{238, 240, 243};
+constexpr Colour8 k_grid{218, 221, 226}, k_fine_grid{238, 240, 243};
 /// Colours that people with any colour vision can distinguish, the most distinct first (Okabe and Ito 2008, without the
 /// yellow, which is invisible on white paper, and with three more).
 constexpr Colour8 k_palette[] = {{213, 94, 0},   {0, 114, 178}, {0, 158, 115}, {204, 121, 167}, {230, 159, 0},
                                  {86, 180, 233}, {0, 0, 0},     {130, 90, 60}, {130, 136, 144}};
-constexpr int k_line = 20;
+constexpr int k_line_pixels = 20;
 
 /// An axis whose ends are determined.
 struct Scale {
@@ -118,8 +118,8 @@ int tick_width(const Tick& t) {
     return text_width(t.text, FontSize::small) + text_width(t.exponent, FontSize::small);
 }
 void draw_tick(ImageView<std::uint8_t> image, int x, int baseline, const Tick& t) {
-    draw_text(image, x, baseline, t.text, FontSize::small, k_quiet);
-    draw_text(image, x + text_width(t.text, FontSize::small), baseline - 6, t.exponent, FontSize::small, k_quiet);
+    draw_text(image, x, baseline, t.text, FontSize::small, k_faint_ink);
+    draw_text(image, x + text_width(t.text, FontSize::small), baseline - 6, t.exponent, FontSize::small, k_faint_ink);
 }
 
 /// A part of a picture as a separate picture, so that nothing is drawn outside it.
@@ -197,12 +197,12 @@ void draw_plot(ImageView<std::uint8_t> image, Rect where, const Plot& plot) {
     }
     if (!plot.subtitle.empty()) {
         draw_text(page, 16, top + 14, fit_text(plot.subtitle, FontSize::small, page.width - 32), FontSize::small,
-                  k_quiet);
-        top += k_line;
+                  k_faint_ink);
+        top += k_line_pixels;
     }
     if (!plot.y.label.empty()) {
         draw_text(page, 16, top + 18, plot.y.label, FontSize::small, k_ink);
-        top += k_line + 4;
+        top += k_line_pixels + 4;
     }
     const Rect area{left, top + 6, std::max(10, page.width - left - 18 - legend),
                     std::max(10, page.height - top - 6 - (plot.x.label.empty() ? 30 : 52))};
@@ -237,9 +237,9 @@ void draw_plot(ImageView<std::uint8_t> image, Rect where, const Plot& plot) {
         if (s.line != PlotLine::none) draw_segment(page, s.line, walked, kx, key, kx + 26, key, colour);
         if (s.marks) disc(page, kx + 13, key, 4, colour);
         draw_text(page, kx + 34, key + 5, s.name, FontSize::small, k_ink);
-        key += k_line + 2;
+        key += k_line_pixels + 2;
     }
-    frame(page, {area.x - 1, area.y - 1, area.width + 2, area.height + 2}, k_quiet);
+    frame(page, {area.x - 1, area.y - 1, area.width + 2, area.height + 2}, k_faint_ink);
 }
 
 Image<std::uint8_t> draw_plot(const Plot& plot, int width, int height) {

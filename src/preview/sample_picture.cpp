@@ -3,6 +3,7 @@
 #include "domelight/base/parallel.h"
 #include "domelight/projection/projection.h"
 
+#include "preview/dark_page.h"
 #include "preview/preview_map.h"
 #include "preview/strokes.h"
 #include "preview/tonemap.h"
@@ -16,8 +17,8 @@
 namespace domelight {
 namespace {
 
-constexpr Colour8 k_background{24, 25, 28}, k_bright{232, 234, 238}, k_quiet{150, 155, 163};
-constexpr int k_margin = 16, k_head = 66, k_foot = 52;
+constexpr Colour8 k_caption{150, 155, 163};
+constexpr int k_border = 16, k_head = 66, k_foot = 52;
 
 /// A dark page with space for a lat-long picture, its title above and a part below.
 struct Page {
@@ -27,11 +28,12 @@ struct Page {
 
 Page make_page(const SamplePictureOptions& o) {
     const int width = std::clamp(o.width, 256, 8192), height = width / 2;
-    Page page{Image<std::uint8_t>(width + 2 * k_margin, height + k_head + k_foot, 3),
-              {k_margin, k_head, width, height}};
+    Page page{Image<std::uint8_t>(width + 2 * k_border, height + k_head + k_foot, 3),
+              {k_border, k_head, width, height}};
     fill(page.image.view(), {0, 0, page.image.width(), page.image.height()}, k_background);
-    draw_text(page.image.view(), k_margin, 32, fit_text(o.title, FontSize::large, width), FontSize::large, k_bright);
-    draw_text(page.image.view(), k_margin, 54, fit_text(o.subtitle, FontSize::small, width), FontSize::small, k_quiet);
+    draw_text(page.image.view(), k_border, 32, fit_text(o.title, FontSize::large, width), FontSize::large, k_bright);
+    draw_text(page.image.view(), k_border, 54, fit_text(o.subtitle, FontSize::small, width), FontSize::small,
+              k_caption);
     return page;
 }
 
@@ -39,8 +41,8 @@ Page make_page(const SamplePictureOptions& o) {
 void draw_scale(Page& page) {
     const Rect& r = page.where;
     for (int k = 0; k <= 4; ++k) {
-        fill(page.image.view(), {r.x + k * (r.width - 1) / 4, r.y + r.height, 1, 5}, k_quiet);
-        fill(page.image.view(), {r.x - 5, r.y + k * (r.height - 1) / 4, 5, 1}, k_quiet);
+        fill(page.image.view(), {r.x + k * (r.width - 1) / 4, r.y + r.height, 1, 5}, k_caption);
+        fill(page.image.view(), {r.x - 5, r.y + k * (r.height - 1) / 4, 5, 1}, k_caption);
     }
 }
 
@@ -94,15 +96,15 @@ void draw_legend(Page& page, double low, double high, const std::string& unit) {
     for (int k = first; k <= last; ++k) {
         if (k % step) continue;
         const int x = bar.x + int((k - low) / std::max(high - low, 1e-9) * (bar.width - 1));
-        fill(page.image.view(), {x, bar.y + bar.height, 1, 5}, k_quiet);
+        fill(page.image.view(), {x, bar.y + bar.height, 1, 5}, k_caption);
         const std::string text = k >= -1 && k <= 2 ? fmt::format("{:g}", std::pow(10.0, k)) : "10";
         const std::string exponent = text != "10" || k == 1 ? ""
                                      : k < 0                ? fmt::format("−{}", -k)
                                                             : fmt::format("{}", k);
         const int left = x - (text_width(text, FontSize::small) + text_width(exponent, FontSize::small)) / 2;
-        draw_text(page.image.view(), left, bar.y + 36, text, FontSize::small, k_quiet);
+        draw_text(page.image.view(), left, bar.y + 36, text, FontSize::small, k_caption);
         draw_text(page.image.view(), left + text_width(text, FontSize::small), bar.y + 30, exponent, FontSize::small,
-                  k_quiet);
+                  k_caption);
     }
 }
 
@@ -148,9 +150,9 @@ Image<std::uint8_t> sample_picture(const EnvironmentSampler& sampler, std::span<
     dots(dot, {255, 226, 40}, opacity);
     draw_scale(page);
     draw_text(page.image.view(), page.where.x, page.where.y + page.where.height + 24, "u = 0", FontSize::small,
-              k_quiet);
+              k_caption);
     draw_text(page.image.view(), page.where.x + page.where.width, page.where.y + page.where.height + 24, "u = 1",
-              FontSize::small, k_quiet, Align::right);
+              FontSize::small, k_caption, Align::right);
     return std::move(page.image);
 }
 
@@ -180,7 +182,8 @@ Image<std::uint8_t> density_picture(const EnvironmentSampler& sampler, DensityMe
         }
     draw_scale(page);
     if (std::find(values.begin(), values.end(), 0.f) != values.end())
-        draw_text(page.image.view(), r.x + r.width, 32, "hatched: never drawn", FontSize::small, k_quiet, Align::right);
+        draw_text(page.image.view(), r.x + r.width, 32, "hatched: never drawn", FontSize::small, k_caption,
+                  Align::right);
     draw_legend(page, low, high, measure == DensityMeasure::uv ? "density over (u, v)" : "density per sr");
     return std::move(page.image);
 }

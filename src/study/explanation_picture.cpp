@@ -1,5 +1,6 @@
 #include "domelight/study/explanation_picture.h"
 
+#include "preview/light_page.h"
 #include "preview/sample_picture.h"
 #include "preview/strokes.h"
 
@@ -12,8 +13,7 @@
 namespace domelight {
 namespace {
 
-constexpr Colour8 k_page{255, 255, 255}, k_ink{30, 34, 40}, k_quiet{110, 116, 124}, k_grid{225, 228, 232},
-    k_row{0, 114, 178}, k_column{213, 94, 0}, k_point{255, 226, 40};
+constexpr Colour8 k_grid{225, 228, 232}, k_row{0, 114, 178}, k_column{213, 94, 0}, k_point{255, 226, 40};
 constexpr Rect k_image{24, 70, 900, 450}, k_marginal{948, 70, 310, 450}, k_conditional{24, 574, 900, 220};
 
 /// Maps a value of a panel to pixels: places run along the image's edge, the cumulative function across it.
@@ -65,7 +65,7 @@ void draw_cumulative(ImageView<std::uint8_t> image, const Panel& p, const Cumula
     for (int i = 0; i < n; ++i)
         line(image, p.at(std::min(1.0, f.places[i]), f.cumulative[i]),
              p.at(std::min(1.0, f.places[i + 1]), f.cumulative[i + 1]), 2, colour);
-    frame(image, {p.where.x - 1, p.where.y - 1, p.where.width + 2, p.where.height + 2}, k_quiet);
+    frame(image, {p.where.x - 1, p.where.y - 1, p.where.width + 2, p.where.height + 2}, k_faint_ink);
 }
 
 }  // namespace
@@ -74,14 +74,14 @@ Image<std::uint8_t> explanation_picture(const EnvironmentSampler& sampler, const
                                         const std::string& title, int threads) {
     Image<std::uint8_t> picture(k_marginal.x + k_marginal.width + 24, k_conditional.y + k_conditional.height + 44, 3);
     const auto image = picture.view();
-    fill(image, {0, 0, picture.width(), picture.height()}, k_page);
+    fill(image, {0, 0, picture.width(), picture.height()}, k_paper);
     draw_text(image, 24, 32, fit_text(title, FontSize::large, 900), FontSize::large, k_ink);
     const std::string rows = e.row_above == e.row_below ? fmt::format("row {}", e.row_above)
                                                         : fmt::format("rows {} and {}", e.row_above, e.row_below);
     draw_text(image, 24, 56,
               fmt::format("from the point ({:g}, {:g}) of the unit square to {}, then to the column", e.point[0],
                           e.point[1], rows),
-              FontSize::small, k_quiet);
+              FontSize::small, k_faint_ink);
     draw_text(image, k_marginal.x, 56, "C(v), share of the weight above v", FontSize::small, k_row);
     draw_text(
         image, k_conditional.x, k_conditional.y - 12,
@@ -109,9 +109,9 @@ Image<std::uint8_t> explanation_picture(const EnvironmentSampler& sampler, const
     for (const double edge : {0.0, 0.5, 1.0}) {
         const std::string label = fmt::format("{:g}", edge);
         draw_text(image, int(marginal.at(1, edge)[0]), k_marginal.y + k_marginal.height + 20, label, FontSize::small,
-                  k_quiet, Align::centre);
+                  k_faint_ink, Align::centre);
         draw_text(image, int(conditional.at(edge, 0)[0]), k_conditional.y + k_conditional.height + 20, label,
-                  FontSize::small, k_quiet, Align::centre);
+                  FontSize::small, k_faint_ink, Align::centre);
     }
 
     int y = k_conditional.y + 4;
@@ -126,7 +126,7 @@ Image<std::uint8_t> explanation_picture(const EnvironmentSampler& sampler, const
     const LightSample& s = e.sample;
     say(fmt::format("direction {:.3f}  {:.3f}  {:.3f}", s.direction.x, s.direction.y, s.direction.z), k_ink);
     say(fmt::format("radiance {:.3g}  {:.3g}  {:.3g}", s.radiance.x, s.radiance.y, s.radiance.z), k_ink);
-    say("shaded: the density itself", k_quiet);
+    say("shaded: the density itself", k_faint_ink);
     return picture;
 }
 

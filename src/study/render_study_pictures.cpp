@@ -5,6 +5,7 @@
 
 #include "image/draw.h"
 #include "preview/colour_map.h"
+#include "preview/light_page.h"
 #include "preview/plot.h"
 #include "preview/tonemap.h"
 
@@ -16,8 +17,7 @@
 namespace domelight {
 namespace {
 
-constexpr Colour8 k_paper{255, 255, 255}, k_ink{30, 34, 40}, k_quiet{110, 116, 124}, k_best{0, 128, 92},
-    k_poor{200, 90, 0}, k_bad{190, 24, 40}, k_nothing{225, 227, 230};
+constexpr Colour8 k_best{0, 128, 92}, k_poor{200, 90, 0}, k_bad{190, 24, 40}, k_nothing{225, 227, 230};
 constexpr int k_margin = 24, k_gap = 6, k_line = 20;
 
 Image<std::uint8_t> page(int width, int height, const std::string& title, const std::vector<std::string>& below) {
@@ -28,7 +28,7 @@ Image<std::uint8_t> page(int width, int height, const std::string& title, const 
     int y = 64;
     for (const std::string& text : below) {
         draw_text(image.view(), k_margin, y, fit_text(text, FontSize::small, width - 2 * k_margin), FontSize::small,
-                  k_quiet);
+                  k_faint_ink);
         y += k_line;
     }
     return image;
@@ -103,14 +103,14 @@ Image<std::uint8_t> strategy_picture(const StrategyFigure& f, const std::string&
                       k_ink);
             for (int l = 0; l < columns; ++l)
                 draw_text(view, left + l * step + size / 2, top + 60,
-                          fit_text(f.lights[std::size_t(l)].name, FontSize::small, step), FontSize::small, k_quiet,
+                          fit_text(f.lights[std::size_t(l)].name, FontSize::small, step), FontSize::small, k_faint_ink,
                           Align::centre);
             for (int r = 0; r < rows; ++r) {
                 const double roughness = f.roughness[std::size_t(r)];
                 const int y = top + 68 + r * row_step;
                 if (s == 0)
                     draw_text(view, k_margin + gutter - 10, y + size / 2 + 5, fmt::format("{:g}", roughness),
-                              FontSize::small, k_quiet, Align::right);
+                              FontSize::small, k_faint_ink, Align::right);
                 for (int l = 0; l < columns; ++l) {
                     const StrategyCell& cell = f.at(occlusion, roughness, l, order[s]);
                     double best = INFINITY;
@@ -160,7 +160,7 @@ Image<std::uint8_t> noise_picture(const NoiseFigure& f, const std::string& scene
         const int top = head + plot_height + k_line;
         for (int i = 0; i < columns; ++i)
             draw_text(view, left + gutter + i * step + size / 2, top + 20,
-                      std::to_string(counts[std::size_t(i)].samples), FontSize::small, k_quiet, Align::centre);
+                      std::to_string(counts[std::size_t(i)].samples), FontSize::small, k_faint_ink, Align::centre);
         double start = 0;
         for (const NoiseLine& line : f.lines) {
             if (line.occlusion != occlusion) continue;
@@ -178,7 +178,7 @@ Image<std::uint8_t> noise_picture(const NoiseFigure& f, const std::string& scene
         PlotSeries guide;
         guide.name = "slope -0.50";
         guide.line = PlotLine::dotted;
-        guide.colour = k_quiet;
+        guide.colour = k_faint_ink;
         for (const auto& p : counts) guide.points.push_back({double(p.samples), start / std::sqrt(double(p.samples))});
         plot.series.push_back(std::move(guide));
         draw_plot(view, {left, head, half, plot_height}, plot);
@@ -210,13 +210,13 @@ void draw_table(ImageView<std::uint8_t> page, int left, int top, const Table& t,
         for (int b = 0; b < bins; ++b)
             fill(page, {x0 + b * k_square, y0 + (rows - 1 - r) * k_square, k_square, k_square},
                  colour_of(t, *t.values->at(b, r)));
-    frame(page, {x0 - 1, y0 - 1, width + 2, height + 2}, k_quiet);
+    frame(page, {x0 - 1, y0 - 1, width + 2, height + 2}, k_faint_ink);
     for (int r = 0; r < rows; ++r)
         draw_text(page, x0 - 8, y0 + (rows - 1 - r) * k_square + k_square / 2 + 5,
-                  fmt::format("{:g}", roughness[std::size_t(r)]), FontSize::small, k_quiet, Align::right);
+                  fmt::format("{:g}", roughness[std::size_t(r)]), FontSize::small, k_faint_ink, Align::right);
     for (int i = 0; i <= 4; ++i)
-        draw_text(page, x0 + i * width / 4, y0 + height + 20, fmt::format("{:g}", i / 4.0), FontSize::small, k_quiet,
-                  Align::centre);
+        draw_text(page, x0 + i * width / 4, y0 + height + 20, fmt::format("{:g}", i / 4.0), FontSize::small,
+                  k_faint_ink, Align::centre);
     draw_text(page, x0 + width / 2, y0 + height + 42, "to the right: NdotV, grazing to head-on", FontSize::small, k_ink,
               Align::centre);
     draw_text(page, x0 + width / 2, y0 + height + 62, "upwards: roughness", FontSize::small, k_ink, Align::centre);
@@ -225,11 +225,11 @@ void draw_table(ImageView<std::uint8_t> page, int left, int top, const Table& t,
         const double part = double(x) / (width - 1);
         fill(page, {x0 + x, scale, 1, 14}, colour_of(t, t.high * (t.is_signed ? 2 * part - 1 : part)));
     }
-    frame(page, {x0, scale, width, 14}, k_quiet);
+    frame(page, {x0, scale, width, 14}, k_faint_ink);
     for (int i = 0; i <= 2; ++i) {
         const double part = i / 2.0, value = t.high * (t.is_signed ? 2 * part - 1 : part);
         draw_text(page, x0 + i * width / 2, scale + 32,
-                  fmt::format("{}{:.3g}", t.is_signed && value > 0 ? "+" : "", value), FontSize::small, k_quiet,
+                  fmt::format("{}{:.3g}", t.is_signed && value > 0 ? "+" : "", value), FontSize::small, k_faint_ink,
                   i == 0   ? Align::left
                   : i == 2 ? Align::right
                            : Align::centre);
@@ -272,11 +272,11 @@ Image<std::uint8_t> split_sum_picture(const SplitSumFigure& f, const std::string
             const int x = k_margin + gutter + r * step;
             if (i == 0)
                 draw_text(view, x + size / 2, y - 8, fmt::format("{:g}", f.roughness[std::size_t(r)]), FontSize::small,
-                          k_quiet, Align::centre);
+                          k_faint_ink, Align::centre);
             draw_radiance(view, x, y, (*lines[i].pictures)[std::size_t(r)], ev);
         }
     }
-    draw_text(view, k_margin, head + 20, "roughness", FontSize::small, k_quiet);
+    draw_text(view, k_margin, head + 20, "roughness", FontSize::small, k_faint_ink);
     const double error_high = std::max(scale_for(off.error), scale_for(on.error)),
                  difference_high = std::max(scale_for(off.difference), scale_for(on.difference));
     const Table tables[] = {{&off.error, "error, without occlusion", error_high, false},

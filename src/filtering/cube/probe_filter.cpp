@@ -28,7 +28,7 @@ constexpr double k_probe_least_share = 1e-3;
 constexpr std::size_t k_probe_most_lights = 12;
 
 /// Enough nodes along a texel's side that a function of this band limit is integrated over it; an even number.
-int nodes_a_cell(int size, int band_limit) {
+int even_nodes_a_cell(int size, int band_limit) {
     const int nodes = std::clamp(2 + int(0.75 * band_limit / size), 2, 10);
     return nodes + nodes % 2;
 }
@@ -64,7 +64,7 @@ struct ProbeFilter::Prepared {
           levels(plan, options),
           analysis(levels.transform(plan.band_limit)),
           table(lookup_table(double(plan.band_limit) / analysis->grid.rings)),
-          to_rings(size, analysis->grid, *table, nodes_a_cell(size, plan.band_limit)) {}
+          to_rings(size, analysis->grid, *table, even_nodes_a_cell(size, plan.band_limit)) {}
 
     int size;
     FilterOptions options;

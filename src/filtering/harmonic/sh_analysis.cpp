@@ -3,6 +3,7 @@
 #include "domelight/base/parallel.h"
 #include "domelight/base/vec.h"
 
+#include "base/interpolation_taps.h"
 #include "filtering/harmonic/row_kernels.h"
 
 #include <algorithm>
@@ -13,8 +14,6 @@ namespace {
 
 constexpr int k_batch = RingAnalysis::k_batch;
 constexpr int k_batches_at_once = 4;
-/// The least decay of a filtered spectrum at the band limit: see InterpolationTaps.
-constexpr double k_decay = 16;
 
 /// 2 pi / W sinc^2(m / W) e^{-i m phi_0}: the transform of the tents, from the first texel's centre on.
 std::vector<std::complex<double>> tent_factors(int width, int band_limit) {
@@ -34,7 +33,7 @@ ShAnalysis::ShAnalysis(int width, int height, int band_limit, int threads)
       height_(height),
       threads_(threads),
       rings_(width, band_limit, tent_factors(width, band_limit)),
-      reduction_(height, rings_.grid().rings, double(band_limit) / rings_.grid().rings, k_decay) {}
+      reduction_(height, rings_.grid().rings, double(band_limit) / rings_.grid().rings, k_filtered_decay) {}
 
 void ShAnalysis::add_rows(ImageView<const float> rows) {
     assert(rows.width == width_ && rows.channels == 3 && next_row_ + rows.height <= height_);
@@ -104,7 +103,8 @@ Spectrum ShAnalysis::finish() {
 
 Spectrum analyse_texels(int width, int height, std::span<const LoneTexel> texels, int band_limit, int threads) {
     RingAnalysis rings(width, band_limit, tent_factors(width, band_limit));
-    const LatitudeReduction reduction(height, rings.grid().rings, double(band_limit) / rings.grid().rings, k_decay);
+    const LatitudeReduction reduction(height, rings.grid().rings, double(band_limit) / rings.grid().rings,
+                                      k_filtered_decay);
     rings.clear();
     std::vector<std::complex<double>> orders(3 * std::size_t(band_limit + 1));
     for (std::size_t i = 0; i < texels.size();) {

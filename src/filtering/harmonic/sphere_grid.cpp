@@ -3,6 +3,7 @@
 #include "domelight/base/parallel.h"
 #include "domelight/projection/projection.h"
 
+#include "base/interpolation_taps.h"
 #include "base/mutex.h"
 #include "filtering/harmonic/row_kernels.h"
 
@@ -14,9 +15,6 @@
 
 namespace domelight {
 namespace {
-
-/// By how much a filtered spectrum has decayed at its band limit: see InterpolationTaps.
-constexpr double k_decay = 16;
 
 /// The error that ResidualLights may leave out, as a part of the least value.
 constexpr double k_tolerance = 1e-5;
@@ -150,7 +148,7 @@ std::shared_ptr<const simd::TapTable> lookup_table(double band) {
     for (const auto& [of, table] : tables)
         if (of == band) return table;
     if (tables.size() == most) tables.pop_front();
-    tables.emplace_back(band, std::make_shared<simd::TapTable>(InterpolationTaps(8, band, k_decay)));
+    tables.emplace_back(band, std::make_shared<simd::TapTable>(InterpolationTaps(8, band, k_filtered_decay)));
     return tables.back().second;
 }
 

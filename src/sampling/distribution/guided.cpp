@@ -10,7 +10,7 @@ namespace domelight {
 
 namespace {
 
-constexpr std::uint64_t k_total = std::uint64_t(1) << 32;
+constexpr std::uint64_t k_quanta = std::uint64_t(1) << 32;
 
 /// Position in [0, 1) of the middle of quantum xi in the item that owns it, of those it owns.
 double position_in(std::uint32_t xi, std::uint32_t first, std::uint64_t quanta) {
@@ -38,7 +38,7 @@ void GuidedRows::fill(int row, std::span<const float> weights, std::span<const d
     l[-1] = 0xffffffffu;  // so that item 0 begins after it, at 0
     const std::uint64_t cell = std::uint64_t(1) << shift;
     std::size_t filled = 0;  // cells that know their item
-    share_quanta([&](int i) { return weights[i] > 0; }, sums, k_total,
+    share_quanta([&](int i) { return weights[i] > 0; }, sums, k_quanta,
                  [&](int i, std::uint64_t end) {
                      l[i] = std::uint32_t(end - 1);
                      // Cells that begin before `end` begin in item i. They are mostly few: eight are written without a

@@ -1,5 +1,6 @@
 // Reads KTX 1.1 (Khronos KTX File Format Specification, version 1.1), of either endianness.
 #include "texture/container/gl_formats.h"
+#include "texture/container/key_values.h"
 #include "texture/container/ktx1.h"
 #include "texture/container/scaled_bytes.h"
 #include "texture/container/texture_reading.h"
@@ -20,40 +21,6 @@ struct Ktx1 {
     std::uint64_t data_offset = 0;
 };
 
-/// Numbers in the file's endianness.
-struct Words {
-    std::span<const std::uint8_t> bytes;
-    bool swapped;
-    std::uint32_t at(std::size_t offset) const {
-        const std::uint32_t v = u32_at(bytes, offset);
-        return swapped ? v >> 24 | (v >> 8 & 0xff00u) | (v << 8 & 0xff0000u) | v << 24 : v;
-    }
-};
-
-Result<void> read_key_values(ByteSource& source, bool swapped, std::uint64_t bytes,
-                             std::map<std::string, std::string>& metadata) {
-    if (bytes > k_max_metadata_bytes)
-        return Error{"has " + std::to_string(bytes) + " bytes of key/value data", "", "the file is damaged"};
-    const auto data = source.take(k_ktx1_header_bytes, bytes, "key/value data");
-    if (!data) return data.error();
-    const Words words{*data, swapped};
-    const Error damaged{"has key/value data that runs over its end or lacks a key", "", "the file is damaged"};
-    for (std::size_t at = 0; at < data->size();) {
-        if (data->size() - at < 4) return damaged;
-        const std::size_t size = words.at(at);
-        at += 4;
-        if (size > data->size() - at) return damaged;
-        const auto pair = std::span(*data).subspan(at, size);
-        const auto terminator = std::find(pair.begin(), pair.end(), std::uint8_t(0));
-        if (terminator == pair.end() || terminator == pair.begin()) return damaged;
-        const auto key = pair.first(std::size_t(terminator - pair.begin()));
-        if (!is_utf8_text(key)) return Error{"has a key that is not UTF-8", "", "the file is damaged"};
-        metadata.emplace(std::string(key.begin(), key.end()), metadata_text(pair.subspan(key.size() + 1)));
-        at = std::min(data->size(), (at + size + 3) / 4 * 4);
-    }
-    return {};
-}
-
 /// Reads the sizes of the levels: imageSize precedes each, and faces and levels are padded to 4 bytes.
 Result<void> check_levels(ByteSource& source, const Ktx1& file) {
     std::uint64_t at = file.data_offset;
@@ -61,7 +28,7 @@ Result<void> check_levels(ByteSource& source, const Ktx1& file) {
     for (int l = 0; l < file.info.levels; ++l) {
         const auto size = source.take(at, 4, "level's size");
         if (!size) return size.error();
-        const std::uint64_t bytes = (std::uint64_t(Words{*size, file.swapped}.at(0)) + 3) / 4 * 4 * faces;
+        const std::uint64_t bytes = (std::uint64_t(FileWords{*size, file.swapped}.at(0)) + 3) / 4 * 4 * faces;
         if (bytes == 0) return Error{"level " + std::to_string(l) + " is empty", "", "the file is damaged"};
         if (!source.contains(at + 4, bytes)) {
             return Error{"ends too early: level " + std::to_string(l) + " should take " + std::to_string(bytes) +
@@ -74,14 +41,14 @@ Result<void> check_levels(ByteSource& source, const Ktx1& file) {
     return {};
 }
 
-Result<Ktx1> parse(ByteSource& source, Decode decode = Decode::automatic) {
+Result<Ktx1> parse_ktx1(ByteSource& source, Decode decode = Decode::automatic) {
     const auto head = source.take(0, k_ktx1_header_bytes, "header");
     if (!head) return head.error();
     Ktx1 file;
     file.info.container = "KTX";
     file.info.supercompression = "none";
     file.swapped = u32_at(*head, 12) == 0x01020304;
-    const Words words{*head, file.swapped};
+    const FileWords words{*head, file.swapped};
     if (words.at(12) != k_ktx1_endianness)
         return Error{"has a damaged header: its endianness mark is neither of the two", "", "the file is damaged"};
     const auto word = [&](std::size_t i) { return words.at(12 + 4 * i); };
@@ -91,7 +58,7 @@ Result<Ktx1> parse(ByteSource& source, Decode decode = Decode::automatic) {
     if (!done) return done.error();
     file.info.format = gl_format_name(internal_format);
     file.texels = gl_format_texels(internal_format, word(1));
-    done = read_key_values(source, file.swapped, word(12), file.info.metadata);
+    done = read_key_values(source, k_ktx1_header_bytes, word(12), file.swapped, file.info.metadata);
     if (!done) return done.error();
     if (internal_format == k_gl_rgba8 && word(1) == k_gl_unsigned_byte)
         if (const auto encoding = take_scaled_bytes(file.info.metadata)) {
@@ -141,13 +108,13 @@ void append_face(const Ktx1& file, const Texture& texture, int l, Bytes& stored,
 }  // namespace
 
 Result<TextureInfo> ktx1_info(ByteSource& source) {
-    auto file = parse(source);
+    auto file = parse_ktx1(source);
     if (!file) return file.error();
     return std::move(file->info);
 }
 
 Result<Texture> ktx1_texture(ByteSource& source, Decode decode) {
-    const auto file = parse(source, decode);
+    const auto file = parse_ktx1(source, decode);
     if (!file) return file.error();
     auto texture = texture_for(file->info, file->texels);
     if (!texture) return texture;
@@ -155,7 +122,7 @@ Result<Texture> ktx1_texture(ByteSource& source, Decode decode) {
     for (int l = 0; l < file->info.levels; ++l) {
         const auto size = source.take(at, 4, "level's size");
         if (!size) return size.error();
-        std::uint64_t face_bytes = Words{*size, file->swapped}.at(0);
+        std::uint64_t face_bytes = FileWords{*size, file->swapped}.at(0);
         // Some writers count all faces of a cube that is an array of one.
         if (file->info.layers == 1 && file->info.faces == 6) face_bytes /= 6;
         const std::uint64_t needed =

@@ -1,4 +1,5 @@
 // Reads KTX 2.0 (Khronos KTX File Format Specification, version 2.0).
+#include "texture/container/key_values.h"
 #include "texture/container/ktx2.h"
 #include "texture/container/scaled_bytes.h"
 #include "texture/container/texture_reading.h"
@@ -80,29 +81,6 @@ Result<Descriptor> read_descriptor(ByteSource& source, std::uint64_t offset, std
     return Descriptor{(*data)[12], (*data)[14] == 2};
 }
 
-Result<void> read_key_values(ByteSource& source, std::uint64_t offset, std::uint64_t bytes,
-                             std::map<std::string, std::string>& metadata) {
-    if (bytes > k_max_metadata_bytes)
-        return Error{"has " + std::to_string(bytes) + " bytes of key/value data", "", "the file is damaged"};
-    const auto data = source.take(offset, bytes, "key/value data");
-    if (!data) return data.error();
-    const Error damaged{"has key/value data that runs over its end or lacks a key", "", "the file is damaged"};
-    for (std::size_t at = 0; at < data->size();) {
-        if (data->size() - at < 4) return damaged;
-        const std::size_t size = u32_at(*data, at);
-        at += 4;
-        if (size > data->size() - at) return damaged;
-        const auto pair = std::span(*data).subspan(at, size);
-        const auto terminator = std::find(pair.begin(), pair.end(), std::uint8_t(0));
-        if (terminator == pair.end() || terminator == pair.begin()) return damaged;
-        const auto key = pair.first(std::size_t(terminator - pair.begin()));
-        if (!is_utf8_text(key)) return Error{"has a key that is not UTF-8", "", "the file is damaged"};
-        metadata.emplace(std::string(key.begin(), key.end()), metadata_text(pair.subspan(key.size() + 1)));
-        at = std::min(data->size(), (at + size + 3) / 4 * 4);
-    }
-    return {};
-}
-
 /// Whether a level's stated sizes are those that its texels need.
 Result<void> check_level_size(const Ktx2& file, const Texture& texture, int l) {
     const Level& level = file.levels[std::size_t(l)];
@@ -121,7 +99,7 @@ std::optional<StatedScreenTexels> screen_texels(std::uint32_t format, const Desc
     return stated;
 }
 
-Result<Ktx2> parse(ByteSource& source, Decode decode = Decode::automatic) {
+Result<Ktx2> parse_ktx2(ByteSource& source, Decode decode = Decode::automatic) {
     const auto head = source.take(0, k_ktx2_header_bytes, "header");
     if (!head) return head.error();
     const auto word = [&](int i) { return u32_at(*head, 12 + 4 * std::size_t(i)); };
@@ -140,7 +118,7 @@ Result<Ktx2> parse(ByteSource& source, Decode decode = Decode::automatic) {
     if (format == k_vulkan_astc4x4_hdr && descriptor->model == k_model_uastc_hdr)
         file.texels = StoredTexels{Encoding::uastc_hdr};
     if (word(12) > 0) {
-        done = read_key_values(source, word(11), word(12), file.info.metadata);
+        done = read_key_values(source, word(11), word(12), false, file.info.metadata);
         if (!done) return done.error();
     }
     if (format == k_vulkan_rgba8)
@@ -212,13 +190,13 @@ Result<Bytes> undo_zstd(std::span<const std::uint8_t> packed, std::uint64_t byte
 }  // namespace
 
 Result<TextureInfo> ktx2_info(ByteSource& source) {
-    auto file = parse(source);
+    auto file = parse_ktx2(source);
     if (!file) return file.error();
     return std::move(file->info);
 }
 
 Result<Texture> ktx2_texture(ByteSource& source, Decode decode) {
-    const auto file = parse(source, decode);
+    const auto file = parse_ktx2(source, decode);
     if (!file) return file.error();
     auto texture = texture_for(file->info, file->texels);
     if (!texture) return texture;
