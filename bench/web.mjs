@@ -2,8 +2,10 @@
 // thread meanwhile. Medians, with the worst in parentheses.
 //
 //   node bench/web.mjs [--runs N] [--trace FILE] ENVIRONMENT [MODEL]
+//   node bench/web.mjs --live [--runs N]
 //
-// The app is the one in build/web. --trace: a trace of the last run for Chromium's performance panel.
+// The app is the one in build/web. --trace: a trace of the last run for Chromium's performance panel. --live: the frame rate of the moving spheres at 1280 x 720,
+// all pixels, with live cubes and without them, in pairs.
 
 import fs from 'node:fs';
 import os from 'node:os';
@@ -14,8 +16,9 @@ import {launch, serve} from '../tests/engines/browser/browser.mjs';
 
 const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '..');
 const given = process.argv.slice(2), option = name => (given.includes(name) ? given.splice(given.indexOf(name), 2)[1] : undefined);
+const live = given.includes('--live') && given.splice(given.indexOf('--live'), 1).length > 0;
 const runs = Number(option('--runs') ?? 5), trace = option('--trace'), files = given;
-if (!files.length) throw new Error('Which environment? node bench/web.mjs [--runs N] [--trace FILE] ENVIRONMENT [MODEL]');
+if (!files.length && !live) throw new Error('Which environment? node bench/web.mjs [--runs N] [--trace FILE] ENVIRONMENT [MODEL]');
 
 const chromium = execFileSync('sh', ['-c', 'command -v chromium'], {encoding: 'utf8'}).trim();
 const folders = Object.fromEntries(files.map((file, k) => [`/file${k}/`, path.dirname(path.resolve(file))]));
@@ -64,8 +67,38 @@ async function run(browser, traced) {
     return {'page ready': ready, ...measured};
 }
 
+/// Frames in a second, counted for five.
+const frameRate = (page, live) => page.evaluate(async live => {
+    const {stage, store} = domelight, show = stage.show.bind(stage);
+    store.set({live});
+    await new Promise(done => setTimeout(done, 1500));
+    let frames = 0;
+    stage.show = state => {
+        ++frames;
+        show(state);
+    };
+    const start = performance.now();
+    await new Promise(done => setTimeout(done, 5000));
+    delete stage.show;
+    return (1000 * frames) / (performance.now() - start);
+}, live);
+
+if (live) {
+    const browser = await launch(path.join(root, 'web/node_modules'), chromium), page = await browser.newPage({viewport: {width: 1280, height: 720}}), ratios = [];
+    await page.goto(`${server.url}/app/index.html#panel=false&motion=true&fullResolution=true`);
+    await page.waitForFunction(() => window.domelight?.ready, undefined, {timeout: 60_000});
+    for (let k = 0; k < runs; ++k) {
+        const without = await frameRate(page, false), withCubes = await frameRate(page, true);
+        ratios.push(withCubes / without);
+        console.log(`${without.toFixed(2)} frames/s, with live cubes ${withCubes.toFixed(2)}`);
+    }
+    ratios.sort((a, b) => a - b);
+    console.log(`ratio ${ratios[ratios.length >> 1].toFixed(2)}  (${ratios[0].toFixed(2)})`);
+    await browser.close();
+}
+
 const results = [];
-for (let k = 0; k < runs; ++k) {
+for (let k = 0; k < runs && !live; ++k) {
     const browser = await launch(path.join(root, 'web/node_modules'), chromium);
     await new Promise(done => setTimeout(done, 3000));  // the browser itself has something to do first
     results.push(await run(browser, k === runs - 1 ? trace : undefined));
@@ -73,9 +106,9 @@ for (let k = 0; k < runs; ++k) {
 }
 server.close();
 fs.rmSync(empty, {recursive: true});
-for (const key of Object.keys(results[0])) {
+for (const key of Object.keys(results[0] ?? {})) {
     if (key === 'tasks') continue;
     const sorted = results.map(result => result[key]).sort((a, b) => a - b);
     console.log(`${key.padEnd(22)} ${sorted[sorted.length >> 1].toFixed(0).padStart(6)} ms  (${sorted.at(-1).toFixed(0)})`);
 }
-console.log(`tasks of the last run above 50 ms, start + length: ${results.at(-1).tasks || 'none'}`);
+if (!live) console.log(`tasks of the last run above 50 ms, start + length: ${results.at(-1).tasks || 'none'}`);

@@ -69,7 +69,8 @@ export async function start({store, layout, baker, session}: Beginning): Promise
     const status = new Status(app, layout.status), hover = new Hover(app, status, map);
     layout.canvas.addEventListener('dblclick', event => app.lookCloser(event.clientX / innerWidth, event.clientY / innerHeight));
     bindPointer(layout.canvas, store, factor => app.zoom(factor), (x, y) => hover.at(x, y), () => hover.leave());
-    const name = () => layout.name(store.state, store.state.other === 'truth' ? truth.progress || 'on its way' : '', app.stage.mapped);
+    const progress = () => (store.state.other === 'truth' ? truth.progress || 'on its way' : app.stage.hasOther(store.state) ? '' : 'none is open');
+    const name = () => layout.name(store.state, progress(), app.stage.mapped);
     const drawn = () => {
         name();
         status.update();
