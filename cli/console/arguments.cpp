@@ -41,6 +41,10 @@ Result<double> parse_number(const std::string& text) {
     return parse_whole<double>(text, "a number");
 }
 Result<int> parse_integer(const std::string& text) {
+    // 1e6, as numbers of samples are often written.
+    if (text.find_first_of("eE") != std::string::npos)
+        if (const auto value = parse_number(text); value && *value == std::trunc(*value) && std::abs(*value) <= 1e9)
+            return int(*value);
     return parse_whole<int>(text, "a whole number");
 }
 Result<std::uint64_t> parse_seed(const std::string& text) {

@@ -197,3 +197,9 @@ def test_sample_files_appear_whole_or_not_at_all(folder):
         files = files_of(folder)
         expected = expected or files
         assert files == expected
+
+
+def test_numbers_of_samples_may_have_exponents(folder):
+    assert run("sample", "studio.hdr", "-n", "1e3", folder=folder).stdout == run("sample", "studio.hdr", "-n", "1000", folder=folder).stdout
+    for wrong in ["1.5e0", "1e-3", "1e99", "e3"]:
+        assert "whole number" in run("sample", "studio.hdr", "-n", wrong, folder=folder, code=2).stderr, wrong
