@@ -92,7 +92,7 @@ export class Environment {
     close(): void;
 }
 
-/** Reads Radiance .hdr, OpenEXR, Ultra HDR and other JPEG, PNG, KTX2, KTX, DDS or .env: a URL, in Node also a path, a File or Blob, a Response, or its bytes. */
+/** Reads Radiance .hdr, OpenEXR, Ultra HDR and other JPEG, PNG, KTX2, KTX, DDS or .env: a URL, in Node and Deno also a path, a File or Blob, a Response, or its bytes. */
 export function read(source: string | URL | Blob | Response | ArrayBuffer | ArrayBufferView, options?: ReadOptions): Promise<Environment>;
 /** Makes an environment of radiance in memory, which is copied. NaN, infinite and negative values are errors. */
 export function fromPixels(pixels: Pixels, options?: {worldToSource?: ArrayLike<number>; signal?: AbortSignal}): Promise<Environment>;

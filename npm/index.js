@@ -39,7 +39,8 @@ async function startWorker(url) {
     }
     let worker;
     try {
-        worker = new Worker(url, {type: 'module'});
+        // Bundlers know a worker by this form alone, and then bundle what it imports.
+        worker = settings.worker ? new Worker(url, {type: 'module'}) : new Worker(new URL('./worker.js', import.meta.url), {type: 'module'});
     } catch {
         // A page may not start a worker from another origin, but it may import from there.
         worker = new Worker(URL.createObjectURL(new Blob([`import ${JSON.stringify(String(url))};`], {type: 'text/javascript'})), {type: 'module'});
@@ -288,7 +289,7 @@ async function load(source) {
 const fileName = url => decodeURIComponent(String(url).split(/[?#]/)[0].split('/').pop()) || undefined;
 
 async function loadUrl(source) {
-    const isPath = isNode && !/^(https?|data|blob):/.test(String(source));
+    const isPath = (isNode || globalThis.Deno) && !/^(https?|data|blob):/.test(String(source));
     if (isPath) {
         const {readFile} = await import('node:fs/promises');
         const bytes = await readFile(source).catch(error => {

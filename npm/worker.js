@@ -71,7 +71,7 @@ function buffersOf(value, found = []) {
 }
 
 const isNode = typeof process === 'object' && !!process.versions?.node && !globalThis.Deno;
-const port = isNode ? (await import('node:worker_threads')).parentPort : globalThis;
+let port = globalThis;
 const send = (message, transfer = []) => port.postMessage(message, transfer);
 
 async function answer({id, name, given}) {
@@ -84,6 +84,14 @@ async function answer({id, name, given}) {
     }
 }
 
-if (isNode) port.on('message', answer);
-else port.addEventListener('message', ({data}) => answer(data));
-send({ready: true});
+// Without `await` at the top level, which bundlers refuse in workers of their default form.
+if (isNode) {
+    import('node:worker_threads').then(({parentPort}) => {
+        port = parentPort;
+        port.on('message', answer);
+        send({ready: true});
+    });
+} else {
+    port.addEventListener('message', ({data}) => answer(data));
+    send({ready: true});
+}
