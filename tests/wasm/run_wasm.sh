@@ -26,9 +26,9 @@ node "$root/scripts/npm_inline.mjs" "$module" "$folder/package/inline.js"
 (cd "$folder/app" && npm init -y && npm install --no-audit --no-fund ../domelight-*.tgz) >"$folder/install.log" 2>&1 || { cat "$folder/install.log"; exit 1; }
 cp -r "$folder/app/node_modules/domelight/test" "$folder/app/test"
 cp "$here"/*.mjs "$here"/*.html "$folder/app/test/"
-# The engines that the adapters are for, and what drives the browser. Without them those tests say that they skip.
+# The engines that the adapters are for, a bundler, and what drives the browser. Without them those tests say that they skip.
 (cd "$folder/app" && npm install --ignore-scripts --no-audit --no-fund three@0.187.0 playwright-core@1.65.1 babylonjs@9.28.0 babylonjs-loaders@9.28.0 \
-    playcanvas@2.23.3 deno@2.9.6) >>"$folder/install.log" 2>&1 || say "npm does not serve the engines"
+    playcanvas@2.23.3 deno@2.9.6 vite@8.4.0) >>"$folder/install.log" 2>&1 || say "npm does not serve the engines"
 
 cd "$folder/app" || exit
 DOMELIGHT_PROGRAM=${DOMELIGHT_PROGRAM:-$root/build/dev/cli/domelight} DOMELIGHT_MODULE=$module DOMELIGHT_ROOT=$root node --test test/*.test.mjs >"$folder/test.log" 2>&1

@@ -6,6 +6,7 @@ import os from 'node:os';
 import path from 'node:path';
 import {after, test} from 'node:test';
 import * as domelight from 'domelight';
+import {load} from 'domelight/library';
 import {relativeRms} from './ktx2.mjs';
 
 const {DOMELIGHT_PROGRAM: program, DOMELIGHT_DATA: data} = process.env;
@@ -124,4 +125,21 @@ test('what cannot be written is one sentence', async () => {
     await assert.rejects(domelight.bakeFiles(environment, {signal: AbortSignal.abort()}), {name: 'AbortError'});
     await assert.rejects(domelight.bakeFiles(undefined), /not an environment/);
     environment.close();
+});
+
+test('a thousand files, and a hundred that fail, leave the memory as it was', async () => {
+    const dl = await load({module: new URL('./domelight-bake.wasm', import.meta.resolve('domelight'))}), pixels = sky(16);
+    const environment = dl.fromPixels(pixels), texture = dl.bake(environment, {engine: 'babylon', size: 8, encoding: 'rgbd', shBands: 3});
+    const round = () => {
+        for (const format of ['ktx2', 'ktx1', 'dds', 'env']) dl.write(texture, {format});
+        for (const format of ['exr', 'hdr']) dl.write(pixels, {format});
+        assert.throws(() => dl.write(texture, {format: 'tiff'}));
+    };
+    const bake = () => dl.bakeFiles(environment, {engines: 'bevy', size: 16, preview: false});
+    for (let k = 0; k < 20; ++k) round();
+    for (let k = 0; k < 3; ++k) bake();
+    const before = dl.memoryBytes;
+    for (let k = 0; k < 170; ++k) round();
+    for (let k = 0; k < 10; ++k) bake();
+    assert.equal(dl.memoryBytes, before);
 });
