@@ -14,6 +14,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <sys/resource.h>
 
 enum { width = 32, height = 16 };
@@ -36,9 +39,12 @@ static void check(domelight_error* error, int expected, int line) {
 #define DONE(call) check(call, 0, __LINE__)
 #define REFUSED(call) check(call, 1, __LINE__)
 
-/* KiB of memory in use. */
+/* KiB of memory in use. What is free is given back first: how much of it the allocator keeps is chance, some MiB either way. */
 static long memory_in_use(void) {
     long pages = 0, resident = 0;
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
     FILE* file = fopen("/proc/self/statm", "r");
     if (!file || fscanf(file, "%ld %ld", &pages, &resident) != 2) wrong(__LINE__);
     fclose(file);
