@@ -42,7 +42,8 @@ foreach(name adler32 crc32 deflate inffast inflate inftrees trees uncompr zutil)
 endforeach()
 domelight_codec(zlib ${files})
 target_include_directories(domelight_zlib PUBLIC ${zlib})
-target_compile_definitions(domelight_zlib PRIVATE NO_GZIP)
+# Checksums by a table of 1 KB, not by one of 5 KB.
+target_compile_definitions(domelight_zlib PRIVATE NO_GZIP Z_TESTW=0)
 target_compile_options(domelight_zlib PRIVATE -flto)
 
 # libjpeg and libpng leave damaged files by longjmp, which clang does not lower when it optimises at link time.
@@ -65,6 +66,11 @@ foreach(name jaricom jcomapi jdapimin jdapistd jdarith jdatasrc jdcoefct jdcolor
   list(APPEND files ${jpeg}/${name}.c)
 endforeach()
 file(COPY ${DOMELIGHT_SOURCES}/libjpeg-turbo/jdcolext.c ${DOMELIGHT_SOURCES}/libjpeg-turbo/jdcol565.c ${DOMELIGHT_SOURCES}/libjpeg-turbo/jstdhuff.c DESTINATION ${jpeg})
+# Pixels are RGB, of 8 bits, and in that order.
+file(READ ${jpeg}/jdcolor.c text)
+string(REGEX REPLACE "  case JCS_EXT_[A-Z]+:\n(  case JCS_EXT_[A-Z]+:\n)?    [a-z_]+\\([^;]*;\n    break;\n" "" text "${text}")
+string(REGEX REPLACE "cconvert->pub.color_convert = [a-z]+_rgb565D?_convert" "ERREXIT(cinfo, JERR_CONVERSION_NOTIMPL)" text "${text}")
+file(WRITE ${jpeg}/jdcolor.c "${text}")
 domelight_codec(jpeg ${files})
 target_include_directories(domelight_jpeg PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/jpeg ${jpeg})
 target_compile_definitions(domelight_jpeg PRIVATE NO_GETENV)

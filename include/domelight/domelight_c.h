@@ -32,8 +32,6 @@
 
 #if defined(_WIN32)
 #define DOMELIGHT_API
-#elif defined(__wasm__)
-#define DOMELIGHT_API __attribute__((used, visibility("default")))
 #else
 #define DOMELIGHT_API __attribute__((visibility("default")))
 #endif

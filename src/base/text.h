@@ -1,6 +1,8 @@
 #pragma once
 
+#include <concepts>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -16,23 +18,34 @@ inline std::string decimal(int value) {
     return decimal(std::int64_t(value));
 }
 
-inline std::string as_text(std::string_view words) {
-    return std::string(words);
-}
-template <typename Number>
-requires requires(Number n) {
-    decimal(n);
-}
-std::string as_text(Number number) {
-    return decimal(number);
-}
+/// Words or a number in a text. It refers to the words.
+class TextPart {
+  public:
+    template <typename Words>
+    requires std::convertible_to<const Words&, std::string_view> TextPart(const Words& words)
+        : kind_(Kind::words), words_(words) {}
+    TextPart(double value) : kind_(Kind::number), number_(value) {}
+    TextPart(float value) : kind_(Kind::single), number_(double(value)) {}
+    TextPart(std::signed_integral auto value) : kind_(Kind::whole), whole_(value) {}
+
+    void append_to(std::string& text) const;
+
+  private:
+    enum class Kind { words, number, single, whole };
+    Kind kind_;
+    union {
+        std::string_view words_;
+        double number_;
+        std::int64_t whole_;
+    };
+};
+
+std::string join_text(std::initializer_list<TextPart> parts);
 
 /// Words and numbers, one after the other: text("texel (", x, ", ", y, ")").
 template <typename... Parts>
 std::string text(const Parts&... parts) {
-    std::string result;
-    (result.append(as_text(parts)), ...);
-    return result;
+    return join_text({TextPart(parts)...});
 }
 
 }  // namespace domelight

@@ -1,5 +1,6 @@
 #include "filtering/filter_plan.h"
 
+#include "base/sort.h"
 #include "filtering/direct/direct_sums.h"
 
 #include <algorithm>
@@ -86,7 +87,7 @@ FilterPlan make_filter_plan(const FilterOptions& options, bool sums_directly, co
     }
     plan.split = !plan.direct.empty();
     if (options.irradiance_size > 0) add(FilterPlan::k_irradiance, ZonalKernel::cosine());
-    std::stable_sort(needs.begin(), needs.end(), [](const Need& a, const Need& b) {
+    sort_stably(needs, [](const Need& a, const Need& b) {
         return std::pair(a.narrow, a.band_limit) > std::pair(b.narrow, b.band_limit);
     });
 

@@ -1,5 +1,7 @@
 #include "sampling/bright_regions.h"
 
+#include "base/sort.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -70,7 +72,7 @@ class Finder {
         Texels peaks;
         for (std::int64_t i = 0; i < sphere_.size(); ++i)
             if (luminance_[i] > least_peak) peaks.push_back(i);
-        std::sort(peaks.begin(), peaks.end(), [&](std::int64_t a, std::int64_t b) {
+        sort_items(peaks, [&](std::int64_t a, std::int64_t b) {
             return luminance_[a] != luminance_[b] ? luminance_[a] > luminance_[b] : a < b;
         });
         for (const std::int64_t peak : peaks)
@@ -118,7 +120,7 @@ class Finder {
     void group_cores() {
         std::vector<int> order(cores_.size());
         for (std::size_t i = 0; i < order.size(); ++i) order[i] = int(i);
-        std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return cores_[a].power > cores_[b].power; });
+        sort_stably(order, [&](int a, int b) { return cores_[a].power > cores_[b].power; });
         const double close = std::cos(options_.merge_deg * k_pi / 180) - 1e-12;
         for (const int c : order) {
             const Core& core = cores_[c];
@@ -219,7 +221,7 @@ class Finder {
         for (const std::int64_t t : group.texels)
             region.power += std::max(0.0, luminance_[t] - reached) * sphere_.solid_angle(t);
         region.texels = group.texels;
-        std::sort(region.texels.begin(), region.texels.end());
+        sort_items(region.texels);
         return region;
     }
 

@@ -4,6 +4,7 @@
 #include "domelight/image/colour.h"
 
 #include "base/field_place.h"
+#include "base/sort.h"
 #include "base/text.h"
 #include "sampling/bright_regions.h"
 #include "sampling/harmonic_fill.h"
@@ -166,7 +167,7 @@ std::vector<char> which_hold(const std::vector<ExtractedLight>& lights, const Li
         if (lights[i].share > 0 && lights[i].share >= options.least_share &&
             lights[i].contrast >= options.least_contrast)
             fine.push_back(i);
-    std::stable_sort(fine.begin(), fine.end(), [&](auto a, auto b) { return lights[a].share > lights[b].share; });
+    sort_stably(fine, [&](auto a, auto b) { return lights[a].share > lights[b].share; });
     if (fine.size() > std::size_t(options.max_lights)) fine.resize(std::size_t(options.max_lights));
     std::vector<char> holds(lights.size(), 0);
     for (const std::size_t i : fine) holds[i] = 1;
@@ -250,8 +251,7 @@ Result<LightExtraction> extract_lights(ImageView<const float> image, const Light
         kept = std::move(holding);
     }
     for (const ExtractedLight& light : out.lights) report.light_power += light.irradiance;
-    std::stable_sort(out.lights.begin(), out.lights.end(),
-                     [](const auto& a, const auto& b) { return a.share > b.share; });
+    sort_stably(out.lights, [](const auto& a, const auto& b) { return a.share > b.share; });
     report.remainder_power = power_of(out.remainder.view(), options.threads);
     report.unaccounted = unaccounted(report);
     return out;

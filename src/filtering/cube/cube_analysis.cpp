@@ -3,6 +3,7 @@
 #include "domelight/base/parallel.h"
 #include "domelight/projection/projection.h"
 
+#include "base/sort.h"
 #include "filtering/cube/cube_nodes.h"
 #include "filtering/harmonic/scatter_analysis.h"
 
@@ -90,7 +91,7 @@ PointLights bright_points(const BorderedCube& cube, const Vec3d& mean, int band_
                 const double power = largest * cube_solid_angle(std::clamp(x, 0, n - 1), std::clamp(y, 0, n - 1), n);
                 if (power > least) texels.push_back({power, f, x, y});
             }
-    std::stable_sort(texels.begin(), texels.end(), [](const Texel& a, const Texel& b) { return a.power > b.power; });
+    sort_stably(texels, [](const Texel& a, const Texel& b) { return a.power > b.power; });
     if (texels.size() > most) texels.resize(most);
     const auto axis = axis_nodes(n, nodes_a_cell(n, band_limit));
     const int count = int(axis.size()), per_cell = count / (n + 1);

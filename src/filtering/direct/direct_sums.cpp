@@ -4,6 +4,7 @@
 #include "domelight/projection/projection.h"
 
 #include "base/aligned.h"
+#include "base/sort.h"
 #include "filtering/direct/lobe_sums.h"
 #include "filtering/direct/refined_rows.h"
 
@@ -299,7 +300,7 @@ class DirectSums::Level {
                 texel.all_around = has_core_ && core(texel).all_around;
             }
         });
-        std::sort(texels_.begin(), texels_.end(), [](const Texel& a, const Texel& b) {
+        sort_items(texels_, [](const Texel& a, const Texel& b) {
             return a.theta != b.theta ? a.theta < b.theta : a.index < b.index;
         });
     }

@@ -3,6 +3,7 @@
 #include "domelight/base/frame.h"
 #include "domelight/projection/projection.h"
 
+#include "base/sort.h"
 #include "filtering/harmonic/row_kernels.h"
 #include "filtering/lights/tent_nodes.h"
 
@@ -145,7 +146,7 @@ class BrightSplit::TreeBuilder {
             std::minmax_element(texels.begin(), texels.end(), [&](int a, int b) { return all[a].y < all[b].y; });
         const bool by_x = all[*x1].x - all[*x0].x > all[*y1].y - all[*y0].y;
         const auto half = texels.begin() + texels.size() / 2;
-        std::sort(texels.begin(), texels.end(), [&](int a, int b) {
+        sort_items(texels, [&](int a, int b) {
             const auto key = [&](int t) {
                 return by_x ? std::pair(all[t].x, all[t].y) : std::pair(all[t].y, all[t].x);
             };

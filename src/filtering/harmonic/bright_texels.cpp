@@ -2,6 +2,7 @@
 
 #include "domelight/projection/projection.h"
 
+#include "base/sort.h"
 #include "filtering/harmonic/row_kernels.h"
 #include "filtering/lights/tent_nodes.h"
 
@@ -57,7 +58,7 @@ PointLights BrightTexels::points(const Vec3d& mean, int band_limit) const {
     for (const Texel& t : heap_)
         if (t.power > k_least_share * total && std::max({t.rgb[0], t.rgb[1], t.rgb[2]}) > k_least_contrast * largest)
             texels.push_back(t);
-    std::sort(texels.begin(), texels.end(), stronger);
+    sort_items(texels, [](const Texel& a, const Texel& b) { return stronger(a, b); });
 
     // A texel wider than a few waves is not a point: its own tent is so smooth that the truncation has no effect.
     const int nodes = 1 + int(k_pi / height_ * band_limit);

@@ -4,6 +4,7 @@
 
 #include "base/gauss_legendre.h"
 #include "base/interpolation_taps.h"
+#include "base/sort.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +18,7 @@ LatitudeReduction::LatitudeReduction(int image_height, int rings, double band, d
     std::vector<double> knots{0, k_pi};
     for (int j = 0; j < image_height; ++j) knots.push_back(k_pi * (j + 0.5) / image_height);
     for (int k = 0; k < rings; ++k) knots.push_back(k_pi * (k + 0.5) / rings);
-    std::sort(knots.begin(), knots.end());
+    sort_items(knots);
 
     std::vector<std::vector<double>> weights(rows_.size());
     const auto add = [&](int k, int j, double w) {

@@ -1,5 +1,7 @@
 #include "filtering/lights/light_groups.h"
 
+#include "base/sort.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,8 +28,8 @@ void sort_by_place(const PointLights& points, std::span<int> order) {
     // Ties are broken by index, so that the order is the same everywhere.
     std::nth_element(order.begin(), order.begin() + half, order.end(),
                      [&](int a, int b) { return std::pair((*longest)[a], a) < std::pair((*longest)[b], b); });
-    std::sort(order.begin(), order.begin() + half);
-    std::sort(order.begin() + half, order.end());
+    sort_items(order.first(half));
+    sort_items(order.subspan(half));
     sort_by_place(points, order.first(half));
     sort_by_place(points, order.subspan(half));
 }

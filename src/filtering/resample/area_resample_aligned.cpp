@@ -5,6 +5,7 @@
 
 #include "base/aligned.h"
 #include "base/mutex.h"
+#include "base/sort.h"
 #include "filtering/resample/area_resample_tile.h"
 
 #include <algorithm>
@@ -161,7 +162,7 @@ void AlignedResampler::make_tiles() {
         jobs_.push_back({k_pole, false, 0, last});
         jobs_.push_back({k_pole, true, height_ - 1 - last, height_ - 1});
     }
-    std::ranges::stable_sort(jobs_, {}, &Job::last_row);
+    sort_stably(jobs_, [](const Job& a, const Job& b) { return a.last_row < b.last_row; });
 }
 
 void AlignedResampler::add_tiles(bool polar, int group, int i0, int j0, int j1, bool triangle) {

@@ -3,6 +3,7 @@
 #include "domelight/base/parallel.h"
 #include "domelight/projection/projection.h"
 
+#include "base/sort.h"
 #include "filtering/resample/cube_resize.h"
 #include "filtering/resample/cube_to_latlong.h"
 
@@ -40,7 +41,7 @@ std::vector<Arc> clip(std::span<const Arc> border, const Vec3d& normal) {
     for (const Arc& arc : border) {
         s.assign({arc.s0, arc.s1});
         cross_plane(arc, normal, 0, s);
-        std::sort(s.begin(), s.end());
+        sort_items(s);
         for (std::size_t k = 0; k + 1 < s.size(); ++k) {
             Arc part = arc;
             part.s0 = s[k];
@@ -162,7 +163,7 @@ void CubeIntegrator::add_arc(int face, const Arc& arc, int reference, Flux& sum)
         for (int i = std::max(first, 0); i <= std::min(last + 1, size_ - 1); ++i)
             cross_plane(arc, axis - plane.normal * centre(i), 0, cuts);
     }
-    std::sort(cuts.begin(), cuts.end());
+    sort_items(cuts);
     for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
         const double middle = 0.5 * (cuts[k] + cuts[k + 1]);
         const Cell cell{cell_of(middle, plane.right), cell_of(middle, plane.down)};

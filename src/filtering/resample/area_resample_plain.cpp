@@ -2,6 +2,8 @@
 
 #include "domelight/base/parallel.h"
 
+#include "base/sort.h"
+
 #include <algorithm>
 
 namespace domelight::area {
@@ -93,7 +95,7 @@ void LatlongIntegrator::cuts(const Arc& arc, std::vector<double>& out) const {
     places.assign({arc.s0, arc.s1});
     const auto turn = [](const Vec3d& a, const Vec3d& b) { return a.x * b.z - a.z * b.x; };
     turning_points(arc, {0, 0, 1}, {1, 0, 0}, places);
-    std::sort(places.begin(), places.end());
+    sort_items(places);
     for (std::size_t k = 0; k + 1 < places.size(); ++k) {
         // Slightly inside, in case the end is a pole.
         const double inside = 1e-7 * (places[k + 1] - places[k]), middle = 0.5 * (places[k] + places[k + 1]);
@@ -109,7 +111,7 @@ void LatlongIntegrator::cuts(const Arc& arc, std::vector<double>& out) const {
             cross_plane(arc, {-std::sin(phi), 0, std::cos(phi)}, 0, out);
         }
     }
-    std::sort(out.begin(), out.end());
+    sort_items(out);
 }
 
 void LatlongIntegrator::add_piece(const Arc& arc, double a, double b, Cell cell, int reference, Flux& sum) const {
@@ -248,7 +250,7 @@ class PlainResampler : public AreaResampler {
                 const double v0 = (y + double(j) / down) / out_.height(),
                              v1 = (y + double(j + 1) / down) / out_.height();
                 sum += integrator.integrate(latlong_border(u0, u1, v0, v1, world_to_source_),
-                                                 pole_in_latlong(u0, u1, v0, v1, world_to_source_));
+                                            pole_in_latlong(u0, u1, v0, v1, world_to_source_));
             }
         return sum / latlong_solid_angle(y, out_.width(), out_.height());
     }

@@ -1,5 +1,7 @@
 #include "texture/block/astc_ise.h"
 
+#include "base/sort.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cstdlib>
@@ -243,8 +245,8 @@ struct Tables {
                 weight[r][std::size_t(i)] = std::uint8_t(weight_of(k_ise_ranges[r], i));
                 weight_number[r][std::size_t(i)] = std::uint8_t(i);
             }
-            std::sort(weight_number[r].begin(), weight_number[r].begin() + levels,
-                      [&](int i, int j) { return weight[r][std::size_t(i)] < weight[r][std::size_t(j)]; });
+            sort_items(std::span(weight_number[r]).first(std::size_t(levels)),
+                       [&](int i, int j) { return weight[r][std::size_t(i)] < weight[r][std::size_t(j)]; });
             for (int i = 0; i < levels; ++i) weight_rank[r][weight_number[r][std::size_t(i)]] = std::uint8_t(i);
         }
         for (std::size_t r = 4; r < colour.size(); ++r) {
