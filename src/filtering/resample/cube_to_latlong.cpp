@@ -3,6 +3,7 @@
 #include "domelight/base/parallel.h"
 #include "domelight/projection/projection.h"
 
+#include "base/sort.h"
 #include "filtering/resample/area_resample_arc.h"
 #include "filtering/resample/resize_latlong.h"
 #include "projection/bordered_cube.h"
@@ -367,7 +368,7 @@ void LatlongAverager::make_row(int y) {
             if (cut > from && cut < to) cuts.push_back(cut);
         for (int x = column; x <= columns_; ++x)
             if (const double cut = start_ + x * column_angle - middle; cut > from && cut < to) cuts.push_back(cut);
-        std::sort(cuts.begin(), cuts.end());
+        sort_items(cuts);
         for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
             const double at = 0.5 * (cuts[k] + cuts[k + 1]) + middle - start_;
             const int x = std::clamp(int(at / column_angle), column, columns_ - 1);

@@ -37,16 +37,6 @@ std::string Sha256::finish() {
     return hex;
 }
 
-std::string sha256(std::span<const std::uint8_t> bytes) {
-    Sha256 hash;
-    hash.add(bytes);
-    return hash.finish();
-}
-
-Result<std::string> sha256_file(const std::filesystem::path& file) {
-    return sha256_files({&file, 1});
-}
-
 Result<std::string> sha256_files(std::span<const std::filesystem::path> files) {
     Sha256 hash;
     std::vector<std::uint8_t> buffer(std::size_t(1) << 20);

@@ -27,12 +27,18 @@ class Sha256 {
     std::unique_ptr<State> state_;
 };
 
-std::string sha256(std::span<const std::uint8_t> bytes);
+inline std::string sha256(std::span<const std::uint8_t> bytes) {
+    Sha256 hash;
+    hash.add(bytes);
+    return hash.finish();
+}
 
 /// Hash of a regular file's content, read in pieces; of several files: of their contents one after the other. Errors
 /// name the file: not there, not readable, a pipe or a device.
-Result<std::string> sha256_file(const std::filesystem::path& file);
 Result<std::string> sha256_files(std::span<const std::filesystem::path> files);
+inline Result<std::string> sha256_file(const std::filesystem::path& file) {
+    return sha256_files({&file, 1});
+}
 
 /// The same of the file that a file in `folder`, such as a manifest, calls `name`. Errors also: it is not in the folder
 /// (path_inside).
