@@ -149,9 +149,11 @@ class FurtherInputs {
         const auto [known, is_new] = named_.emplace(role + " " + file, std::vector<std::string>());
         if (!is_new) return &known->second;
         if (role == "bake") {
-            if (const auto manifest = manifest_naming(root_ / file))
+            if (const auto entry = ManifestEntry::of(root_ / file)) {
+                const fs::path& manifest = entry->manifest();
                 known->second.push_back(
-                    (fs::path(file).is_absolute() ? *manifest : manifest->lexically_relative(root_)).generic_string());
+                    (fs::path(file).is_absolute() ? manifest : manifest.lexically_relative(root_)).generic_string());
+            }
             return &known->second;
         }
         const auto files = files_named_by_scene(root_ / file);

@@ -27,18 +27,12 @@ bool names_file(const Json& map, const std::string& file) {
     return std::any_of(levels.begin(), levels.end(), [&](const Json& level) { return text_at(level, "file") == file; });
 }
 
-/// A manifest, and the member of it that describes a file.
-struct Entry {
-    Json manifest, map;
-};
-
-std::optional<Entry> entry_in(const std::filesystem::path& manifest, const std::string& file) {
-    const auto parsed = Json::read(manifest);
-    if (!parsed || !parsed->is_object()) return std::nullopt;
-    const Json& json = *parsed;
+/// The member of a manifest that describes a file; null where it says nothing of the file.
+const Json* map_of(const Json& manifest, const std::string& file) {
+    if (!manifest.is_object()) return nullptr;
     for (const char* role : {"specular", "sheen", "skybox", "environment", "irradiance"})
-        if (json.contains(role) && names_file(json[role], file)) return Entry{json, json[role]};
-    return std::nullopt;
+        if (manifest.contains(role) && names_file(manifest[role], file)) return &manifest[role];
+    return nullptr;
 }
 
 /// A manifest that may describe a file, and the file's name in it.
@@ -56,12 +50,6 @@ std::vector<Candidate> candidates(const std::filesystem::path& file) {
     return all;
 }
 
-std::optional<Entry> entry_of(const std::filesystem::path& file) {
-    for (const Candidate& c : candidates(file))
-        if (auto found = entry_in(c.manifest, c.name)) return found;
-    return std::nullopt;
-}
-
 /// The numbers of all levels, "0 0.25 0.5"; nothing where a level has none.
 std::string numbers_of_levels(const Json& map, const char* key) {
     std::string text;
@@ -76,40 +64,41 @@ std::string numbers_of_levels(const Json& map, const char* key) {
 
 }  // namespace
 
-std::optional<std::filesystem::path> manifest_naming(const std::filesystem::path& file) {
-    for (const Candidate& c : candidates(file))
-        if (entry_in(c.manifest, c.name)) return c.manifest;
+std::optional<ManifestEntry> ManifestEntry::of(const std::filesystem::path& file) {
+    for (const Candidate& c : candidates(file)) {
+        const auto document = Json::read(c.manifest);
+        if (!document) continue;
+        if (const Json* map = map_of(*document, c.name)) return ManifestEntry(file, c.manifest, *document, *map);
+    }
     return std::nullopt;
 }
 
-std::optional<std::string> projection_in_manifest(const std::filesystem::path& file) {
-    const auto entry = entry_of(file);
-    const auto projection = entry ? text_at(entry->map, "projection") : std::nullopt;
+std::optional<std::string> ManifestEntry::projection() const {
+    const auto projection = text_at(map_, "projection");
     return projection && projection_from_name(*projection) ? projection : std::nullopt;
 }
 
-ManifestEngine engine_in_manifest(const std::filesystem::path& file) {
-    const auto entry = entry_of(file);
-    if (!entry) return {};
-    return {text_at(entry->manifest["engine"], "name").value_or(""),
-            text_at(entry->map, "container") == name_of(Container::playcanvas_atlas)};
+std::string ManifestEntry::engine() const {
+    return text_at(document_["engine"], "name").value_or("");
 }
 
-std::map<std::string, std::string> filter_in_manifest(const std::filesystem::path& file) {
-    const auto entry = entry_of(file);
-    if (!entry) return {};
-    if (const auto stated = text_at(entry->map, "sha256")) {
-        const auto now = sha256_file(file);
+bool ManifestEntry::is_atlas() const {
+    return text_at(map_, "container") == name_of(Container::playcanvas_atlas);
+}
+
+std::map<std::string, std::string> ManifestEntry::filter() const {
+    if (const auto stated = text_at(map_, "sha256")) {
+        const auto now = sha256_file(file_);
         if (!now || *now != *stated) return {};
     }
     std::map<std::string, std::string> keys;
     const auto add = [&](const char* name, const std::optional<std::string>& text) {
         if (text && !text->empty()) keys[name] = *text;
     };
-    add("domelight.lobe", text_at(entry->map, "lobe"));
-    add("domelight.texels", text_at(entry->manifest["options"], "texels"));
-    add("domelight.roughness", numbers_of_levels(entry->map, "roughness"));
-    add("domelight.exponent", numbers_of_levels(entry->map, "exponent"));
+    add("domelight.lobe", text_at(map_, "lobe"));
+    add("domelight.texels", text_at(document_["options"], "texels"));
+    add("domelight.roughness", numbers_of_levels(map_, "roughness"));
+    add("domelight.exponent", numbers_of_levels(map_, "exponent"));
     return keys;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// What the manifest.json of a bake says of one of its files.
+
+#include "io/file/json.h"
 
 #include <filesystem>
 #include <map>
@@ -8,23 +9,33 @@
 
 namespace domelight {
 
-/// The manifest.json, in the file's folder or the one above it, that describes the file. Nothing where there is none.
-std::optional<std::filesystem::path> manifest_naming(const std::filesystem::path& file);
+/// What the manifest.json of a bake, in a file's folder or the one above it, says of the file.
+class ManifestEntry {
+  public:
+    /// Nothing where there is no manifest, or where it says nothing of the file.
+    static std::optional<ManifestEntry> of(const std::filesystem::path& file);
 
-/// The projection that the bake's manifest.json, in the file's folder or the one above it, states for a lat-long file:
-/// "latlong/usd". Nothing where there is no manifest, or where it says nothing of the file.
-std::optional<std::string> projection_in_manifest(const std::filesystem::path& file);
+    const std::filesystem::path& manifest() const { return manifest_; }
+    /// Of a lat-long file: "latlong/usd". Nothing where none is stated.
+    std::optional<std::string> projection() const;
+    /// The engine that the bake was made for; empty: not known.
+    std::string engine() const;
+    /// Whether the file is PlayCanvas's atlas.
+    bool is_atlas() const;
+    /// How the levels of a specular map were filtered, as the keys of a KTX2 file state it: domelight.lobe,
+    /// domelight.texels, and domelight.roughness or domelight.exponent. Empty where the SHA-256 of the file is not the
+    /// stated one.
+    std::map<std::string, std::string> filter() const;
 
-/// How the levels of a specular map were filtered, by the same manifest, as the keys of a KTX2 file state it:
-/// domelight.lobe, domelight.texels, and domelight.roughness or domelight.exponent. Empty where there is no manifest,
-/// where it says nothing of the file, or where the SHA-256 of the file is not the stated one.
-std::map<std::string, std::string> filter_in_manifest(const std::filesystem::path& file);
+  private:
+    ManifestEntry(std::filesystem::path file, std::filesystem::path manifest, Json document, Json map)
+        : file_(std::move(file)),
+          manifest_(std::move(manifest)),
+          document_(std::move(document)),
+          map_(std::move(map)) {}
 
-/// The engine that the bake was made for, and whether the file is PlayCanvas's atlas, by the same manifest.
-struct ManifestEngine {
-    std::string name;  ///< empty: not known
-    bool atlas = false;
+    std::filesystem::path file_, manifest_;
+    Json document_, map_;  ///< the manifest, and the member of it that describes the file
 };
-ManifestEngine engine_in_manifest(const std::filesystem::path& file);
 
 }  // namespace domelight

@@ -62,21 +62,26 @@ bool states_filter(const std::map<std::string, std::string>& keys) {
     return keys.contains("domelight.roughness") || keys.contains("domelight.exponent");
 }
 
+std::optional<std::string> stated_projection(const std::optional<ManifestEntry>& entry) {
+    return entry ? entry->projection() : std::nullopt;
+}
+
 /// The projection of a bake's lat-long file: by the manifest beside it, by its own key, or the default.
-Projection latlong_of(const std::string& file, const std::string& convention) {
-    const auto stated = projection_in_manifest(file);
+Projection latlong_of(const std::optional<ManifestEntry>& entry, const std::string& convention) {
+    const auto stated = stated_projection(entry);
     return *projection_from_name(stated ? *stated : latlong_of_convention(convention).value_or("latlong"));
 }
 
 /// The levels of a lat-long texture, each as a cube.
-Result<std::vector<Cubemap>> decode_latlongs(const Texture& texture, const std::string& file, int threads) {
+Result<std::vector<Cubemap>> decode_latlongs(const Texture& texture, const std::optional<ManifestEntry>& entry,
+                                             int threads) {
     if (texture.width != 2 * texture.height)
         return Error{fmt::format("{} x {} texels are not a cube, nor a lat-long map", texture.width, texture.height),
                      "", "Wanted is a specular cube or lat-long map, as a bake has it."};
     if (encoding_channels(texture.encoding) != 3)
         return Error{"texture has fewer than three channels: no colour", "", ""};
     const auto key = texture.metadata.find("domelight.convention");
-    const Projection projection = latlong_of(file, key == texture.metadata.end() ? "" : key->second);
+    const Projection projection = latlong_of(entry, key == texture.metadata.end() ? "" : key->second);
     std::vector<Cubemap> cubes;
     for (int l = 0; l < int(texture.levels.size()); ++l)
         cubes.push_back(cube_of_latlong_level({projection, decode_texture(texture, l, 0)}, threads));
@@ -86,21 +91,22 @@ Result<std::vector<Cubemap>> decode_latlongs(const Texture& texture, const std::
 Result<StoredBake> read_chain(const std::string& file, int threads) {
     const auto texture = read_texture(file);
     if (!texture) return texture.error().at(file);
-    auto cubes = texture->faces == 1 ? decode_latlongs(*texture, file, threads) : decode_cubes(*texture);
+    const auto entry = ManifestEntry::of(file);
+    auto cubes = texture->faces == 1 ? decode_latlongs(*texture, entry, threads) : decode_cubes(*texture);
     if (!cubes) return cubes.error().at(file);
     const auto info = read_texture_info(file);
     StoredBake bake;
     bake.is_cube = texture->faces == 6;
-    if (bake.is_cube)
-        if (const auto engine = find_engine(engine_in_manifest(file).name); engine && *engine != &engines().front())
+    if (bake.is_cube && entry)
+        if (const auto engine = find_engine(entry->engine()); engine && *engine != &engines().front())
             bake.engine = *engine;  // `generic` reads nothing
     bake.format = info ? fmt::format("{}, {}", info->container, info->format) : "texture";
     for (Cubemap& cube : *cubes) bake.levels.emplace_back().cube = std::move(cube);
     // DDS and .env have no place for keys.
     if (states_filter(texture->metadata))
         read_keys(texture->metadata, "the file", bake);
-    else
-        read_keys(filter_in_manifest(file), "the manifest beside it", bake);
+    else if (entry)
+        read_keys(entry->filter(), "the manifest beside it", bake);
     return bake;
 }
 
@@ -124,10 +130,11 @@ Result<StoredBake> read_pictures(const std::vector<std::string>& words, int thre
     EnvironmentOptions options;
     options.threads = threads;
     for (const std::string& word : words) {
-        if (engine_in_manifest(word).atlas)
+        const auto entry = ManifestEntry::of(word);
+        if (entry && entry->is_atlas())
             return Error{"PlayCanvas's atlas cannot be audited: all its levels lie in one picture", word,
                          "Audit the bake of the same environment for another engine."};
-        options.projection = projection_in_manifest(word).value_or("auto");
+        options.projection = stated_projection(entry).value_or("auto");
         const auto picture = open_environment(environment_files({word}), options);
         if (!picture) return picture.error();
         auto cube = cube_of(*picture, word, threads);
