@@ -1,21 +1,13 @@
 // The adapters in headless Chromium: three.js' own PMREM and ours in one page, of one texture, by one lookup, beside the truth.
 import assert from 'node:assert/strict';
-import {execFileSync} from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
 import {after, test} from 'node:test';
+import {app, chromium, modules, root, withoutBrowser} from './chromium.mjs';
+import {data} from './program.mjs';
 import {readHdr} from './radiance.mjs';
 
-const {DOMELIGHT_ROOT: root, DOMELIGHT_DATA: data} = process.env;
-const app = path.dirname(import.meta.dirname), modules = path.join(app, 'node_modules');
-const chromium = (() => {
-    try {
-        return execFileSync('sh', ['-c', 'command -v chromium'], {encoding: 'utf8'}).trim();
-    } catch {
-        return undefined;
-    }
-})();
-const without = !root || !chromium ? 'there is no Chromium' : !fs.existsSync(path.join(modules, 'three')) ? 'three.js is not installed' : false;
+const without = withoutBrowser('three');
 
 let browser, server;
 async function open(name) {

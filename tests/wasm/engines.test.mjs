@@ -1,16 +1,14 @@
 // The adapters of Babylon.js and PlayCanvas in headless Chromium: each engine's picture with the adapter's texture, and with the file of the program,
 // whose picture tests/engines/ compares with our own renderer's.
 import assert from 'node:assert/strict';
-import {execFileSync, spawnSync} from 'node:child_process';
+import {execFileSync} from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
 import {after, test} from 'node:test';
+import {app, chromium, modules, root, withoutBrowser} from './chromium.mjs';
+import {photograph, program, without as withoutProgram} from './program.mjs';
 
-const {DOMELIGHT_ROOT: root, DOMELIGHT_DATA: data, DOMELIGHT_PROGRAM: program} = process.env;
-const app = path.dirname(import.meta.dirname), modules = path.join(app, 'node_modules'), work = path.join(app, 'work');
-const chromium = spawnSync('sh', ['-c', 'command -v chromium'], {encoding: 'utf8'}).stdout?.trim();
-const without = name => (!root || !chromium ? 'there is no Chromium' : !program || !fs.existsSync(program) ? 'the program has not been built'
-    : !data ? 'DOMELIGHT_DATA names no folder' : !fs.existsSync(path.join(modules, name)) ? `${name} is not installed` : false);
+const work = path.join(app, 'work'), without = name => withoutBrowser(name) || withoutProgram;
 
 let browser, server, scene, tools;
 async function open(page) {
@@ -19,7 +17,7 @@ async function open(page) {
     server ??= await tools.serve({'/pages/': path.join(root, 'tests/engines/browser/pages'), '/npm/': modules, '/files/': work});
     if (!scene) {
         fs.mkdirSync(work, {recursive: true});
-        fs.copyFileSync(path.join(data, 'env_latlong/noon_grass_1k.hdr'), path.join(work, 'noon_grass.hdr'));
+        fs.copyFileSync(photograph, path.join(work, 'noon_grass.hdr'));
         const {ballsScene} = tools;
         scene = {...ballsScene, file: 'metals.glb', balls: ballsScene.balls.filter(ball => /^(metal|lambert)/.test(ball.name))};
         tools.writeScene(work, scene);

@@ -2,21 +2,15 @@
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
 import fs from 'node:fs';
-import os from 'node:os';
 import path from 'node:path';
 import {after, test} from 'node:test';
 import * as domelight from 'domelight';
 import {readKtx2, relativeRms} from './ktx2.mjs';
+import {data, photograph, program, temporaryFolder, without} from './program.mjs';
 import {readHdr} from './radiance.mjs';
 
-const {DOMELIGHT_PROGRAM: program, DOMELIGHT_DATA: data} = process.env;
-const without = !program || !fs.existsSync(program) ? 'the program has not been built' : !data ? 'DOMELIGHT_DATA names no folder' : false;
-const work = fs.mkdtempSync(path.join(os.tmpdir(), 'domelight-'));
-after(() => {
-    domelight.terminate();
-    fs.rmSync(work, {recursive: true});
-});
-const photograph = data && path.join(data, 'env_latlong/noon_grass_1k.hdr');
+const work = temporaryFolder();
+after(() => domelight.terminate());
 
 test('a Radiance file has the texels that are in it', {skip: without}, async () => {
     const environment = await domelight.read(photograph);

@@ -2,17 +2,15 @@
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
 import fs from 'node:fs';
-import os from 'node:os';
 import path from 'node:path';
 import {test} from 'node:test';
 import zlib from 'node:zlib';
 import {load} from 'domelight/library';
 import {readKtx2, relativeRms} from './ktx2.mjs';
+import {data, program, temporaryFolder, without} from './program.mjs';
 import {readHdr} from './radiance.mjs';
 
-const program = process.env.DOMELIGHT_PROGRAM, data = process.env.DOMELIGHT_DATA;
 const photographs = ['noon_grass', 'blocky_photo_studio', 'dikhololo_night', 'leadenhall_market', 'kloppenheim_05'];
-const without = !program || !fs.existsSync(program) ? 'the program has not been built' : !data ? 'DOMELIGHT_DATA names no folder' : false;
 
 test('the module is at most 258 KB gzipped, the one with the readers of all formats 475 KB, and the one that also writes files 635 KB', () => {
     for (const [name, most] of Object.entries({'.wasm': 258_000, '-files.wasm': 475_000, '-bake.wasm': 635_000})) {
@@ -28,7 +26,7 @@ const cpu = run => {
 };
 
 test('levels, relative to those of the program, within 1e-6 RMS', {skip: without}, async context => {
-    const dl = await load(), work = fs.mkdtempSync(path.join(os.tmpdir(), 'domelight-'));
+    const dl = await load(), work = temporaryFolder();
     for (const name of photographs) {
         const file = path.join(data, 'env_latlong', `${name}_1k.hdr`);
         execFileSync(program, ['bake', file, '-o', path.join(work, name), '--layout', 'cube', '--size', '256', '--levels', '5', '--roughness', '0,0.25,0.5,0.75,1',
@@ -42,7 +40,6 @@ test('levels, relative to those of the program, within 1e-6 RMS', {skip: without
         for (const error of errors) assert.ok(error <= 1e-6, `${name}: ${errors}`);
         environment.close();
     }
-    fs.rmSync(work, {recursive: true});
 });
 
 test('live probes: cubes of half floats, five levels each', async context => {

@@ -4,10 +4,9 @@ import {spawnSync} from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
 import {test} from 'node:test';
+import {app, chromium, modules, root, withoutBrowser} from './chromium.mjs';
 
-const {DOMELIGHT_ROOT: root} = process.env, app = path.dirname(import.meta.dirname), modules = path.join(app, 'node_modules'), site = path.join(app, 'site');
-const chromium = spawnSync('sh', ['-c', 'command -v chromium'], {encoding: 'utf8'}).stdout?.trim();
-const without = !root || !chromium ? 'there is no Chromium' : !fs.existsSync(path.join(modules, 'vite')) ? 'Vite is not installed' : false;
+const site = path.join(app, 'site'), without = withoutBrowser('vite');
 
 const page = `import {bake, fromPixels, prefilter, write} from 'domelight';
 window.run = async () => {

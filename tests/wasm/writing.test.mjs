@@ -2,21 +2,15 @@
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
 import fs from 'node:fs';
-import os from 'node:os';
 import path from 'node:path';
 import {after, test} from 'node:test';
 import * as domelight from 'domelight';
 import {load} from 'domelight/library';
 import {relativeRms} from './ktx2.mjs';
+import {photograph, program, temporaryFolder, without} from './program.mjs';
 
-const {DOMELIGHT_PROGRAM: program, DOMELIGHT_DATA: data} = process.env;
-const without = !program || !fs.existsSync(program) ? 'the program has not been built' : !data ? 'DOMELIGHT_DATA names no folder' : false;
-const work = fs.mkdtempSync(path.join(os.tmpdir(), 'domelight-'));
-after(() => {
-    domelight.terminate();
-    fs.rmSync(work, {recursive: true});
-});
-const photograph = data && path.join(data, 'env_latlong/noon_grass_1k.hdr');
+const work = temporaryFolder();
+after(() => domelight.terminate());
 const same = (bytes, file) => assert.ok(Buffer.from(bytes).equals(fs.readFileSync(file)), `${path.basename(file)} has other bytes`);
 const named = files => Object.fromEntries(files.map(({name, data}) => [name, data]));
 
