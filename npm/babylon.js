@@ -1,7 +1,8 @@
 // Babylon.js: what scene.environmentTexture takes, in place of HDRCubeTexture and of files that were prefiltered before.
 
 import {bake, DomelightError, fromPixels, read} from './index.js';
-import {colours, cubePixels, withEnvironment} from './source.js';
+import {mirroredX} from './pixels.js';
+import {cubePixels, withEnvironment} from './source.js';
 
 /// Babylon's constants TEXTUREFORMAT_RGBA, TEXTURETYPE_FLOAT, TEXTURETYPE_HALF_FLOAT and TEXTURE_TRILINEAR_SAMPLINGMODE.
 const rgba = 5, floats = 1, halves = 2, trilinear = 3;
@@ -36,12 +37,9 @@ async function openTexture(scene, texture) {
     // Of a right-handed scene the cube is half a turn off, unless it is turned back.
     const right = scene.useRightHandedSystem, half = Math.abs((texture.rotationY ?? 0) / Math.PI);
     if (half !== 0 && half !== 1) throw new DomelightError(`The texture is turned by ${texture.rotationY}`, '', 'A turn of the light is rotateYDeg of read().');
-    const mirrored = right === (half === 1) ? [-1, 0, 0, 0, 1, 0, 0, 0, 1] : [1, 0, 0, 0, 1, 0, 0, 0, -1];
+    const mirrored = right === (half === 1) ? mirroredX : [1, 0, 0, 0, 1, 0, 0, 0, -1];
     const {width} = texture.getSize(), faces = [];
-    for (let face = 0; face < 6; ++face) {
-        const data = await texture.readPixels(face, 0);
-        faces.push(colours(data, data.length / (width * width)).data);
-    }
+    for (let face = 0; face < 6; ++face) faces.push(await texture.readPixels(face, 0));
     return fromPixels(cubePixels(faces, width), {worldToSource: mirrored});
 }
 

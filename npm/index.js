@@ -219,11 +219,19 @@ class Remote {
         this.#id = id;
         this.#generation = host.generation;
     }
+    #checkOpen() {
+        if (this.#closed) throw new DomelightError('This object has been closed');
+    }
     /// Its number in the worker that now runs; for `prepare`.
     async in(worker) {
-        if (this.#closed) throw new DomelightError('This object has been closed');
+        this.#checkOpen();
         if (this.#generation !== worker.generation) this.#adopt(await this.#make(worker));
         return this.#id;
+    }
+    /// Makes another of it, by more than `make` is given otherwise. The number of that one; for `prepare`.
+    async another(worker, ...given) {
+        this.#checkOpen();
+        return (await this.#make(worker, ...given)).id;
     }
     /// Frees its memory.
     close() {
@@ -238,17 +246,14 @@ class Remote {
 
 /// Light from every direction. read() and fromPixels() make one.
 export class Environment extends Remote {
-    #open;
-    constructor(open, {id, info, warnings}) {
-        super(open, {id});
-        this.#open = open;
+    constructor(make, {id, info, warnings}) {
+        super(make, {id});
         Object.assign(this, info);
         this.openingWarnings = warnings;
     }
     /// Opens it once more, in the library that writes files. Its number there; for `prepare`.
-    async forBaking(worker) {
-        await this.in(worker);
-        return (await this.#open(worker, true)).id;
+    forBaking(worker) {
+        return this.another(worker, true);
     }
     /// Radiance that arrives from a direction of three numbers: [r, g, b].
     radiance(direction) {
@@ -345,8 +350,8 @@ export async function bakeFiles(environment, {progress, signal, ...options} = {}
 
 /// The bytes of one file: of encoded texels as bake() and encode() give them, of pixels, or of an environment as a lat-long map.
 export async function write(what, {signal, ...options} = {}) {
-    const given = what instanceof Environment ? await what.latlong() : what;
-    return host.call('write', () => ({what: given, options}), {signal});
+    const given = what instanceof Environment ? async worker => ({id: await what.in(worker), options}) : () => ({what, options});
+    return host.call('write', given, {signal});
 }
 
 export const brdfTable = ({signal, ...options} = {}) => host.call('brdfTable', () => ({options}), {signal});

@@ -9,7 +9,7 @@ import {compile, Instance} from './module.js';
 import {check, checkEncoding, integer, integer64, number} from './options.js';
 import {pixelsIn} from './pixels.js';
 import {bakePlan, levelSpecs} from './plan.js';
-import {bakeToFiles, pictureFile, textureFile} from './writing.js';
+import {bakeToFiles, pictureFile, texelsFile, textureFile} from './writing.js';
 
 const environmentWords = ['projection', 'latlong', 'layer', 'faces', 'faceOrientation', 'decode', 'negatives', 'up'];
 
@@ -286,12 +286,12 @@ export class Library {
             throw new DomelightError('The first argument is neither pixels nor a texture', '', 'bake(), encode() and prefilter() make what can be written.');
         if (what instanceof LibraryEnvironment) return this.write(what.latlong(), options);
         if (metadata !== undefined && (typeof metadata !== 'object' || metadata === null)) throw new DomelightError('is not an object of texts', 'metadata');
-        const instance = this.#instance, levels = Array.isArray(what) ? what : what?.levels ?? [what];
+        const instance = this.#instance, levels = Array.isArray(what) ? what : what.levels ?? [what];
         if (format === 'exr' || format === 'hdr') return pictureFile(instance, levels, {format, encoding, quality, metadata, supercompression});
-        const file = {format, metadata, supercompression, sh: what?.sh, mirrored: !!what?.mirrored};
+        const file = {format, metadata, supercompression, sh: what.sh};
         if (levels[0]?.data instanceof Uint8Array) {
             if (encoding !== undefined && encoding !== what.encoding) throw new DomelightError(`is ${encoding}, but the texels are ${what.encoding}`, 'encoding', 'Leave it out.');
-            return textureFile(instance, what, file);
+            return texelsFile(instance, what, file);
         }
         return this.#withTexture({list: levels.map(({data, width, height, faces, channels}) => ({data, width, height, faces, channels}))},
                                  {encoding: encoding ?? (format === 'env' ? 'rgbd' : undefined), quality}, (_, texture) => textureFile(instance, texture, file));

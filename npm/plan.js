@@ -1,6 +1,7 @@
 // Which levels a chain has: in the words of `domelight bake`.
 
 import {DomelightError} from './errors.js';
+import {mirroredX} from './pixels.js';
 
 /// How each engine reads a chain: the numbers of src/engines/. `roughness` belongs in level l of `count`, `size` wide at level 0.
 const engines = {
@@ -13,8 +14,6 @@ const engines = {
     playcanvas: {size: 256, smallest: 8, mirror: false, roughness: l => Math.min(1, l / 5)},
     khronos: {size: 256, smallest: 16, mirror: false, roughness: (l, count) => l / Math.max(1, count - 1)},
 };
-
-const mirrored = [-1, 0, 0, 0, 1, 0, 0, 0, 1];
 
 function countOf(size, smallest) {
     return Math.max(1, Math.floor(Math.log2(size / smallest)) + 1);
@@ -53,6 +52,6 @@ export function bakePlan({engine = 'generic', size, levels, lobe, roughness, lay
         engine, encoding, layout, irradianceSize, shBands,
         texels: texels ?? (layout === 'latlong' ? undefined : 'read'),
         levels: chain({size: finest, levels: count, lobe, roughness: roughness ?? known.roughness}),
-        worldToSource: (mirror ?? (layout !== 'latlong' && known.mirror)) ? mirrored : undefined,
+        worldToSource: (mirror ?? (layout !== 'latlong' && known.mirror)) ? mirroredX : undefined,
     };
 }

@@ -1,7 +1,8 @@
 // PlayCanvas: what scene.envAtlas takes, in place of EnvLighting.generateAtlas.
 
 import {DomelightError, encode, fromPixels, prefilter, read} from './index.js';
-import {cubePixels, latlongPixels, mirroredX, withEnvironment} from './source.js';
+import {mirroredX} from './pixels.js';
+import {cubePixels, latlongPixels, withEnvironment} from './source.js';
 
 /// Filters an environment exactly, in a worker.
 ///

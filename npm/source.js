@@ -2,6 +2,7 @@
 
 import {DomelightError} from './errors.js';
 import {Environment} from './index.js';
+import {isPixels} from './pixels.js';
 
 /// What use() gives of the environment that open() makes of a source, and closes it. A source that is an Environment itself is used and stays open.
 export async function withEnvironment(source, open, use) {
@@ -14,8 +15,6 @@ export async function withEnvironment(source, open, use) {
     }
 }
 
-const isPixels = data => data instanceof Float32Array || data instanceof Uint16Array || (typeof Float16Array === 'function' && data instanceof Float16Array);
-
 /// Rows in reverse order.
 export function flipped(data, rowLength) {
     const rows = data.length / rowLength, result = new data.constructor(data.length);
@@ -24,7 +23,7 @@ export function flipped(data, rowLength) {
 }
 
 /// Pixels of one to four channels as three or four: grey becomes RGB.
-export function colours(data, channels) {
+function colours(data, channels) {
     if (channels >= 3) return {data, channels};
     const result = new data.constructor((data.length / channels) * 3);
     for (let k = 0; k < data.length / channels; ++k) result.fill(data[channels * k], 3 * k, 3 * k + 3);
@@ -51,12 +50,10 @@ export function latlongPixels({data, width, height}, topFirst) {
     return {width, height, channels: found.channels, data: repaired(topFirst ? found.data : flipped(found.data, width * found.channels))};
 }
 
-/// worldToSource of cubes that an engine looks up by (-x, y, z) for the light from direction (x, y, z).
-export const mirroredX = [-1, 0, 0, 0, 1, 0, 0, 0, 1];
-
-/// Six arrays of a face each, one after the other.
+/// Six arrays of a face each, one after the other: what fromPixels() takes.
 export function cubePixels(faces, size) {
-    const length = faces[0].length, data = new faces[0].constructor(6 * length);
-    faces.forEach((face, f) => data.set(face, f * length));
+    const coloured = faces.map(face => colours(face, face.length / (size * size)).data);
+    const {length} = coloured[0], data = new coloured[0].constructor(6 * length);
+    coloured.forEach((face, f) => data.set(face, f * length));
     return {data: repaired(data), width: size, height: size, faces: 6, channels: length / size / size};
 }

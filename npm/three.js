@@ -2,7 +2,8 @@
 
 import {CompressedCubeTexture, FloatType, HalfFloatType, LinearFilter, LinearMipmapLinearFilter, LinearSRGBColorSpace, REVISION, RGBAFormat} from 'three';
 import {bake, DomelightError, fromPixels, read} from './index.js';
-import {colours, cubePixels, latlongPixels, mirroredX, withEnvironment} from './source.js';
+import {mirroredX} from './pixels.js';
+import {cubePixels, latlongPixels, withEnvironment} from './source.js';
 
 /// Filters an environment exactly, in a worker.
 ///
@@ -41,7 +42,7 @@ function cubeOfTexture(texture) {
     const images = texture.images.map(image => image?.image ?? image), {width, height} = images[0] ?? {};
     if (images.length !== 6 || !images.every(image => image?.data && image.width === width && image.height === width))
         throw new DomelightError('The cube texture has no six square faces of pixels in memory', '', 'Give its file, or the render target that it was drawn into.');
-    return cubePixels(images.map(({data}) => colours(data, data.length / (width * height)).data), width);
+    return cubePixels(images.map(({data}) => data), width);
 }
 
 /// Pixels that three.js has drawn, the lowest row first.

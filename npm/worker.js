@@ -46,7 +46,8 @@ const calls = {
             calls.close({id});
         }
     },
-    write: async ({what, options}) => (await bakingLibrary()).write(what, options),
+    /// `id`: the environment that is written in place of `what`.
+    write: async ({id, what, options}) => (await bakingLibrary()).write(id === undefined ? what : environment(id), options),
     irradiance: ({id, options}) => home(id).irradiance(environment(id), options),
     sphericalHarmonics: ({id, options}) => home(id).sphericalHarmonics(environment(id), options),
     lights: ({id, options}) => home(id).lights(environment(id), options),

@@ -68,9 +68,8 @@ export function pictureFile(instance, levels, {format, ...others}) {
     });
 }
 
-/// A texture in its container. `texture`: its address, or encoded texels as bake() and encode() give them.
-export function textureFile(instance, texture, {format, metadata = {}, supercompression, sh, mirrored}) {
-    if (typeof texture === 'object') return ofTexels(instance, texture, {format, metadata, supercompression, sh, mirrored});
+/// A texture, by its address, in its container.
+export function textureFile(instance, texture, {format, metadata = {}, supercompression, sh}) {
     return instance.scope(scope => {
         for (const [key, value] of Object.entries(metadata)) instance.run('domelight_texture_set_metadata', texture, scope.text(key), scope.text(value));
         if (sh) instance.run('domelight_texture_set_sh', texture, scope.copy(Float64Array.from(sh)), Math.round(Math.sqrt(sh.length / 3)));
@@ -84,9 +83,10 @@ export function textureFile(instance, texture, {format, metadata = {}, supercomp
     });
 }
 
-function ofTexels(instance, texture, {format, sh, mirrored, ...others}) {
-    const {encoding, width, height, faces, levels} = texture, back = mirrored && format === 'env';
-    if (back && faces === 6 && encoding === 'rgbd') return ofTexels(instance, unmirrored(texture), {format, sh: sh && unmirroredHarmonics(sh), mirrored: false, ...others});
+/// Encoded texels, as bake() and encode() give them, in their container.
+export function texelsFile(instance, texture, file) {
+    const {encoding, width, height, faces} = texture, turned = texture.mirrored && file.format === 'env' && faces === 6 && encoding === 'rgbd';
+    const levels = turned ? texture.levels.map(unmirrored) : texture.levels, sh = turned && file.sh ? unmirroredHarmonics(file.sh) : file.sh;
     return instance.scope(scope => {
         const info = scope.struct(textureInfoStruct, {width, height, faces, levels: levels.length});
         const addresses = scope.bytes(4 * levels.length), sizes = scope.bytes(4 * levels.length);
@@ -97,22 +97,20 @@ function ofTexels(instance, texture, {format, sh, mirrored, ...others}) {
         });
         const made = scope.handle('domelight_texture_from_levels', info, scope.word(encoding, 'encoding'), addresses, sizes);
         try {
-            return textureFile(instance, made, {format, sh, ...others});
+            return textureFile(instance, made, {...file, sh});
         } finally {
             instance.call('domelight_texture_free', made);
         }
     });
 }
 
-/// A cube of four bytes a texel that is looked up by (-x, y, z), as one that is looked up by (x, y, z): the writer of .env mirrors it itself.
-function unmirrored(texture) {
-    return {...texture, levels: texture.levels.map(({data, width, ...level}) => {
-        const texels = new Uint32Array(data.slice().buffer), out = new Uint32Array(texels.length), face = width * width;
-        for (let f = 0; f < 6; ++f)
-            for (let y = 0; y < width; ++y)
-                for (let x = 0; x < width; ++x) out[(f < 2 ? 1 - f : f) * face + y * width + x] = texels[f * face + y * width + width - 1 - x];
-        return {...level, width, data: new Uint8Array(out.buffer)};
-    })};
+/// A level of a cube of four bytes a texel that is looked up by (-x, y, z), as one that is looked up by (x, y, z): the writer of .env mirrors it itself.
+function unmirrored({data, width}) {
+    const texels = new Uint32Array(data.slice().buffer), out = new Uint32Array(texels.length), face = width * width;
+    for (let f = 0; f < 6; ++f)
+        for (let y = 0; y < width; ++y)
+            for (let x = 0; x < width; ++x) out[(f < 2 ? 1 - f : f) * face + y * width + x] = texels[f * face + y * width + width - 1 - x];
+    return {data: new Uint8Array(out.buffer)};
 }
 
 /// Harmonics of the light with x the other way: (l, m) with m > 0 odd, or m < 0 even, change their sign.

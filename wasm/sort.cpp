@@ -17,6 +17,7 @@ struct Sorting {
     ComesBefore comes_before;
     const void* order;
 
+    bool few(std::size_t count) const { return count < k_few && bytes <= k_most_bytes_of_few; }
     bool before(const std::uint8_t* a, const std::uint8_t* b) const { return comes_before(order, a, b); }
 
     void insert_each(std::uint8_t* items, std::size_t count) const {
@@ -34,7 +35,7 @@ struct Sorting {
     /// Sorts each half, and merges: the first is copied to `spare`, which has room for half of the items.
     void sort(std::uint8_t* items, std::size_t count, std::uint8_t* spare) const {
         if (count <= 1) return;
-        if (count < k_few && bytes <= k_most_bytes_of_few) return insert_each(items, count);
+        if (few(count)) return insert_each(items, count);
         const std::size_t half = count / 2;
         std::uint8_t *second = items + half * bytes, *const end = items + count * bytes;
         sort(items, half, spare);
@@ -57,7 +58,7 @@ struct Sorting {
 
 void sort_bytes(void* items, std::size_t count, std::size_t bytes, ComesBefore comes_before, const void* order) {
     const Sorting sorting{bytes, comes_before, order};
-    std::vector<std::uint8_t> spare(count < k_few && bytes <= k_most_bytes_of_few ? 0 : count / 2 * bytes);
+    std::vector<std::uint8_t> spare(sorting.few(count) ? 0 : count / 2 * bytes);
     sorting.sort(static_cast<std::uint8_t*>(items), count, spare.data());
 }
 
